@@ -1,0 +1,40 @@
+# Two commands for a new user: make demo, make test.  Both set up .venv first.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+
+.PHONY: demo test lint bench docs clean
+
+$(VENV)/.installed: pyproject.toml
+	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/.installed-test: $(VENV)/.installed
+	$(BIN)/python -m pip install --quiet --editable ".[test,lint]"
+	touch $@
+
+demo: $(VENV)/.installed
+	$(BIN)/equipoise analyze yamashita-1
+	@echo "Next:"
+	@echo "  $(BIN)/equipoise examples                         other machines"
+	@echo "  $(BIN)/equipoise analyze yamashita-1 --csv out.csv    every signal against crank angle"
+	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
+
+test: $(VENV)/.installed-test
+	$(BIN)/python -m pytest --numprocesses auto --cov --cov-report=term
+
+lint: $(VENV)/.installed-test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: $(VENV)/.installed-test
+	$(BIN)/python -m pip install --quiet --editable ".[bench]"
+	$(BIN)/python benchmarks/analysis.py
+	$(BIN)/python benchmarks/startup.py
+
+clean:
+	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
