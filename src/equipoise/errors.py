@@ -1,0 +1,73 @@
+"""Everything that can go wrong, as one tree.
+
+::
+
+    EquipoiseError          one sentence for the user; the command line exits with status 2
+    ├── ModelError          the model file, or a machine built in Python, contradicts itself
+    ├── MobilityError       the links do not form a linkage with exactly one free motion
+    ├── MotionError         the linkage cannot be closed, or not at these crank angles
+    │   ├── RangeError      the crank cannot turn fully
+    │   └── ChangePointError  the linkage passes a position in which its branch is undecided
+    ├── MassError           forces were asked for, but masses are missing
+    └── UsageError          an argument of a function or command cannot be used
+"""
+
+from __future__ import annotations
+
+
+class EquipoiseError(Exception):
+    """Base of all errors; `str(error)` is one sentence a user can act on."""
+
+
+class ModelError(EquipoiseError):
+    """A machine contradicts itself.
+
+    Parameters
+    ----------
+    where : dotted path of table and key, such as ``links.crank.mass``; empty for the whole.
+    what : what was given and what would be right.
+    source : name of the file, once known.
+    """
+
+    def __init__(self, where: str, what: str, source: str = "") -> None:
+        self.where, self.what, self.source = where, what, source
+        super().__init__(where, what, source)
+
+    def __str__(self) -> str:
+        return ": ".join(part for part in (self.source, self.where, self.what) if part)
+
+    def in_file(self, source: str) -> ModelError:
+        """Return the same error with the name of the file in front."""
+        return type(self)(self.where, self.what, source)
+
+
+class MobilityError(EquipoiseError):
+    """The number of free motions is not one."""
+
+
+class MotionError(EquipoiseError):
+    """The linkage cannot be closed, or not at the crank angles asked for."""
+
+
+class RangeError(MotionError):
+    """The crank cannot turn fully; `ranges` holds the intervals (rad) in which it can."""
+
+    def __init__(self, message: str, ranges: tuple[tuple[float, float], ...] = ()) -> None:
+        super().__init__(message)
+        self.ranges = ranges
+
+
+class ChangePointError(MotionError):
+    """The linkage passes a change point at `crank_angle` (rad)."""
+
+    def __init__(self, message: str, crank_angle: float = float("nan")) -> None:
+        super().__init__(message)
+        self.crank_angle = crank_angle
+
+
+class MassError(EquipoiseError):
+    """Forces need mass, centre of mass and inertia of every link."""
+
+
+class UsageError(EquipoiseError):
+    """An argument cannot be used."""
