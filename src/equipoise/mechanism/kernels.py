@@ -1,0 +1,304 @@
+"""The formulas of planar dyads and their forces, each written once.
+
+Planar vectors are complex numbers, x + i y.  A kernel does arithmetic only: ``+ - * /``,
+``** 0.5``, ``abs`` and the parts of a complex number.  It calls no library and takes no branch on
+a value, so that the same function runs on Python numbers, NumPy arrays, mpmath numbers and under
+Numba.
+
+Every position, and the rotation of every link, is followed by its first and second derivative
+with respect to the crank angle (kinematic coefficients): ``p, p1, p2`` for a point and
+``u, w, a`` for a link, where ``u = exp(i angle)``, ``w = angle'`` and ``a = angle''``.  At crank
+speed W and crank acceleration E a point has velocity ``p1 W`` and acceleration
+``p2 W**2 + p1 E``.
+
+The last value that a dyad returns is its own number: the squared sine of its transmission angle,
+negative where the dyad cannot be closed.  It decides nothing here: the root is taken of its
+positive part, and the caller looks at the number.
+
+Sources: circle intersection and its implicit derivatives, derived in ``docs/theory.md``; for the
+four-bar they are equations (10) to (13) of Yamashita, Ichikawa and Mori.
+"""
+
+# Kernels run on numbers of any library, which no annotation can name.
+# mypy: disable-error-code="no-untyped-def, no-untyped-call"
+
+
+def cross(a, b):
+    """Moment of the vector b applied at a: a_x b_y - a_y b_x."""
+    return (a.conjugate() * b).imag
+
+
+def dot(a, b):
+    """Scalar product a_x b_x + a_y b_y."""
+    return (a.conjugate() * b).real
+
+
+def positive(x):
+    """x where it is positive, else 0, without a branch."""
+    return (x + abs(x)) * 0.5
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def point(p, p1, p2, u, w, a, arm):
+    """Point of a link at `arm` (in the link's axes) from the point p of the same link."""
+    r = u * arm
+    return p + r, p1 + 1j * w * r, p2 + (1j * a - w * w) * r
+
+
+def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
+    """Angle of a driven gear: relative to the carrier c it turns `ratio` times the driver r."""
+    return (
+        angle_c + ratio * (angle_r - angle_c) + offset,
+        w_c + ratio * (w_r - w_c),
+        a_c + ratio * (a_r - a_c),
+    )
+
+
+def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
+    """Two links pinned at p and q meet in the pin c.
+
+    arm_p, arm_q : vectors from the outer pin to c, each in its own link's axes.
+    side : +1 where c lies left of the line from p to q, -1 right.
+    Returns rotation of link p, rotation of link q, the pin c, sin^2 of the transmission angle.
+    """
+    length_p, length_q = abs(arm_p), abs(arm_q)
+    d = q - p
+    distance2 = d.real * d.real + d.imag * d.imag
+    cosine = (length_p * length_p + length_q * length_q - distance2) / (2 * length_p * length_q)
+    number = 1 - cosine * cosine
+    area = side * length_p * length_q * positive(number) ** 0.5
+    along = (distance2 + length_p * length_p - length_q * length_q) * 0.5
+    to_p = d * (along + 1j * area) / distance2
+    to_q = to_p - d
+    e = q1 - p1
+    w_p = dot(to_q, e) / area
+    w_q = dot(to_p, e) / area
+    e = q2 - p2 + w_p * w_p * to_p - w_q * w_q * to_q
+    a_p = dot(to_q, e) / area
+    a_q = dot(to_p, e) / area
+    c1 = p1 + 1j * w_p * to_p
+    c2 = p2 + (1j * a_p - w_p * w_p) * to_p
+    return to_p / arm_p, w_p, a_p, to_q / arm_q, w_q, a_q, p + to_p, c1, c2, number
+
+
+def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):
+    """A link pinned at p meets, in the pin c, a link that slides along a guide.
+
+    g : a point of the guide, on the line; u : rotation of the link that carries the guide.
+    arm : from p to c in the pinned link's axes.  along : unit vector of the line in the guide's
+    axes.  shift : from the sliding point to c, in axes along the line.  turn : unit vector of the
+    sliding link's x axis in axes along the line.
+    side : +1 where c lies ahead of p along the line, -1 behind.
+    Returns rotation of the pinned link, rotation of the sliding link, c, the dyad's number.
+    """
+    length = abs(arm)
+    n = u * along
+    inverse = n.conjugate()
+    start = (p - g) * inverse - shift
+    sine = start.imag / length
+    number = 1 - sine * sine
+    reach = side * length * positive(number) ** 0.5
+    from_g = n * (start.real + reach + shift)
+    to_p = g + from_g - p
+    e = (g1 + 1j * w * from_g - p1) * inverse
+    w_p = e.imag / reach
+    slip = w_p * start.imag - e.real
+    e = (g2 + (1j * a - w * w) * from_g + 2j * w * slip * n - p2 + w_p * w_p * to_p) * inverse
+    a_p = e.imag / reach
+    c1 = p1 + 1j * w_p * to_p
+    c2 = p2 + (1j * a_p - w_p * w_p) * to_p
+    return to_p / arm, w_p, a_p, n * turn, w, a, p + to_p, c1, c2, number
+
+
+def rpr(p, p1, p2, q, q1, q2, offset, turn, back, side):
+    """A block pinned at p slides on a guide pinned at q.
+
+    offset : distance of p from the line through q along the guide, positive to the left.
+    turn : unit vector of the block's x axis, back : of the guide link's x axis, both in axes
+    along the line.  side : +1 where p lies ahead of q along the line, -1 behind.
+    Returns rotation of block, rotation of guide, the dyad's number.
+    """
+    d = p - q
+    distance2 = d.real * d.real + d.imag * d.imag
+    number = 1 - offset * offset / distance2
+    reach = side * (positive(number) * distance2) ** 0.5
+    n = d / (reach + 1j * offset)
+    inverse = n.conjugate()
+    e = (p1 - q1) * inverse
+    w = e.imag / reach
+    slip = e.real + w * offset
+    e = (p2 - q2) * inverse
+    a = (e.imag + w * w * offset - 2 * w * slip) / reach
+    return n * turn, w, a, n * back, w, a, number
+
+
+def prp(g, g1, g2, u, w, a, h, h1, h2, v, x, b, along_g, shift_g, turn_g, along_h, shift_h, turn_h):
+    """Two sliding links, one on a guide through g, one on a guide through h, meet in the pin c.
+
+    u, w, a and v, x, b : rotations of the links that carry the guides; other arguments as in
+    `rrp`.  Returns rotations of both sliding links, c, the dyad's number.
+    """
+    n, m = u * along_g, v * along_h
+    sine = cross(n, m)
+    d = h + m * shift_h - g - n * shift_g
+    from_g = n * (cross(d, m) / sine + shift_g)
+    from_h = m * (cross(d, n) / sine + shift_h)
+    e = h1 + 1j * x * from_h - g1 - 1j * w * from_g
+    slip_g = cross(e, m) / sine
+    slip_h = cross(e, n) / sine
+    e = (
+        h2
+        + (1j * b - x * x) * from_h
+        + 2j * x * slip_h * m
+        - g2
+        - (1j * a - w * w) * from_g
+        - 2j * w * slip_g * n
+    )
+    slip2_g = cross(e, m) / sine
+    c1 = g1 + 1j * w * from_g + n * slip_g
+    c2 = g2 + (1j * a - w * w) * from_g + (2j * w * slip_g + slip2_g) * n
+    return n * turn_g, w, a, m * turn_h, x, b, g + from_g, c1, c2, sine * sine
+
+
+def rpp(p, p1, p2, g, g1, g2, u, w, a, along, turn, inner, inner_turn, shift):
+    """A link pinned at p slides on a second link (or carries it), which slides along a guide.
+
+    along : unit vector of the outer line in the guide's axes; turn, inner_turn : unit vectors of
+    the x axes of second and first link, inner : unit vector of the inner line, all in axes along
+    the outer line.  shift : vector that has to be added to p - g so that it splits into a way
+    along the outer and one along the inner line, in the same axes.
+    Returns rotations of first and second link, the second link's sliding point, the number.
+    """
+    n = u * along
+    inverse = n.conjugate()
+    d, d1, d2 = p - g, p1 - g1, p2 - g2
+    z = d * inverse + shift
+    z1 = (d1 - 1j * w * d) * inverse
+    z2 = (d2 - 2j * w * d1 - (1j * a + w * w) * d) * inverse
+    slope = inner.real / inner.imag
+    t, t1, t2 = z.real - slope * z.imag, z1.real - slope * z1.imag, z2.real - slope * z2.imag
+    s1 = g1 + (1j * w * t + t1) * n
+    s2 = g2 + ((1j * a - w * w) * t + 2j * w * t1 + t2) * n
+    return n * inner_turn, w, a, n * turn, w, a, g + n * t, s1, s2, inner.imag * inner.imag
+
+
+# -- forces ----------------------------------------------------------------------------------------
+#
+# The demand of a link is what its joints together must supply: force F and moment M about the
+# link's anchor (named with each kernel).  A reaction is what the earlier body exerts on the link.
+
+
+def inertia_demand(p1, p2, u, w, a, speed2, acceleration, mass, moment, inertia):
+    """Force and moment that move a link, about its point p.
+
+    p1, p2 : derivatives of p; speed2, acceleration : crank speed squared, crank acceleration.
+    mass, moment, inertia : of the link about p; moment is mass times the complex arm to the
+    centre of mass in the link's axes.  Linear in these three.
+    """
+    turning = a * speed2 + w * acceleration
+    at_p = p2 * speed2 + p1 * acceleration
+    first = u * moment
+    force = mass * at_p + (1j * turning - w * w * speed2) * first
+    return force, inertia * turning + cross(first, at_p)
+
+
+def weight_demand(u, mass, moment, gravity):
+    """Force and moment that carry a link's weight, about the point that `moment` starts from."""
+    return -mass * gravity, -cross(u * moment, gravity)
+
+
+def load_demand(anchor, at, force, torque):
+    """Force and moment, about the anchor, that hold a load against a link."""
+    return -force, -cross(at - anchor, force) - torque
+
+
+def transfer(force, moment, anchor, at, reaction):
+    """Add to a body's demand a reaction that it exerts on another body at the point `at`."""
+    return force + reaction, moment + cross(at - anchor, reaction)
+
+
+def transfer_couple(force, moment, anchor, at, reaction, couple):
+    """Like `transfer`, for a reaction with a couple about `at`."""
+    return force + reaction, moment + cross(at - anchor, reaction) + couple
+
+
+def rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q):
+    """Demands about the outer pins; returns force on link p at p, on link q at q, on q at c."""
+    to_p, to_q = c - p, c - q
+    inner = -(moment_q * to_p + moment_p * to_q) / cross(to_p, to_q)
+    return force_p + inner, force_q - inner, inner
+
+
+def rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along):
+    """Demands about p and, for the sliding link, about c; u and `along` as in `rrp`.
+
+    Returns force on the pinned link at p, guide's force on the sliding link at c with its couple,
+    and the pinned link's force on the sliding link at c.
+    """
+    n = u * along
+    inverse = n.conjugate()
+    lever = (c - p) * inverse
+    tangential = (force_s * inverse).real
+    inner = n * (tangential + 1j * (lever.imag * tangential - moment_p) / lever.real)
+    return force_p + inner, force_s - inner, moment_s, inner
+
+
+def rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back):
+    """Demands about the outer pins; block at p, guide at q.
+
+    u : rotation of the block; back : unit vector of the line in the block's axes.
+
+    Returns force on the block at p, force on the guide at q, the guide's force on the block at p
+    with its couple.
+    """
+    n = u * back
+    inner = -1j * n * (moment_p + moment_q) / dot(n, p - q)
+    return force_p - inner, force_q + inner, inner, moment_p
+
+
+def prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h):
+    """Demands about the pin c; other arguments as in `prp`.
+
+    Returns the guides' forces at c with their couples, and the force of the first sliding link
+    on the second.
+    """
+    n, m = u * along_g, v * along_h
+    inner = 1j * (dot(m, force_h) * n + dot(n, force_g) * m) / cross(n, m)
+    return force_g + inner, moment_g, force_h - inner, moment_h, inner
+
+
+def rpp_forces(p, s, u, force_p, moment_p, force_s, moment_s, along, inner):
+    """Demands about p and about the second link's sliding point s; others as in `rpp`.
+
+    Returns force on the first link at p, the guide's force on the second link at s with its
+    couple, and the second link's force on the first at p with its couple.
+    """
+    n = u * along
+    m = n * inner
+    normal = 1j * m * (dot(n, force_s) / cross(n, m))
+    couple = moment_s + moment_p + cross(p - s, normal)
+    return force_p - normal, force_s + normal, couple, normal, moment_p
+
+
+def flank(moment):
+    """Sign of the moment that a driven gear needs: it tells which flank of the teeth is loaded."""
+    return (moment / (abs(moment) + 1e-300),)
+
+
+def gear_forces(force, moment, u, sense, lever, radial):
+    """Demand of a driven gear about its own pin.
+
+    u : rotation of the carrier.  sense : see `flank`.  lever : from the gear's pin to the pitch
+    point, in the carrier's axes.  radial : part of the tooth force along the lever, per unit of
+    tangential force: the tangent of the pressure angle, negative where the teeth push the gear
+    back towards its pin.
+    Returns force on the gear at its pin, tooth force on the gear at the pitch point, and the
+    tooth force's tangential part.
+    """
+    length = abs(lever)
+    direction = u * lever / length
+    tangential = moment / length
+    tooth = (1j + radial * sense) * direction * tangential
+    return force - tooth, tooth, tangential
