@@ -1,0 +1,192 @@
+"""What assembling a linkage keeps track of: which points are known, and who carries what."""
+
+from __future__ import annotations
+
+from cmath import exp
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.steps import Call, RunningAngle, State, Step, p, u
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """A joint's force, as the calls find it: on body `on`, by body `by`, at point `at`.
+
+    name : of the joint; kind : "pin", "slider" or "gear".
+    force, couple : names of values in the state; the couple is about `at`, None for pins.
+    """
+
+    name: str
+    kind: str
+    on: str
+    by: str
+    at: str
+    force: str
+    couple: str | None = None
+
+
+@dataclass(frozen=True)
+class Group:
+    """Links that are solved together.
+
+    motion : steps that find their position and derivatives.
+    forces : steps that find the reactions in their joints, once all later groups are done.
+    number : name of the dyad's own number, negative where it cannot be closed; None for others.
+    joint : inner joint of the dyad.
+    """
+
+    links: tuple[str, ...]
+    motion: tuple[Step, ...]
+    forces: tuple[Step, ...]
+    reactions: tuple[Reaction, ...]
+    number: str | None = None
+    joint: str = ""
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A sliding joint seen from a known body.
+
+    The line runs through point `base` of the known body along the unit vector `along` in that
+    body's axes; the other link's `point` stays on it, and its x axis has the direction `turn`
+    relative to the line.
+    """
+
+    name: str
+    base: str
+    along: complex
+    point: str
+    turn: complex
+
+    @classmethod
+    def seen_from(cls, slider: Slider, known: str) -> Guide:
+        """The line is the same whichever of the two bodies is known."""
+        if slider.on == known:
+            along, turn = exp(1j * slider.direction), exp(1j * slider.angle)
+            return cls(slider.name, slider.through, along, slider.point, turn)
+        along, turn = exp(-1j * slider.angle), exp(-1j * slider.direction)
+        return cls(slider.name, slider.point, along, slider.through, turn)
+
+
+@dataclass(frozen=True)
+class Outer:
+    """Joint of an unknown link to a known body: a pin at `point`, or else a guide."""
+
+    link: str
+    body: str
+    point: str
+    guide: Guide | None = None
+
+
+@dataclass
+class Builder:
+    """Bodies and points known so far.
+
+    rank : body -> position in the order of solution.  anchors : body -> the point from which its
+    other points are reached and about which its moments are taken.  motion : steps so far, and
+    now : the state they lead to at crank angle 0.
+    """
+
+    machine: Machine
+    rank: dict[str, int] = field(default_factory=dict)
+    anchors: dict[str, str] = field(default_factory=dict)
+    points: set[str] = field(default_factory=set)
+    motion: list[Step] = field(default_factory=list)
+    now: State = field(default_factory=dict)
+    running: set[str] = field(default_factory=set)
+
+    def add(self, anchors: dict[str, str], points: Iterable[str] = ()) -> None:
+        """Record links as known, in the order given, with their anchors."""
+        for link in anchors:
+            self.rank[link] = len(self.rank)
+        self.anchors.update(anchors)
+        self.points.update(points)
+
+    def arm(self, link: str, origin: str, point: str) -> complex:
+        """Vector from one point of a link to another, in the link's axes."""
+        points = self.machine.points_of(link)
+        return complex(*points[point]) - complex(*points[origin])
+
+    def length(self, link: str, origin: str, point: str) -> complex:
+        """Like `arm`, for two pins, which must not coincide."""
+        arm = self.arm(link, origin, point)
+        if arm == 0:
+            raise ModelError(
+                f"links.{link}.points",
+                f"{origin} and {point} lie at the same place, which makes a link of length 0; "
+                "set them apart",
+            )
+        return arm
+
+    def reach(self, body: str, point: str) -> list[Step]:
+        """Calls that make a point of a known body available."""
+        if point in self.points:
+            return []
+        self.points.add(point)
+        anchor = self.anchors[body]
+        arm = self.arm(body, anchor, point)
+        return [Call(kernels.point, (*p(anchor), *u(body)), (arm,), p(point))]
+
+    def running_angle(self, body: str) -> list[Step]:
+        """Calls that make the running angle of a known body available."""
+        if body in self.running:
+            return []
+        self.running.add(body)
+        return [RunningAngle(body)]
+
+    def carrier_of(self, bodies: Iterable[str]) -> str:
+        """Among the known bodies at a pin, the one that carries it: the first to be solved."""
+        return min((b for b in bodies if b in self.rank), key=lambda b: self.rank[b])
+
+    def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
+        """+1 or -1 for the side on which the file assembles a dyad."""
+        side = self.machine.assembly.get(joint)
+        if side not in words:
+            given = "missing" if side is None else f"got {side!r}"
+            raise ModelError(
+                f"assembly.{joint}", f'{given}; give "{words[0]}" or "{words[1]}": {meaning}'
+            )
+        return 1.0 if side == words[0] else -1.0
+
+    def hand_over(self, body: str, at: str, force: str, couple: str | None = None) -> Call:
+        """Call that passes a reaction on to the body that exerts it."""
+        demand = demand_names(body)
+        inputs = (*demand, f"p({self.anchors[body]})", f"p({at})", force)
+        if couple is None:
+            return Call(kernels.transfer, inputs, (), demand)
+        return Call(kernels.transfer_couple, (*inputs, couple), (), demand)
+
+
+def demand_names(link: str) -> tuple[str, str]:
+    """Names of what a link's joints must supply: force, and moment about its anchor."""
+    return f"F({link})", f"M({link})"
+
+
+def pin_reaction(point: str, on: str, by: str) -> Reaction:
+    return Reaction(point, "pin", on, by, point, f"R({point}/{on})")
+
+
+def guide_reaction(guide: Guide, on: str, by: str, at: str) -> Reaction:
+    key = f"({guide.name}/{on})"
+    return Reaction(guide.name, "slider", on, by, at, f"R{key}", f"C{key}")
+
+
+def initial_state(machine: Machine, theta: Array) -> State:
+    """State in which only the frame and the drive link are known, at crank angles (N,)."""
+    state: State = {"theta": theta}
+    for name, place in machine.frame.items():
+        state.update({f"p({name})": complex(*place), f"p1({name})": 0j, f"p2({name})": 0j})
+    state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
+    drive = machine.drive.link
+    state.update({f"u({drive})": np.exp(1j * theta), f"w({drive})": 1.0, f"a({drive})": 0.0})
+    state.update({f"phi({FRAME})": np.zeros_like(theta), f"phi({drive})": theta})
+    return state

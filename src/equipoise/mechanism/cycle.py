@@ -1,0 +1,274 @@
+"""One whole cycle of a linkage: after how many turns it closes, and whether the crank can turn.
+
+The steps are run once on a fine grid of crank angles, each group in turn.  That run tells the
+running angle of every link, from which any other crank angle is placed in its turn, and the
+smallest value of each dyad's own number, which must stay above zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, MotionError, RangeError
+from equipoise.mechanism.builder import Group, initial_state
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.steps import RunningAngle, Step, run
+
+Array = np.ndarray[Any, Any]
+
+POINTS_PER_TURN = 720
+MOST_TURNS = 1000
+MOST_LOOP_TURNS = 6
+MOST_DIPS = 6
+CHANGE_POINT = 1e-10
+"""Squared sine of a transmission angle below which a dyad counts as stretched out or folded."""
+
+
+@dataclass(frozen=True)
+class Cycle:
+    """The closed motion of a linkage.
+
+    turns : turns of the crank after which every link is back.
+    windings : link -> whole turns that it makes in one cycle.
+    tables : name -> values on the grid of crank angles, from which references are read.
+    weakest : inner joint of a dyad -> smallest squared sine of its transmission angle, and the
+        crank angle (rad) of it.
+    """
+
+    turns: int
+    windings: Mapping[str, int]
+    tables: Mapping[str, Array]
+    weakest: Mapping[str, tuple[float, float]]
+
+    def reference(self, name: str, theta: Array) -> Array:
+        """Values near those at crank angles (N,): a running angle, or poses of a loop group."""
+        table = self.tables[name]
+        period = 2 * pi * self.turns
+        cycles = np.floor(theta / period)
+        place = (theta - cycles * period) * (POINTS_PER_TURN / (2 * pi))
+        left = np.minimum(place.astype(int), POINTS_PER_TURN * self.turns - 1)
+        share = place - left
+        value = table[..., left] * (1 - share) + table[..., left + 1] * share
+        rise = np.asarray(table[..., -1] - table[..., 0])
+        return value + rise[..., None] * cycles  # type: ignore[no-any-return]
+
+
+def needed_references(steps: Iterable[Step]) -> list[str]:
+    """Names of the references that these steps read."""
+    names = [step.link for step in steps if isinstance(step, RunningAngle)]
+    return names + [step.name for step in steps if isinstance(step, LoopGroup)]
+
+
+def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
+    """Find the cycle of a linkage, given the groups in which it is solved.
+
+    Raises
+    ------
+    RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
+    MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
+    """
+    base = turns = 1
+    while turns <= MOST_TURNS:
+        grid = _Grid(machine, turns)
+        try:
+            for group in groups:
+                grid.add(group)
+        except _LongerCycle as longer:
+            base, turns = (longer.turns, longer.turns) if longer.turns else (base, turns + base)
+            if turns > MOST_LOOP_TURNS * base:
+                break
+            continue
+        return Cycle(turns, grid.windings, grid.tables, grid.weakest)
+    raise MotionError(
+        f"the motion does not repeat within {min(turns, MOST_TURNS)} turns of the crank; "
+        "give gears numbers of teeth (or ratios) whose motion closes sooner"
+    )
+
+
+class _LongerCycle(Exception):
+    """The cycle takes more turns: this many, or one round more where 0."""
+
+    def __init__(self, turns: int) -> None:
+        super().__init__(turns)
+        self.turns = turns
+
+
+class _Grid:
+    """A run of the steps, group by group, over a number of turns of the crank."""
+
+    def __init__(self, machine: Machine, turns: int) -> None:
+        self.machine, self.turns = machine, turns
+        self.theta = np.linspace(0.0, 2 * pi * turns, POINTS_PER_TURN * turns + 1)
+        self.state = initial_state(machine, self.theta)
+        self.done: list[Group] = []
+        drive = machine.drive.link
+        self.windings = {FRAME: 0, drive: turns}
+        self.tables: dict[str, Array] = {drive: self.theta}
+        self.weakest: dict[str, tuple[float, float]] = {}
+
+    def add(self, group: Group) -> None:
+        """Run one group, check that it moves through the cycle, and record its angles."""
+        with np.errstate(all="ignore"):
+            run(group.motion, self.state)
+        self.done.append(group)
+        if group.number is not None:
+            self.check_range(group)
+        self.record_windings(group)
+
+    def record_windings(self, group: Group) -> None:
+        for link in group.links:
+            angle = self.state.get(f"phi({link})")
+            if angle is None:
+                angle = np.unwrap(
+                    np.angle(np.broadcast_to(self.state[f"u({link})"], self.theta.shape))
+                )
+            self.tables[link] = angle
+        for step in group.motion:
+            if isinstance(step, LoopGroup):
+                self.record_loops(step)
+                return
+        gear = next((r.name for r in group.reactions if r.kind == "gear"), None)
+        if gear is not None:
+            self.windings[group.links[0]] = self.gear_winding(gear)
+            return
+        for link in group.links:
+            table = self.tables[link]
+            self.windings[link] = round((table[-1] - table[0]) / (2 * pi))
+
+    def record_loops(self, loops: LoopGroup) -> None:
+        """Newton's method follows a branch, which may come back only after further turns."""
+        q = self.state[f"q({loops.name})"]
+        self.tables[loops.name] = q
+        rise = q[:, -1] - q[:, 0]
+        turns = np.round(rise[2::3] / (2 * pi))
+        rise[2::3] -= 2 * pi * turns
+        if np.max(np.abs(rise) / loops.scale()) > 1e-8:
+            raise _LongerCycle(0)
+        self.windings.update(zip(loops.links, (int(turn) for turn in turns), strict=True))
+
+    def gear_winding(self, name: str) -> int:
+        """Turns of a driven gear in one cycle, or a longer cycle in which they are whole."""
+        gear = next(gear for gear in self.machine.gears if gear.name == name)
+        carrier = self.windings[gear.carrier]
+        relative = self.windings[gear.driver] - carrier
+        if relative == 0:
+            return carrier
+        ratio = gear.exact_ratio
+        if ratio is None:
+            raise MotionError(
+                f"the motion never repeats: the ratio {gear.speed_ratio!r} of the gears {name} "
+                "is no ratio of whole numbers; give numbers of teeth"
+            )
+        winding = carrier + ratio * relative
+        if winding.denominator == 1:
+            return int(winding)
+        longer = self.turns * winding.denominator
+        if longer > MOST_TURNS:
+            raise MotionError(
+                f"the motion repeats only after {longer} turns of the crank (gears {name}, ratio "
+                f"{ratio}), more than the {MOST_TURNS} that are analysed; give numbers of teeth "
+                "that close sooner"
+            )
+        raise _LongerCycle(longer)
+
+    # -- range ---------------------------------------------------------------------------------
+
+    def check_range(self, group: Group) -> None:
+        """Raise an error unless the group's own number stays above zero."""
+        assert group.number is not None
+        number = np.broadcast_to(self.state[group.number], self.theta.shape)
+        number = np.where(np.isfinite(number), number, -np.inf)
+        smallest, at = self.smallest(group, number)
+        names = " and ".join(repr(link) for link in group.links)
+        if smallest < -CHANGE_POINT:
+            raise self.range_error(group, number, names)
+        if smallest < CHANGE_POINT:
+            raise ChangePointError(
+                f"change point at crank angle {_in_degrees(at)}: {names} lie in line there, and "
+                "nothing decides to which side they go on; change a length so that they do not",
+                at,
+            )
+        self.weakest[group.joint] = (smallest, at)
+
+    def smallest(self, group: Group, number: Array) -> tuple[float, float]:
+        """Smallest value of a dyad's number between the points of the grid, and its angle."""
+        inner = number[1:-1]
+        dips = 1 + np.flatnonzero((inner <= number[:-2]) & (inner <= number[2:]))
+        ends = [0] if number[0] <= number[1] else []
+        lowest = sorted([*ends, *dips], key=lambda k: number[k])[:MOST_DIPS]
+        best = (float(np.min(number)), float(self.theta[int(np.argmin(number))]))
+        width = self.theta[1]
+        for k in lowest:
+            best = min(best, self.zoom(group, float(self.theta[k]), width))
+        return best
+
+    def zoom(self, group: Group, angle: float, width: float) -> tuple[float, float]:
+        """Close in on a dip of a dyad's number."""
+        value = np.inf
+        for _ in range(4):
+            near = angle + np.linspace(-width, width, 41)
+            values = self.number(group, near)
+            k = int(np.argmin(values))
+            angle, value, width = float(near[k]), float(values[k]), width / 18
+        return value, angle
+
+    def number(self, group: Group, theta: Array) -> Array:
+        """A dyad's own number at any crank angles."""
+        state = initial_state(self.machine, theta)
+        so_far = Cycle(self.turns, {}, self.tables, {})
+        for earlier in self.done:
+            for name in needed_references(earlier.motion):
+                state[f"reference({name})"] = so_far.reference(name, theta)
+        with np.errstate(all="ignore"):
+            for earlier in self.done:
+                run(earlier.motion, state)
+        assert group.number is not None
+        return np.broadcast_to(state[group.number], theta.shape)
+
+    def range_error(self, group: Group, number: Array, names: str) -> RangeError:
+        """Tell between which crank angles a dyad can be closed."""
+        good = number[:-1] > 0
+        if not np.any(good):
+            return RangeError(
+                f"{names} cannot be joined at any crank angle; check their lengths and where "
+                "their pins are"
+            )
+        rising = np.flatnonzero(good & ~np.roll(good, 1))
+        falling = np.flatnonzero(~good & np.roll(good, 1))
+        starts = [self.crossing(group, k - 1) for k in rising.tolist()]
+        stops = [self.crossing(group, k - 1) for k in falling.tolist()]
+        ranges = []
+        for begin in starts:
+            later = [stop for stop in stops if stop > begin]
+            ranges.append(
+                (begin, min(later)) if later else (begin - 2 * pi * self.turns, min(stops))
+            )
+        told = " and ".join(f"from {_in_degrees(a)} to {_in_degrees(b)}" for a, b in ranges)
+        return RangeError(
+            f"the crank cannot turn fully: {names} reach each other only {told} of crank angle",
+            tuple(ranges),
+        )
+
+    def crossing(self, group: Group, left: int) -> float:
+        """Crank angle at which a dyad's number passes zero between two points of the grid."""
+        if left < 0:
+            left += len(self.theta) - 1
+        low, high = self.theta[left], self.theta[left + 1]
+        for _ in range(4):
+            near = np.linspace(low, high, 41)
+            sign = self.number(group, near) > 0
+            k = int(np.argmax(sign != sign[0]))
+            if k == 0:
+                break
+            low, high = near[k - 1], near[k]
+        return float(0.5 * (low + high))
+
+
+def _in_degrees(angle: float) -> str:
+    return f"{degrees(angle):.2f} deg"

@@ -1,0 +1,173 @@
+"""Joints of a machine, and the count of its free motions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
+
+MOST_SUBSETS = 20_000
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Which bodies are joined, and how; nothing about sizes.
+
+    bodies : the frame, then the links in file order.
+    pins : point -> bodies that share it, in the order of `bodies`; two at least.
+    """
+
+    bodies: tuple[str, ...]
+    pins: Mapping[str, tuple[str, ...]]
+    sliders: tuple[Slider, ...]
+    gears: tuple[Gear, ...]
+
+    def freedom(self, links: Iterable[str], known: Iterable[str]) -> int:
+        """Free motions of some links when the known bodies move as they must."""
+        free, fixed = set(links), set(known)
+        both = free | fixed
+        count = 3 * len(free)
+        for bodies in self.pins.values():
+            members = sum(body in free for body in bodies)
+            held = any(body in fixed for body in bodies)
+            count -= 2 * max(members - (not held), 0)
+        for slider in self.sliders:
+            ends = {slider.link, slider.on}
+            count -= 2 * (ends <= both and bool(ends & free))
+        for gear in self.gears:
+            ends = {gear.driver, gear.driven, gear.carrier}
+            count -= ends <= both and bool(ends & free)
+        return count
+
+    def pins_between(self, a: str, b: str) -> list[str]:
+        return [point for point, bodies in self.pins.items() if a in bodies and b in bodies]
+
+
+def structure(machine: Machine) -> Structure:
+    """Read joints off the names that bodies share."""
+    bodies = (FRAME, *machine.links)
+    shared: dict[str, list[str]] = {}
+    for body in bodies:
+        for point in machine.points_of(body):
+            shared.setdefault(point, []).append(body)
+    pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
+    result = Structure(bodies, pins, machine.sliders, machine.gears)
+    _check_mobility(result, machine.drive.link)
+    return result
+
+
+def drive_pivot(joints: Structure, drive: str) -> str:
+    """Return the point at which the drive link turns in the frame."""
+    pivots = joints.pins_between(FRAME, drive)
+    if len(pivots) != 1:
+        raise ModelError(
+            "drive.link",
+            f"{drive!r} shares {len(pivots)} points with the frame; the drive link turns about "
+            "exactly one point of the frame",
+        )
+    return pivots[0]
+
+
+def gear_pins(joints: Structure, gear: Gear) -> tuple[str, str]:
+    """Points of the carrier about which driver and driven gear turn."""
+    pins = []
+    for body in (gear.driver, gear.driven):
+        shared = joints.pins_between(body, gear.carrier)
+        if len(shared) != 1:
+            raise ModelError(
+                f"gears.{gear.name}",
+                f"{body!r} shares {len(shared)} points with the carrier {gear.carrier!r}; each "
+                "gear turns about exactly one point of the carrier",
+            )
+        pins += shared
+    return pins[0], pins[1]
+
+
+def _check_mobility(joints: Structure, drive: str) -> None:
+    links = joints.bodies[1:]
+    mobility = joints.freedom(links, [FRAME])
+    if mobility == 1:
+        return
+    pins = sum(len(bodies) - 1 for bodies in joints.pins.values())
+    count = (
+        f"{_number(len(links), 'moving link')}, {_number(pins, 'pin')}, "
+        f"{_number(len(joints.sliders), 'sliding joint')} and {_number(len(joints.gears), 'gear')}"
+    )
+    if mobility < 1:
+        locked = _locked(joints, drive)
+        raise MobilityError(
+            f"the linkage has no free motion (count {mobility}: {count}); "
+            f"too many joints hold {_names(locked)}"
+        )
+    free = _undetermined(joints, drive)
+    raise MobilityError(
+        f"the linkage has {mobility} free motions ({count}), and one drive can command only one; "
+        f"the drive leaves {_names(free)} undetermined"
+    )
+
+
+def _locked(joints: Structure, drive: str) -> list[str]:
+    """Find the smallest set of neighbouring links that is held by too many joints."""
+    known = [FRAME, drive]
+    others = [link for link in joints.bodies[1:] if link != drive]
+    for group in subsets(joints, others):
+        if joints.freedom(group, known) < 0:
+            return list(group)
+    return [drive]
+
+
+def _undetermined(joints: Structure, drive: str) -> list[str]:
+    """Find the links that stay free when all that the drive determines is determined."""
+    known = [FRAME, drive]
+    others = [link for link in joints.bodies[1:] if link != drive]
+    settled = True
+    while settled:
+        settled = False
+        for group in subsets(joints, others):
+            if joints.freedom(group, known) <= 0:
+                known += group
+                others = [link for link in others if link not in group]
+                settled = True
+                break
+    return others
+
+
+def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
+    """Sets of links that hang together, small ones first, each in file order.
+
+    A pair of gears counts as hanging together with its carrier.  The search ends after a number
+    of sets that no real machine needs.
+    """
+    touching: dict[str, set[str]] = {link: set() for link in links}
+    groups = [*joints.pins.values(), *((s.link, s.on) for s in joints.sliders)]
+    groups += [(g.driver, g.driven, g.carrier) for g in joints.gears]
+    for bodies in groups:
+        members = [body for body in bodies if body in touching]
+        for member in members:
+            touching[member].update(members)
+    order = {link: k for k, link in enumerate(links)}
+    level: set[tuple[str, ...]] = {(link,) for link in links}
+    budget = MOST_SUBSETS
+    while level and budget > 0:
+        ordered = sorted(level, key=lambda group: [order[link] for link in group])
+        yield from ordered
+        budget -= len(ordered)
+        level = {
+            tuple(sorted({*group, new}, key=order.__getitem__))
+            for group in ordered
+            for link in group
+            for new in touching[link]
+            if new not in group
+        }
+
+
+def _number(count: int, word: str) -> str:
+    return f"{count} {word}{'' if count == 1 else 's'}"
+
+
+def _names(links: list[str]) -> str:
+    if len(links) < 2:
+        return "".join(repr(link) for link in links) or "the drive link"
+    return f"{', '.join(repr(link) for link in links[:-1])} and {links[-1]!r}"

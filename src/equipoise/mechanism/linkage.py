@@ -1,0 +1,222 @@
+"""From a machine to its steps: the drive first, then whatever the known bodies determine next.
+
+Links are taken in the smallest groups that can be solved: a geared link, a dyad, and only where
+neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
+order, steps for forces.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+
+import numpy as np
+
+from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism import dyads
+from equipoise.mechanism.builder import (
+    Builder,
+    Group,
+    Guide,
+    Outer,
+    Reaction,
+    initial_state,
+    pin_reaction,
+)
+from equipoise.mechanism.cycle import Cycle, close, needed_references
+from equipoise.mechanism.joints import Structure, drive_pivot, gear_pins, structure, subsets
+from equipoise.mechanism.loopgroup import loop_group
+from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.steps import State, Step, run
+
+
+@dataclass(frozen=True)
+class Linkage:
+    """A machine in the order in which it is computed.
+
+    pivot : the drive link's point in the frame.
+    anchors : body -> point about which its moments are taken.
+    groups : what is solved after the drive, in order.
+    """
+
+    machine: Machine
+    joints: Structure
+    pivot: str
+    anchors: Mapping[str, str]
+    groups: tuple[Group, ...]
+
+    @cached_property
+    def motion(self) -> tuple[Step, ...]:
+        """Steps from the drive's rotation to that of every link."""
+        return tuple(step for group in self.groups for step in group.motion)
+
+    @cached_property
+    def needed_references(self) -> list[str]:
+        return needed_references(self.motion)
+
+    @cached_property
+    def forces(self) -> tuple[Step, ...]:
+        """Steps from what each link needs to every joint force; the drive link comes last."""
+        return tuple(step for group in reversed(self.groups) for step in group.forces)
+
+    @cached_property
+    def reactions(self) -> tuple[Reaction, ...]:
+        """Every joint, the drive's pin first."""
+        drive = pin_reaction(self.pivot, self.machine.drive.link, FRAME)
+        return (drive, *(reaction for group in self.groups for reaction in group.reactions))
+
+    @cached_property
+    def cycle(self) -> Cycle:
+        """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
+        return close(self.machine, self.groups)
+
+    def start(self, theta: np.ndarray) -> State:
+        """State in which only the frame and the drive link are known."""
+        return initial_state(self.machine, theta)
+
+    def solve(self, theta: np.ndarray) -> State:
+        """State with every link known at the crank angles theta (N,), rad."""
+        state = self.start(theta)
+        cycle = self.cycle
+        for name in self.needed_references:
+            state[f"reference({name})"] = cycle.reference(name, theta)
+        return run(self.motion, state)
+
+
+def assemble(machine: Machine) -> Linkage:
+    """Order the links of a machine into steps.  The result is kept with the machine.
+
+    Raises
+    ------
+    MobilityError : the free motions are none, or two and more.
+    ModelError : an assembly side is missing or idle, two pins coincide.
+    """
+    kept = machine.__dict__.get("_linkage")
+    if kept is None:
+        kept = machine.__dict__["_linkage"] = _assemble(machine)
+    return kept
+
+
+def _assemble(machine: Machine) -> Linkage:
+    joints = structure(machine)
+    drive = machine.drive.link
+    pivot = drive_pivot(joints, drive)
+    builder = Builder(machine, points=set(machine.frame), running={FRAME, drive})
+    builder.now = initial_state(machine, np.zeros(1))
+    builder.add({FRAME: pivot, drive: pivot})
+    unknown = [link for link in machine.links if link != drive]
+    groups = []
+    while unknown:
+        group = next_group(builder, joints, unknown)
+        groups.append(group)
+        builder.motion += group.motion
+        with np.errstate(all="ignore"):
+            run(group.motion, builder.now)
+        unknown = [link for link in unknown if link not in group.links]
+    _check_assembly(machine, groups)
+    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+
+
+def _check_assembly(machine: Machine, groups: list[Group]) -> None:
+    used = {group.joint for group in groups if group.number is not None}
+    for joint in machine.assembly:
+        if joint not in used:
+            raise ModelError(
+                f"assembly.{joint}",
+                "no dyad has its inner joint there; "
+                f"the dyads of this linkage meet at {', '.join(sorted(used)) or 'no point'}",
+            )
+
+
+def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
+    """The smallest group that the known bodies determine: geared link, dyad, or loops."""
+    known = builder.rank
+    for link in unknown:
+        if joints.freedom([link], known) == 0:
+            group = _geared(builder, joints, link)
+            if group is not None:
+                return group
+    for pair in combinations(unknown, 2):
+        if joints.freedom(pair, known) == 0:
+            dyad = _dyad(builder, joints, pair)
+            if dyad is not None:
+                return dyad
+    for links in subsets(joints, unknown):
+        freedom = joints.freedom(links, known)
+        if freedom < 0:
+            raise MobilityError(
+                f"too many joints hold {', '.join(links)}, while other links are free to move; "
+                "the linkage as a whole has one free motion, but no drive can command it"
+            )
+        if freedom == 0:
+            return loop_group(builder, joints, links)
+    raise MobilityError(
+        f"the drive does not determine {', '.join(unknown)}: no group of these links has as many "
+        "joint equations as unknowns"
+    )
+
+
+def _geared(builder: Builder, joints: Structure, link: str) -> Group | None:
+    """A link pinned to its gear's carrier, with driver and carrier known."""
+    for gear in joints.gears:
+        if gear.driven != link or not {gear.driver, gear.carrier} <= builder.rank.keys():
+            continue
+        pins = gear_pins(joints, gear)
+        return dyads.geared(builder, gear, dyads.Mesh.of(builder, gear, *pins))
+    return None
+
+
+def _dyad(builder: Builder, joints: Structure, pair: tuple[str, str]) -> Group | None:
+    """Two links with one joint each to known bodies and one between them, if they are such."""
+    outers = [outer_joints(builder, joints, link) for link in pair]
+    if any(len(outer) != 1 for outer in outers):
+        return None
+    first, second = outers[0][0], outers[1][0]
+    pins = [
+        point
+        for point in joints.pins_between(*pair)
+        if not any(body in builder.rank for body in joints.pins[point])
+    ]
+    between = [s for s in joints.sliders if {s.link, s.on} == set(pair)]
+    return _by_joints(builder, (first, second), pins, between)
+
+
+def _by_joints(
+    builder: Builder, outers: tuple[Outer, Outer], pins: list[str], between: list[Slider]
+) -> Group:
+    """Build a dyad by its sequence of joints, R or P: outer, inner, outer."""
+    first, second = outers
+    kinds = "".join(
+        "R" if pinned else "P" for pinned in (first.guide is None, pins, second.guide is None)
+    )
+    if kinds in ("PRR", "PPR"):
+        first, second = second, first
+    if kinds == "RPR" and between[0].link != first.link:
+        first, second = second, first
+    if kinds == "PPP":
+        raise MobilityError(
+            f"three sliding joints in a row cannot position {first.link!r} and {second.link!r}; "
+            "replace one by a pin"
+        )
+    if pins:
+        build = {"RRR": dyads.rrr, "RRP": dyads.rrp, "PRR": dyads.rrp, "PRP": dyads.prp}[kinds]
+        return build(builder, first, second, pins[0])
+    slide = {"RPR": dyads.rpr, "RPP": dyads.rpp, "PPR": dyads.rpp}[kinds]
+    return slide(builder, first, second, between[0])
+
+
+def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
+    """Joints of an unknown link to known bodies."""
+    result = [
+        Outer(link, builder.carrier_of(bodies), point)
+        for point, bodies in joints.pins.items()
+        if link in bodies and any(body in builder.rank for body in bodies)
+    ]
+    for slider in joints.sliders:
+        other = slider.on if slider.link == link else slider.link
+        if link in (slider.link, slider.on) and other in builder.rank:
+            guide = Guide.seen_from(slider, other)
+            result.append(Outer(link, other, guide.base, guide))
+    return result

@@ -1,0 +1,304 @@
+"""How a linkage moves: rotations and points with their derivatives by crank angle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import degrees, pi
+from typing import Any, TypeVar
+
+import numpy as np
+
+from equipoise.errors import RangeError, UsageError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.cycle import CHANGE_POINT
+from equipoise.mechanism.linkage import Linkage, assemble
+from equipoise.mechanism.model import Machine, unknown
+from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.steps import State, p, run, u
+
+Array = np.ndarray[Any, Any]
+Value = TypeVar("Value")
+MOST_ANGLES = 1_000_000
+"""In one analysis; it takes about a kilobyte for each crank angle and link."""
+
+
+@dataclass(frozen=True)
+class LinkMotion:
+    """Motion of one link; every array (N,).
+
+    angle : rad, counted on through the turns.
+    angle_1, angle_2 : first and second derivative by crank angle (kinematic coefficients).
+    """
+
+    angle: Array
+    angle_1: Array
+    angle_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def angular_velocity(self) -> Array:
+        """rad/s."""
+        return self.angle_1 * self.speed
+
+    @property
+    def angular_acceleration(self) -> Array:
+        """rad/s2."""
+        return self.angle_2 * self.speed**2 + self.angle_1 * self.acceleration
+
+
+@dataclass(frozen=True)
+class PointMotion:
+    """Motion of one point; complex arrays (N,), x + i y.
+
+    place : m.  place_1, place_2 : first and second derivative by crank angle, m.
+    """
+
+    place: Array
+    place_1: Array
+    place_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def x(self) -> Array:
+        """m."""
+        return self.place.real
+
+    @property
+    def y(self) -> Array:
+        """m."""
+        return self.place.imag
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, complex."""
+        return self.place_1 * self.speed
+
+    @property
+    def acceleration_vector(self) -> Array:
+        """m/s2, complex."""
+        return self.place_2 * self.speed**2 + self.place_1 * self.acceleration
+
+    @property
+    def vx(self) -> Array:
+        """m/s."""
+        return self.velocity.real
+
+    @property
+    def vy(self) -> Array:
+        """m/s."""
+        return self.velocity.imag
+
+    @property
+    def ax(self) -> Array:
+        """m/s2."""
+        return self.acceleration_vector.real
+
+    @property
+    def ay(self) -> Array:
+        """m/s2."""
+        return self.acceleration_vector.imag
+
+
+class Lazy(Mapping[str, Value]):
+    """A mapping whose values are made when they are asked for, and kept."""
+
+    def __init__(self, names: Sequence[str], make: Callable[[str], Value], kind: str) -> None:
+        self._names, self._make, self._kind = list(names), make, kind
+        self._made: dict[str, Value] = {}
+
+    def __getitem__(self, name: str) -> Value:
+        if name not in self._made:
+            if name not in self._names:
+                raise KeyError(unknown(name, self._names, self._kind))
+            self._made[name] = self._make(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+    def __repr__(self) -> str:
+        return f"<{self._kind}s: {', '.join(self._names)}>"
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Motion of a machine at N crank angles.
+
+    crank_angle : (N,) rad.
+    speed, acceleration : of the crank, rad/s and rad/s2.
+    whole_cycle : whether the crank angles are equally spaced over the whole cycle, so that means
+        over them are means over time.
+    state : every value of the steps, by the names told in `mechanism.steps`.
+    """
+
+    linkage: Linkage
+    crank_angle: Array
+    speed: float
+    acceleration: float
+    whole_cycle: bool
+    state: State
+
+    @property
+    def machine(self) -> Machine:
+        return self.linkage.machine
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank in one cycle."""
+        return self.linkage.cycle.turns
+
+    def at(self, speed: float | None = None, acceleration: float | None = None) -> Motion:
+        """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
+        return replace(
+            self,
+            speed=self.speed if speed is None else speed,
+            acceleration=self.acceleration if acceleration is None else acceleration,
+        )
+
+    @cached_property
+    def links(self) -> Mapping[str, LinkMotion]:
+        """Motion of each link, by name."""
+        return Lazy(list(self.machine.links), self._link, "link")
+
+    @cached_property
+    def points(self) -> Mapping[str, PointMotion]:
+        """Motion of each point, by name; the frame's points stand still."""
+        names = dict.fromkeys(self.machine.frame)
+        for link in self.machine.links.values():
+            names.update(dict.fromkeys(link.points))
+        return Lazy(list(names), self._point, "point")
+
+    @cached_property
+    def mass_centers(self) -> Mapping[str, PointMotion]:
+        """Motion of each link's centre of mass, for links whose mass is known."""
+        links = [name for name, link in self.machine.links.items() if link.has_mass]
+        return Lazy(links, self._mass_center, "link with mass")
+
+    def _link(self, link: str) -> LinkMotion:
+        rotation, first, second = (self.state[name] for name in u(link))
+        angle = self.state.get(f"phi({link})")
+        if angle is None:
+            angle = self._running_angle(link, np.angle(rotation))
+        coefficients = (self._full(first), self._full(second))
+        return LinkMotion(self._full(angle), *coefficients, self.speed, self.acceleration)
+
+    def _running_angle(self, link: str, angle: Array) -> Array:
+        """Count an angle on through the turns."""
+        try:
+            cycle = self.linkage.cycle
+        except RangeError:
+            return np.unwrap(angle)
+        reference = cycle.reference(link, self.crank_angle)
+        return angle + 2 * pi * np.round((reference - angle) / (2 * pi))
+
+    def _point(self, point: str) -> PointMotion:
+        names = p(point)
+        if names[0] in self.state:
+            return self._moving(*(self.state[name] for name in names))
+        links = self.machine.links
+        link = next(name for name in links if point in links[name].points)
+        return self._attached(link, complex(*links[link].points[point]))
+
+    def _mass_center(self, link: str) -> PointMotion:
+        center = self.machine.links[link].center_of_mass
+        assert center is not None
+        return self._attached(link, complex(*center))
+
+    def _attached(self, link: str, place: complex) -> PointMotion:
+        """A point given in a link's axes."""
+        anchor = self.linkage.anchors[link]
+        arm = place - complex(*self.machine.points_of(link)[anchor])
+        place, first, second = (self.state[name] for name in p(anchor))
+        rotation, w, a = (self.state[name] for name in u(link))
+        return self._moving(*kernels.point(place, first, second, rotation, w, a, arm))
+
+    def _moving(self, place: Any, first: Any, second: Any) -> PointMotion:
+        coefficients = (self._full(first, complex), self._full(second, complex))
+        return PointMotion(self._full(place, complex), *coefficients, self.speed, self.acceleration)
+
+    def _full(self, value: Any, kind: type = float) -> Array:
+        if np.shape(value) == self.crank_angle.shape:
+            return np.asarray(value)
+        return np.full(self.crank_angle.shape, value, dtype=kind)
+
+
+def move(
+    machine: Machine,
+    angles: int | Sequence[float] | Array = 360,
+    speed: float | None = None,
+    acceleration: float | None = None,
+) -> Motion:
+    """Solve the motion of a machine.
+
+    Parameters
+    ----------
+    angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
+        takes several turns where gears or loops need them), or the crank angles themselves, rad.
+    speed, acceleration : of the crank, rad/s and rad/s2; those of the file where not given.
+
+    Raises
+    ------
+    MotionError : the linkage cannot reach the crank angles.
+    UsageError : the crank angles cannot be used.
+    """
+    linkage = assemble(machine)
+    whole_cycle = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+    theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
+    drive = machine.drive
+    return Motion(
+        linkage,
+        theta,
+        drive.speed if speed is None else float(speed),
+        drive.acceleration if acceleration is None else float(acceleration),
+        whole_cycle,
+        _solve(linkage, theta, whole_cycle),
+    )
+
+
+def _cycle_angles(linkage: Linkage, count: int) -> Array:
+    if count < 1:
+        raise UsageError(f"got {count} crank angles; give at least 1")
+    turns = linkage.cycle.turns
+    if count * turns > MOST_ANGLES:
+        raise UsageError(
+            f"got {count} crank angles in each of {turns} turns; give at most "
+            f"{MOST_ANGLES // turns}"
+        )
+    return np.arange(count * turns) * (2 * pi / count)
+
+
+def _given_angles(angles: Any) -> Array:
+    try:
+        theta = np.atleast_1d(np.asarray(angles, dtype=float))
+    except (TypeError, ValueError):
+        raise UsageError(f"got {angles!r}; give a number of crank angles, or angles") from None
+    if theta.ndim != 1 or theta.size == 0 or not np.all(np.isfinite(theta)):
+        raise UsageError("the crank angles must be one or more finite numbers, in a row")
+    return theta
+
+
+def _solve(linkage: Linkage, theta: Array, whole_cycle: bool) -> State:
+    """Solve at the crank angles; those given need not belong to a linkage that turns fully."""
+    try:
+        return linkage.solve(theta)
+    except RangeError as error:
+        motion = linkage.motion
+        if whole_cycle or any(isinstance(step, LoopGroup) for step in motion):
+            raise
+        with np.errstate(all="ignore"):
+            state = run(motion, linkage.start(theta))
+        for group in linkage.groups:
+            if group.number is None:
+                continue
+            bad = ~(np.broadcast_to(state[group.number], theta.shape) > CHANGE_POINT)
+            if np.any(bad):
+                angle = degrees(theta[int(np.argmax(bad))])
+                raise RangeError(f"{error} (asked for {angle:.4g} deg)", error.ranges) from None
+        return state
