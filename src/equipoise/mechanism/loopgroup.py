@@ -1,0 +1,224 @@
+"""Building a group for Newton's method: its loop equations, and its start at crank angle 0."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import ceil, degrees, hypot, pi, tan
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.builder import Builder, Group, Reaction, initial_state
+from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.loopforces import LoopForces
+from equipoise.mechanism.loops import End, GearLoop, Loop, PinLoop, Poses, SlideLoop, StartAngle
+from equipoise.mechanism.model import Gear, Position, Slider
+from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.steps import Step, run
+
+STEPS_PER_TURN = 360
+"""Crank angles in a turn at which a branch is followed from one to the next."""
+
+
+def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Group:
+    """Make the group of these links, with `builder` knowing them afterwards."""
+    maker = _Maker(builder, joints, links)
+    before, loops = maker.prepare()
+    unsolved = LoopGroup(
+        links,
+        tuple(maker.anchors[link] for link in links),
+        tuple((body, builder.anchors[body]) for body in builder.rank),
+        loops,
+        (),
+        maker.size(),
+    )
+    run(before, builder.now)
+    solved, loops = _solve_start(builder, before, unsolved, loops)
+    builder.add(maker.anchors, {maker.anchors[link] for link in links})
+    builder.running.update(links)
+    reactions = tuple(maker.reaction(loop) for loop in loops)
+    outputs = tuple(tuple(filter(None, (r.force, r.couple))) for r in reactions)
+    hand_over = tuple(
+        builder.hand_over(r.by, r.at, r.force, r.couple) for r in reactions if r.by not in links
+    )
+    reach = tuple(
+        step
+        for reaction in reactions
+        if reaction.kind != "gear"
+        for step in builder.reach(reaction.on, reaction.at)
+    )
+    forces: tuple[Step, ...] = (LoopForces(solved, loops, outputs), *hand_over)
+    return Group(links, (*before, solved, *reach), forces, reactions)
+
+
+@dataclass
+class _Maker:
+    builder: Builder
+    joints: Structure
+    links: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        points = self.builder.machine.links
+        self.anchors = {
+            link: next(
+                (pt for pt in points[link].points if pt in self.joints.pins),
+                next(iter(points[link].points)),
+            )
+            for link in self.links
+        }
+
+    def size(self) -> float:
+        lengths = [
+            hypot(a[0] - b[0], a[1] - b[1])
+            for link in self.links
+            for a in self.builder.machine.links[link].points.values()
+            for b in self.builder.machine.links[link].points.values()
+        ]
+        return max(lengths) or 1.0
+
+    def end(self, body: str, point: str) -> End:
+        anchor = self.anchors.get(body) or self.builder.anchors[body]
+        return End(body, point, self.builder.arm(body, anchor, point))
+
+    def prepare(self) -> tuple[tuple[Step, ...], tuple[Loop, ...]]:
+        """Steps that make the known bodies' angles available, and the loop equations."""
+        reachable = {*self.builder.rank, *self.links}
+        loops: list[Loop] = []
+        for point, bodies in self.joints.pins.items():
+            loops += self.pins(point, [body for body in bodies if body in reachable])
+        for slider in self.joints.sliders:
+            ends = {slider.link, slider.on}
+            if ends <= reachable and ends & set(self.links):
+                loops.append(self.slide(slider))
+        before: list[Step] = []
+        for gear in self.joints.gears:
+            ends = {gear.driver, gear.driven, gear.carrier}
+            if ends <= reachable and ends & set(self.links):
+                for body in ends & self.builder.rank.keys():
+                    before += self.builder.running_angle(body)
+                loops.append(self.gear(gear))
+        return tuple(before), tuple(loops)
+
+    def pins(self, point: str, bodies: list[str]) -> list[Loop]:
+        known = [body for body in bodies if body in self.builder.rank]
+        free = [body for body in bodies if body in self.links]
+        hub = self.builder.carrier_of(known) if known else free[:1][0] if free else ""
+        return [
+            PinLoop(point, self.end(link, point), self.end(hub, point))
+            for link in free
+            if link != hub
+        ]
+
+    def slide(self, slider: Slider) -> SlideLoop:
+        """The link `on` is always one of the group; the line is the same seen from either."""
+        link, guide = self.end(slider.link, slider.point), self.end(slider.on, slider.through)
+        if slider.link in self.links:
+            return SlideLoop(slider.name, link, guide, slider.direction, slider.angle)
+        return SlideLoop(slider.name, guide, link, -slider.angle, -slider.direction)
+
+    def gear(self, gear: Gear) -> GearLoop:
+        driver_pin, driven_pin = gear_pins(self.joints, gear)
+        ratio, on, by = gear.speed_ratio, gear.driven, gear.driver
+        if on not in self.links:
+            raise ModelError(
+                f"gears.{gear.name}",
+                f"{on!r} is moved already by other joints; name the gear that is moved already "
+                "first in between",
+            )
+        centres = self.builder.arm(gear.carrier, driven_pin, driver_pin)
+        if centres == 0:
+            raise ModelError(f"gears.{gear.name}", "both gears turn about the same point")
+        radial = tan(gear.pressure_angle) * (1 if 0 < ratio < 1 else -1)
+        ends = self.end(on, driven_pin), self.end(by, driver_pin)
+        lever = centres / (1 - ratio)
+        return GearLoop(gear.name, *ends, gear.carrier, ratio, 0.0, lever, radial)
+
+    def reaction(self, loop: Loop) -> Reaction:
+        on, by = loop.on.body, loop.by.body
+        force = f"R({loop.name}/{on})"
+        if isinstance(loop, PinLoop):
+            return Reaction(loop.name, "pin", on, by, loop.name, force)
+        if isinstance(loop, SlideLoop):
+            couple = f"C({loop.name}/{on})"
+            return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
+        return Reaction(loop.name, "gear", on, by, f"pitch({loop.name})", force)
+
+
+def _solve_start(
+    builder: Builder, before: tuple[Step, ...], group: LoopGroup, loops: tuple[Loop, ...]
+) -> tuple[LoopGroup, tuple[Loop, ...]]:
+    """The group with its solution at crank angle 0 and, from that, the offsets of its gears."""
+    position = builder.machine.position
+    if position is None:
+        raise ModelError(
+            "position",
+            f"missing; no dyad solves {', '.join(group.links)}, so the file must say roughly "
+            "where they are: crank_angle, and points or angles of these links",
+        )
+    gears = {gear.name: gear for gear in builder.machine.gears}
+    meshes = [loop for loop in loops if isinstance(loop, GearLoop)]
+    if meshes and position.crank_angle != 0:
+        raise ModelError(
+            "position.crank_angle",
+            f"got {degrees(position.crank_angle):g} deg; give the position at 0 deg, where the "
+            "start angle of the gears holds",
+        )
+    stand_in = replace(
+        group,
+        equations=tuple(
+            StartAngle(loop, gears[loop.name].start) if isinstance(loop, GearLoop) else loop
+            for loop in loops
+        ),
+    )
+    steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
+    path = np.linspace(0.0, position.crank_angle, steps)
+    state = initial_state(builder.machine, path)
+    run([*builder.motion, *before], state)
+    known = group.known_poses(state)
+    guess = [x for link in group.links for x in _guess(builder, group, link, known, position)]
+    backwards = {body: pose.pick(slice(None, None, -1)) for body, pose in known.items()}
+    columns = stand_in.follow(np.array(guess), backwards, path[::-1])
+    at_zero = columns[:, -1]
+    at_start = group.poses(known, columns[:, ::-1])
+    solved = tuple(
+        replace(loop, offset=float(np.ravel(loop.gaps(at_start, 0)[0])[0]))
+        if isinstance(loop, GearLoop)
+        else loop
+        for loop in loops
+    )
+    start = tuple(float(x) for x in at_zero)
+    return replace(group, start=start, equations=solved), solved
+
+
+def _guess(
+    builder: Builder, group: LoopGroup, link: str, known: Poses, position: Position
+) -> tuple[float, float, float]:
+    """Rough position of a link's anchor and its angle, from the file and from known pins."""
+    points = builder.machine.links[link].points
+    given = [
+        (complex(*points[name]), complex(*position.points[name]))
+        for name in points
+        if name in position.points
+    ]
+    for body, pose in known.items():
+        for name, place in builder.machine.points_of(body).items():
+            if name in points and name not in position.points:
+                arm = complex(*place) - complex(
+                    *builder.machine.points_of(body)[builder.anchors[body]]
+                )
+                given.append((complex(*points[name]), complex(pose.point(arm)[0][-1])))
+    anchor = complex(*points[group.anchors[group.links.index(link)]])
+    angle = position.angles.get(link)
+    if angle is None and len(given) >= 2:
+        pairs = [(a - b, c - d) for a, c in given for b, d in given if a != b]
+        local, world = max(pairs, key=lambda pair: abs(pair[0]))
+        angle = float(np.angle(world / local)) if world else None
+    if angle is None or not given:
+        raise ModelError(
+            "position",
+            f"does not place {link!r} at crank angle {degrees(position.crank_angle):g} deg; give "
+            f"two of its points ({', '.join(points)}), or one and its angle",
+        )
+    turn = np.exp(1j * angle)
+    place = given[0][1] + turn * (anchor - given[0][0])
+    return float(place.real), float(place.imag), float(angle)

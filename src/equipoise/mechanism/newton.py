@@ -1,0 +1,195 @@
+"""Groups of links that no dyad solves: Newton's method on their loop equations.
+
+The unknowns of a group are position (x, y) and angle of each link.  Because the loop equations'
+rates are linear in the unknowns' rates, one set of formulas gives Newton's matrix and both
+derivatives.  The branch is followed from the position in the model file: neighbouring crank
+angles first, then any crank angle from the nearest one followed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import degrees
+
+import numpy as np
+
+from equipoise.errors import MotionError
+from equipoise.mechanism.loops import Array, Equation, Pose, Poses
+from equipoise.mechanism.steps import State, p, u
+
+ITERATIONS = 25
+STRIDE = 12
+"""Crank angles between those at which a branch is followed first."""
+JUMP = 0.02
+"""Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
+
+
+@dataclass(frozen=True)
+class LoopGroup:
+    """A group of links with as many loop equations as unknowns.
+
+    links, anchors : the unknown links and their anchor points.
+    known : other bodies that the loops touch -> their anchors.
+    start : (3 n,) x, y, angle of each link at crank angle 0, on the branch.
+    size : a typical length, m, against which gaps and steps are measured.
+    """
+
+    links: tuple[str, ...]
+    anchors: tuple[str, ...]
+    known: tuple[tuple[str, str], ...]
+    equations: tuple[Equation, ...]
+    start: tuple[float, ...]
+    size: float
+
+    @property
+    def name(self) -> str:
+        return " and ".join(self.links)
+
+    def run(self, state: State) -> None:
+        """Solve at every crank angle; follow the branch where no solution is known nearby."""
+        theta = np.atleast_1d(state["theta"])
+        known = self.known_poses(state)
+        guess = state.get(f"reference({self.name})")
+        if guess is None:
+            q = self.follow(np.array(self.start), known, theta)
+        else:
+            q = self.solve(guess, known, theta)
+        self.write(state, q, known)
+
+    def known_poses(self, state: State) -> Poses:
+        poses = {}
+        shape = np.atleast_1d(state["theta"]).shape
+        for body, anchor in self.known:
+            rotation, w, a = (state[name] for name in u(body))
+            angle = state.get(f"phi({body})", np.angle(rotation))
+            values = [state[name] for name in p(anchor)] + [angle, w, a]
+            x, x1, x2, t, t1, t2 = (np.broadcast_to(value, shape) for value in values)
+            poses[body] = Pose((x, x1, x2), (t, t1, t2))
+        return poses
+
+    def poses(self, known: Poses, *levels: Array) -> Poses:
+        """Poses of all bodies from unknowns and their derivatives, each (..., 3 n, N)."""
+        values = [*levels, *[np.zeros_like(levels[0])] * (3 - len(levels))]
+        result = dict(known)
+        for k, link in enumerate(self.links):
+            x, y, angle = (3 * k + i for i in range(3))
+            places = (q[..., x, :] + 1j * q[..., y, :] for q in values)
+            turns = (q[..., angle, :] for q in values)
+            result[link] = Pose((*places,), (*turns,))  # type: ignore[arg-type]
+        return result
+
+    def gaps(self, poses: Poses, level: int) -> Array:
+        """All loop equations, or their first or second derivatives, of shape (..., 3 n, N)."""
+        parts = [gap for equation in self.equations for gap in equation.gaps(poses, level)]
+        return np.stack(np.broadcast_arrays(*parts), axis=-2)
+
+    def matrix(self, q: Array, known: Poses) -> Array:
+        """Derivative of the loop equations by the unknowns, (N, 3 n, 3 n).
+
+        The first derivative of the gaps is linear in that of the unknowns, and the known bodies'
+        part drops out of the difference.
+        """
+        n = q.shape[0]
+        still = {
+            body: Pose((pose.place[0], 0, 0), (pose.turn[0], 0, 0)) for body, pose in known.items()
+        }
+        unit = np.eye(n)[:, :, None] * np.ones(q.shape[1])
+        gaps = self.gaps(self.poses(still, np.broadcast_to(q, unit.shape), unit), 1)
+        return np.moveaxis(gaps, (0, 1, 2), (2, 1, 0))
+
+    def solve(self, guess: Array, known: Poses, theta: Array) -> Array:
+        """Newton's method at all crank angles together; guess and result (3 n, N)."""
+        q = np.array(guess, dtype=float)
+        with np.errstate(all="ignore"):
+            for _ in range(ITERATIONS):
+                gap = self.gaps(self.poses(known, q), 0)
+                step = self.divide(q, known, gap)
+                q = q - step
+                if not np.all(np.isfinite(q)):
+                    break
+                if np.max(np.abs(step) / self.scale()[:, None]) < 1e-14:
+                    break
+            gap = np.abs(self.gaps(self.poses(known, q), 0))
+        bad = ~(np.max(gap, axis=0) < 1e-10 * max(self.size, 1.0))
+        if np.any(bad):
+            raise MotionError(self.failure(theta[int(np.argmax(bad))]))
+        return q
+
+    def scale(self) -> Array:
+        return np.tile([self.size, self.size, 1.0], len(self.links))
+
+    def divide(self, q: Array, known: Poses, right: Array) -> Array:
+        """Solve the loops' matrix for a right-hand side (3 n, N)."""
+        try:
+            solution = np.linalg.solve(self.matrix(q, known), right.T[:, :, None])
+        except np.linalg.LinAlgError:
+            return np.full_like(q, np.nan)
+        return solution[:, :, 0].T
+
+    def derivatives(self, q: Array, known: Poses) -> tuple[Array, Array]:
+        """First and second derivative of the unknowns by crank angle."""
+        q1 = -self.divide(q, known, self.gaps(self.poses(known, q, np.zeros_like(q)), 1))
+        q2 = -self.divide(q, known, self.gaps(self.poses(known, q, q1), 2))
+        return q1, q2
+
+    def follow(self, start: Array, known: Poses, theta: Array) -> Array:
+        """Follow the branch along crank angles, from the solution `start` at the first.
+
+        Wide steps first, with all angles between them solved together; where those do not fit
+        together, every angle from the one before.
+        """
+        if len(theta) > 2 * STRIDE:
+            try:
+                return self.follow_wide(start, known, theta)
+            except MotionError:
+                pass
+        return self.follow_each(start, known, theta)
+
+    def follow_wide(self, start: Array, known: Poses, theta: Array) -> Array:
+        posts = np.unique([*range(0, len(theta), STRIDE), len(theta) - 1])
+        at_posts = self.follow_each(
+            start, {b: p.pick(posts) for b, p in known.items()}, theta[posts]
+        )
+        way = np.abs(theta - theta[0])
+        guess = np.array([np.interp(way, way[posts], row) for row in at_posts])
+        q = self.solve(guess, known, theta)
+        q1, _ = self.derivatives(q, known)
+        bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
+        if np.max(np.abs(bent) / self.scale()[:, None]) > JUMP:
+            raise MotionError(self.failure(theta[0]))
+        return q
+
+    def follow_each(self, start: Array, known: Poses, theta: Array) -> Array:
+        columns = np.empty((len(start), len(theta)))
+        here = start[:, None]
+        for k in range(len(theta)):
+            now = {body: pose.pick(slice(k, k + 1)) for body, pose in known.items()}
+            guess = here
+            here = self.solve(guess, now, theta[k : k + 1])
+            columns[:, k] = here[:, 0]
+            if k and np.max(np.abs(here - guess)[:, 0] / self.scale()) > 10 * JUMP:
+                raise MotionError(self.failure(theta[k]))
+            if k + 1 < len(theta):
+                q1, q2 = self.derivatives(here, now)
+                step = theta[k + 1] - theta[k]
+                here = here + q1 * step + q2 * (0.5 * step * step)
+        return columns
+
+    def failure(self, angle: float) -> str:
+        links = ", ".join(self.links)
+        return (
+            f"the links {links} cannot be moved past crank angle {degrees(angle):.4g} deg: "
+            "the loop equations have no solution nearby; change the geometry, or start from "
+            "another position in [position]"
+        )
+
+    def write(self, state: State, q: Array, known: Poses) -> None:
+        q1, q2 = self.derivatives(q, known)
+        for k, (link, anchor) in enumerate(zip(self.links, self.anchors, strict=True)):
+            x, y, angle = 3 * k, 3 * k + 1, 3 * k + 2
+            place = [level[x] + 1j * level[y] for level in (q, q1, q2)]
+            state.update(zip(p(anchor), place, strict=True))
+            rotation = (np.exp(1j * q[angle]), q1[angle], q2[angle])
+            state.update(zip(u(link), rotation, strict=True))
+            state[f"phi({link})"] = q[angle]
+        state[f"q({self.name})"] = q
