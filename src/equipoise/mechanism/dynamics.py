@@ -1,0 +1,301 @@
+"""What the motion does: shaking force and moment, drive torque, and the force in every joint.
+
+Each link's inertia, weight and loads make a demand, a force and a moment about the link's anchor,
+that its joints must supply; `mechanism.reactions` turns demands into joint forces.  Because that
+pass is linear in the demands, causes, links or parameters are told apart by running it on a stack
+of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import hypot
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.loads import load_demands
+from equipoise.mechanism.model import Machine, Vector, unknown
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.reactions import (
+    Array,
+    Demand,
+    JointForce,
+    MeshForce,
+    Pass,
+    SliderForce,
+    VectorSignal,
+    full,
+    reactions,
+)
+from equipoise.mechanism.steps import p, u
+
+__all__ = [
+    "CAUSES",
+    "Forces",
+    "JointForce",
+    "MeshForce",
+    "SliderForce",
+    "Split",
+    "VectorSignal",
+    "forces",
+    "massless",
+    "place_of",
+    "split",
+]
+
+CAUSES = ("translation", "rotation", "weight", "load")
+"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside."""
+
+
+@dataclass(frozen=True)
+class Forces:
+    """Forces of a machine in motion; arrays (N,), one value for each crank angle.
+
+    motion : what they belong to.
+    about : point of the frame's plane (m, complex) about which moments are taken.
+    inertia, weights, loads : link -> its demand, by what makes it.
+    """
+
+    motion: Motion
+    about: complex
+    inertia: Mapping[str, Demand]
+    weights: Mapping[str, Demand]
+    loads: Mapping[str, Demand]
+
+    @cached_property
+    def shaking_force(self) -> VectorSignal:
+        """Minus the rate of change of momentum, N."""
+        return VectorSignal(
+            full(self.motion, -sum(force for force, _ in self.inertia.values()), complex)
+        )
+
+    @cached_property
+    def shaking_moment(self) -> Array:
+        """Minus the rate of change of angular momentum about `about`, N m."""
+        return self.shaking_moment_about(self.about)
+
+    def shaking_moment_about(self, point: str | Vector | complex) -> Array:
+        """Shaking moment, N m, about a point of the frame (its name) or (x, y) in m."""
+        pole = place_of(self.motion.machine, point)
+        return full(self.motion, -self._moment(self.inertia, pole), float)
+
+    @cached_property
+    def weight(self) -> VectorSignal:
+        """Weight of all links, N: the same at every crank angle."""
+        return VectorSignal(
+            full(self.motion, -sum(force for force, _ in self.weights.values()), complex)
+        )
+
+    @cached_property
+    def weight_moment(self) -> Array:
+        """Moment of the weight about `about`, N m."""
+        return full(self.motion, -self._moment(self.weights, self.about), float)
+
+    @cached_property
+    def solved(self) -> Pass:
+        """The run over the joints that belongs to all demands together."""
+        total = {
+            link: (
+                self.inertia[link][0] + self.weights[link][0] + self.loads[link][0],
+                self.inertia[link][1] + self.weights[link][1] + self.loads[link][1],
+            )
+            for link in self.inertia
+        }
+        return reactions(self.motion, total)
+
+    @property
+    def frame_force(self) -> VectorSignal:
+        """Sum of the forces of all joints on the frame, N: shaking force, weight and loads."""
+        return VectorSignal(self.solved.frame_force)
+
+    @property
+    def frame_moment(self) -> Array:
+        """Moment of all joints and of the drive on the frame about `about`, N m."""
+        return self.solved.frame_moment(self.about)
+
+    @property
+    def drive_torque(self) -> Array:
+        """Torque of the drive on its link, N m; times speed it is the power fed in."""
+        return self.solved.drive_torque
+
+    @property
+    def power(self) -> Array:
+        """Power fed in by the drive, W."""
+        return self.drive_torque * self.motion.speed
+
+    @cached_property
+    def joints(self) -> Mapping[str, JointForce]:
+        """Force in each pin and slider, by name, on the later body by the earlier one."""
+        return self.solved.joints
+
+    @cached_property
+    def gears(self) -> Mapping[str, MeshForce]:
+        """Force between the teeth of each pair of gears, on the driven gear by the driver."""
+        return self.solved.gears
+
+    @cached_property
+    def split(self) -> Split:
+        """Every output by cause and by link."""
+        return split(self)
+
+    def at(self, speed: float | None = None, acceleration: float | None = None) -> Forces:
+        """The same at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
+        return forces(self.motion.at(speed, acceleration), self.about)
+
+    def _moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
+        return sum(
+            moment + kernels.cross(self.motion.state[f"p({self.anchor(link)})"] - about, force)
+            for link, (force, moment) in demands.items()
+        )
+
+    def anchor(self, link: str) -> str:
+        """The point of a link about which its demand's moment is taken."""
+        return self.motion.linkage.anchors[link]
+
+
+@dataclass(frozen=True)
+class Split:
+    """Outputs by cause and link: arrays (4, L, N), causes as in `CAUSES`, links in file order.
+
+    shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
+    joints : name -> `JointForce` whose arrays have those axes.  gears : likewise.
+    Gears are taken with the flank in contact that the whole load gives.
+    """
+
+    links: tuple[str, ...]
+    shaking_force: Array
+    shaking_moment: Array
+    frame_force: Array
+    frame_moment: Array
+    drive_torque: Array
+    joints: Mapping[str, JointForce]
+    gears: Mapping[str, MeshForce]
+
+    def by_cause(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or the joint ``B``, summed over links."""
+        return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
+
+    def by_link(self, output: str) -> dict[str, Array]:
+        """An output, such as ``drive_torque`` or the joint ``B``, summed over causes."""
+        return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
+
+    def _array(self, output: str) -> Array:
+        for family in (self.joints, self.gears):
+            if output in family:
+                return family[output].value
+        names = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
+        if output not in names:
+            raise UsageError(unknown(output, [*names, *self.joints, *self.gears], "output"))
+        return getattr(self, output)  # type: ignore[no-any-return]
+
+
+def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:
+    """Forces of a machine in motion.
+
+    Parameters
+    ----------
+    about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    UsageError : there is no such point.
+    """
+    machine = motion.machine
+    if missing := massless(machine):
+        raise MassError(missing)
+    pole = place_of(machine, motion.linkage.pivot if about is None else about)
+    speed2, gravity = motion.speed**2, complex(*machine.gravity)
+    inertia, weights = {}, {}
+    for link in machine.links:
+        mass, moment, turning = inertia_about_anchor(motion, link)
+        inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
+        weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
+    return Forces(motion, pole, inertia, weights, load_demands(motion))
+
+
+def massless(machine: Machine) -> str:
+    """Say which links lack masses; empty where none does."""
+    missing = [name for name, link in machine.links.items() if not link.has_mass]
+    if not missing:
+        return ""
+    return (
+        f"forces need mass, center_of_mass and inertia of every link; missing for "
+        f"{', '.join(missing)} (a link to be neglected has mass 0)"
+    )
+
+
+def inertia_about_anchor(motion: Motion, link: str) -> tuple[float, complex, float]:
+    """Mass, first moment (complex) and moment of inertia of a link about its anchor."""
+    body = motion.machine.links[link]
+    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
+    arm = complex(*body.center_of_mass) - complex(*body.points[motion.linkage.anchors[link]])
+    return body.mass, body.mass * arm, body.inertia + body.mass * abs(arm) ** 2
+
+
+def demand_of_inertia(
+    motion: Motion, link: str, speed2: float, mass: Any, moment: Any, inertia: Any
+) -> Demand:
+    """What moves a link with these inertial parameters about its anchor."""
+    _, p1, p2 = (motion.state[name] for name in p(motion.linkage.anchors[link]))
+    rotation, w, a = (motion.state[name] for name in u(link))
+    force, turning = kernels.inertia_demand(
+        p1, p2, rotation, w, a, speed2, motion.acceleration, mass, moment, inertia
+    )
+    return force, turning
+
+
+def split(whole: Forces) -> Split:
+    """Run the joints once for every cause and link."""
+    motion, links = whole.motion, tuple(whole.inertia)
+    shape = (len(CAUSES), len(links), len(motion.crank_angle))
+    demands = {}
+    for k, link in enumerate(links):
+        force, moment = np.zeros(shape, complex), np.zeros(shape)
+        for c, (f, m) in enumerate(_causes(whole, link)):
+            force[c, k], moment[c, k] = f, m
+        demands[link] = (force, moment)
+    solved = reactions(motion, demands, whole.solved)
+    inertial = np.array([1, 1, 0, 0])[:, None, None]
+    return Split(
+        links,
+        inertial * -sum(force for force, _ in demands.values()),
+        inertial * -whole._moment(demands, whole.about),
+        np.broadcast_to(solved.frame_force, shape),
+        np.broadcast_to(solved.frame_moment(whole.about), shape),
+        solved.drive_torque,
+        solved.joints,
+        solved.gears,
+    )
+
+
+def _causes(whole: Forces, link: str) -> list[Demand]:
+    """Demands of a link in the order of `CAUSES`."""
+    motion = whole.motion
+    mass, moment, _ = inertia_about_anchor(motion, link)
+    own = motion.machine.links[link].inertia
+    as_point = abs(moment) ** 2 / mass if mass else 0.0
+    speed2 = motion.speed**2
+    return [
+        demand_of_inertia(motion, link, speed2, mass, moment, as_point),
+        demand_of_inertia(motion, link, speed2, 0.0, 0.0, own),
+        whole.weights[link],
+        whole.loads[link],
+    ]
+
+
+def place_of(machine: Machine, point: str | Vector | complex) -> complex:
+    """A point of the frame by name, or any place by coordinates (m), as a complex number."""
+    if isinstance(point, str):
+        if point not in machine.frame:
+            raise UsageError(unknown(point, machine.frame, "point of the frame"))
+        return complex(*machine.frame[point])
+    place = complex(*point) if isinstance(point, tuple | list) else complex(point)
+    if not np.isfinite(hypot(place.real, place.imag)):
+        raise UsageError(f"got {point!r}; give a point of the frame or finite coordinates")
+    return place

@@ -1,0 +1,55 @@
+"""Loads from outside against crank angle, and what holds them."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism import kernels
+from equipoise.mechanism.model import Load
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.reactions import Demand
+
+Array = np.ndarray[Any, Any]
+
+ROUNDING = 1e-9
+"""rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
+
+
+def load_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the loads, for every link."""
+    result: dict[str, Demand] = dict.fromkeys(motion.machine.links, (0j, 0.0))
+    for load in motion.machine.loads:
+        anchor = motion.state[f"p({motion.linkage.anchors[load.link]})"]
+        at = anchor if load.point is None else motion.points[load.point].place
+        force, torque = load_at(load, motion.crank_angle)
+        f, m = kernels.load_demand(anchor, at, force, torque)
+        before = result[load.link]
+        result[load.link] = (before[0] + f, before[1] + m)
+    return result
+
+
+def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
+    """Force (complex, N) and torque (N m) of a load at crank angles (N,)."""
+    zero = np.zeros(len(crank_angle))
+    if load.table is not None:
+        angles = np.array(load.table.crank_angle)
+        columns = [
+            np.interp(
+                np.mod(crank_angle - angles[0], 2 * pi), angles - angles[0], column, period=2 * pi
+            )
+            for column in load.table.values
+        ]
+    elif load.force is not None:
+        columns = [zero + load.force[0], zero + load.force[1]]
+    else:
+        columns = [zero + (load.torque or 0.0)]
+    if load.start is not None and load.stop is not None:
+        span = np.mod(load.stop - load.start, 2 * pi) or 2 * pi
+        acts = np.mod(crank_angle - load.start + ROUNDING, 2 * pi) < span
+        columns = [np.where(acts, column, 0.0) for column in columns]
+    if len(columns) == 2:
+        return columns[0] + 1j * columns[1], zero
+    return zero + 0j, columns[0]

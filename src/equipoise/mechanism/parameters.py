@@ -1,0 +1,230 @@
+"""Every output is linear in the inertial parameters: the regressor, and the base parameters.
+
+The parameters of a link are its mass, its two first moments and its moment of inertia, the last
+three about the origin of the link's axes.  An output is ``values @ regressor + loads``.  Several
+parameters always act together; the base parameters are the combinations that the outputs can tell
+apart.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
+from equipoise.mechanism.model import Machine, Vector, unknown
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.reactions import JointForce, MeshForce, reactions
+
+Array = np.ndarray[Any, Any]
+
+QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
+"""Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
+
+FRAME_OUTPUTS = ("shaking_force", "shaking_moment", "drive_torque")
+
+
+@dataclass(frozen=True)
+class Regressor:
+    """Derivative of every output by every inertial parameter.
+
+    parameters : P pairs of link and quantity; values : (P,) those of the machine.
+    shaking_force, frame_force : (P, N) complex.  shaking_moment, frame_moment, drive_torque :
+        (P, N).  joints, gears : name -> force whose arrays are (P, N).
+    loads : output of the loads alone, which `values @ array` leaves out.
+    """
+
+    parameters: tuple[tuple[str, str], ...]
+    values: Array
+    shaking_force: Array
+    shaking_moment: Array
+    frame_force: Array
+    frame_moment: Array
+    drive_torque: Array
+    joints: Mapping[str, JointForce]
+    gears: Mapping[str, MeshForce]
+
+
+@dataclass(frozen=True)
+class BaseParameters:
+    """The combinations of inertial parameters that the outputs can tell apart.
+
+    parameters : P pairs of link and quantity.
+    combinations : (B, P); row k is base parameter k, a sum of parameters with these factors.
+    values : (B,) those of the machine.
+    """
+
+    parameters: tuple[tuple[str, str], ...]
+    combinations: Array
+    values: Array | None
+
+    @property
+    def count(self) -> int:
+        return len(self.combinations)
+
+    def __str__(self) -> str:
+        return "\n".join(self._row(row) for row in self.combinations)
+
+    def _row(self, row: Array) -> str:
+        terms = [
+            f"{factor:+.6g} {link}.{quantity}"
+            for factor, (link, quantity) in zip(row, self.parameters, strict=True)
+            if abs(factor) > 1e-12
+        ]
+        return " ".join(terms)
+
+
+def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
+    """Pairs of link and quantity, in file order."""
+    return tuple((link, quantity) for link in machine.links for quantity in QUANTITIES)
+
+
+def parameter_values(machine: Machine) -> Array:
+    """Inertial parameters of a machine (P,), in the order of `parameter_names`."""
+    values: list[float] = []
+    for name, link in machine.links.items():
+        if link.mass is None or link.center_of_mass is None or link.inertia is None:
+            raise UsageError(f"the mass of {name!r} is not known")
+        x, y = link.center_of_mass
+        values += [link.mass, link.mass * x, link.mass * y]
+        values.append(link.inertia + link.mass * (x * x + y * y))
+    return np.array(values)
+
+
+def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Regressor:
+    """Derivatives of every output by every inertial parameter.
+
+    about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+    """
+    machine = motion.machine
+    values = parameter_values(machine)
+    whole = forces(motion, about)
+    pole = place_of(machine, motion.linkage.pivot if about is None else about)
+    inertia, total = _unit_demands(motion)
+    solved = reactions(motion, total, whole.solved)
+    shaking = Forces(motion, pole, inertia, {}, {})
+    return Regressor(
+        parameter_names(machine),
+        values,
+        -sum(force for force, _ in inertia.values()),
+        shaking.shaking_moment,
+        solved.frame_force,
+        solved.frame_moment(pole),
+        solved.drive_torque,
+        solved.joints,
+        solved.gears,
+    )
+
+
+def _unit_demands(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Demands of a unit of each parameter, without and with weight: link -> (P, N) pairs."""
+    machine = motion.machine
+    count, shape = len(machine.links), len(motion.crank_angle)
+    gravity = complex(*machine.gravity)
+    inertia, total = {}, {}
+    for k, link in enumerate(machine.links):
+        own = _about_anchor(motion, link)
+        moving = demand_of_inertia(motion, link, motion.speed**2, *own)
+        weight = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
+        inertia[link] = _spread(moving, k, count, shape)
+        carried = _spread(weight, k, count, shape)
+        total[link] = tuple(a + b for a, b in zip(inertia[link], carried, strict=True))
+    return inertia, total
+
+
+def _about_anchor(motion: Motion, link: str) -> tuple[Array, Array, Array]:
+    """Mass, first moment and inertia about the anchor for a unit of each parameter, (4, 1)."""
+    points = motion.machine.links[link].points
+    r = complex(*points[motion.linkage.anchors[link]])
+    mass = np.array([1.0, 0, 0, 0])
+    moment = np.array([0, 1, 1j, 0])
+    inertia = np.array([0, 0, 0, 1.0])
+    shifted = inertia - 2 * kernels.dot(r, moment) + mass * abs(r) ** 2
+    return mass[:, None], (moment - mass * r)[:, None], shifted[:, None]
+
+
+def _spread(demand: tuple[Any, Any], k: int, count: int, shape: int) -> tuple[Array, Array]:
+    """Put the four rows of link k among those of all links."""
+    result = (np.zeros((4 * count, shape), complex), np.zeros((4 * count, shape)))
+    for rows, part in zip(result, demand, strict=True):
+        rows[4 * k : 4 * k + 4] = part
+    return result
+
+
+def base_parameters(
+    machine: Machine, outputs: Sequence[str] = FRAME_OUTPUTS, angles: int = 72
+) -> BaseParameters:
+    """Find the combinations of inertial parameters that some outputs can tell apart, in any motion.
+
+    Parameters
+    ----------
+    outputs : names of outputs of `Regressor`: those of the frame by default.
+    angles : crank angles a turn at which the outputs are compared.
+
+    Notes
+    -----
+    The columns are taken in order; one that is a combination of those before it is grouped with
+    them, after Gautier, "Numerical calculation of the base inertial parameters of robots", 1991.
+    """
+    names = parameter_names(machine)
+    size = _length(machine)
+    motion = move(_with_any_masses(machine), angles)
+    matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
+    scale = np.tile([1.0, size, size, size**2], len(machine.links))
+    kept, grouping = _independent(matrix / scale)
+    combinations = grouping * scale / scale[kept][:, None]
+    complete = all(link.has_mass for link in machine.links.values())
+    values = combinations @ parameter_values(machine) if complete else None
+    return BaseParameters(names, combinations, values)
+
+
+def _with_any_masses(machine: Machine) -> Machine:
+    """Give masses to links that have none: which combinations count does not depend on them."""
+    for name, link in machine.links.items():
+        if not link.has_mass:
+            machine = machine.with_link(name, mass=1.0, center_of_mass=(0.0, 0.0), inertia=1.0)
+    return machine
+
+
+def _length(machine: Machine) -> float:
+    places = [abs(complex(*p)) for link in machine.links.values() for p in link.points.values()]
+    return max(places) or 1.0
+
+
+def _rows(motion: Motion, output: str, size: float) -> Array:
+    """Rows of an output in any motion: at rest, at constant speed, starting from rest."""
+    rate = (9.81 / size) ** 0.5
+    parts = []
+    for case in (motion.at(0.0, 0.0), motion.at(rate, 0.0), motion.at(0.0, rate**2)):
+        found = regressor(case)
+        names = [name for name, value in vars(found).items() if isinstance(value, np.ndarray)]
+        if output not in names[1:]:
+            raise UsageError(unknown(output, names[1:], "output"))
+        array = getattr(found, output)
+        parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T / size]
+    return np.concatenate(parts)
+
+
+def _independent(matrix: Array, tolerance: float = 1e-9) -> tuple[list[int], Array]:
+    """Columns that are no combination of earlier ones, and all columns in terms of these.
+
+    Returns the kept columns' numbers and factors (B, P) with matrix = matrix[:, kept] @ factors.
+    """
+    limit = tolerance * float(np.max(np.linalg.norm(matrix, axis=0)))
+    kept: list[int] = []
+    basis = np.zeros((len(matrix), 0))
+    for k, column in enumerate(matrix.T):
+        rest = column - basis @ (basis.T @ column)
+        rest -= basis @ (basis.T @ rest)
+        norm = float(np.linalg.norm(rest))
+        if norm > limit:
+            kept.append(k)
+            basis = np.column_stack([basis, rest / norm])
+    factors = np.linalg.lstsq(matrix[:, kept], matrix, rcond=None)[0]
+    factors[np.abs(factors) < tolerance] = 0.0
+    return kept, factors

@@ -1,0 +1,196 @@
+"""Joint forces: the pass that turns what each link needs into the force in every joint.
+
+The groups are run in reverse order; each hands what its outer joints must supply to the bodies
+that carry them, and the pass ends at drive and frame.  It is linear in the demands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism import kernels
+from equipoise.mechanism.builder import Reaction
+from equipoise.mechanism.joints import Structure
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.steps import State, run
+
+Array = np.ndarray[Any, Any]
+Demand = tuple[Any, Any]
+"""Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
+
+
+@dataclass(frozen=True)
+class VectorSignal:
+    """A planar vector against crank angle; `value` is complex, x + i y, (..., N)."""
+
+    value: Array
+
+    @property
+    def x(self) -> Array:
+        return self.value.real
+
+    @property
+    def y(self) -> Array:
+        return self.value.imag
+
+    @property
+    def size(self) -> Array:
+        """Length of the vector."""
+        return np.abs(self.value)
+
+    @property
+    def direction(self) -> Array:
+        """Angle of the vector from the x axis, rad."""
+        return np.angle(self.value)
+
+
+@dataclass(frozen=True)
+class JointForce(VectorSignal):
+    """Force in a pin, N: exerted on body `on` by body `by`."""
+
+    on: str
+    by: str
+
+
+@dataclass(frozen=True)
+class SliderForce(JointForce):
+    """Force in a sliding joint, N.
+
+    normal : its part across the line, positive to the left of the line's direction.
+    moment : couple about the slider's point, N m.
+    """
+
+    normal: Array
+    moment: Array
+
+
+@dataclass(frozen=True)
+class MeshForce(JointForce):
+    """Force between teeth, N, along the line of action at the pitch point.
+
+    tangential : part that transmits torque, positive where it turns the gear `on`
+        counterclockwise.  radial : part along the line of centres, positive towards the pin of
+        the gear `on`.
+    """
+
+    tangential: Array
+    radial: Array
+
+
+@dataclass(frozen=True)
+class Pass:
+    """Joint forces of one run over the groups, for one demand or a stack of them.
+
+    state : every value, by the names told in `mechanism.steps`; shapes (..., N).
+    """
+
+    motion: Motion
+    state: State
+
+    @property
+    def drive_torque(self) -> Array:
+        """Torque of the drive on its link, N m."""
+        return full(self.motion, self.state[f"M({self.motion.machine.drive.link})"], float)
+
+    @property
+    def frame_force(self) -> Array:
+        """Sum of the forces of all joints on the frame, N, complex."""
+        drive = self.motion.machine.drive.link
+        return full(self.motion, -self.state[f"F({FRAME})"] - self.state[f"F({drive})"], complex)
+
+    def frame_moment(self, about: complex) -> Array:
+        """Moment of all joints and of the drive on the frame about a point, N m."""
+        drive, pivot = self.motion.machine.drive.link, self.state[f"p({self.motion.linkage.pivot})"]
+        about_pivot = -self.state[f"M({FRAME})"] - self.state[f"M({drive})"]
+        moment: Array = about_pivot + kernels.cross(pivot - about, self.frame_force)
+        return moment
+
+    @property
+    def joints(self) -> dict[str, JointForce]:
+        """Pins and sliders, by name."""
+        return {
+            name: self._joint(reaction)
+            for name, reaction in named_reactions(self.motion.linkage.joints, self._reactions)
+            if reaction.kind != "gear"
+        }
+
+    @property
+    def gears(self) -> dict[str, MeshForce]:
+        """Pairs of gears, by name; the force is on the driven gear."""
+        return {r.name: self._mesh(r) for r in self._reactions if r.kind == "gear"}
+
+    @property
+    def _reactions(self) -> tuple[Reaction, ...]:
+        return self.motion.linkage.reactions
+
+    def _joint(self, reaction: Reaction) -> JointForce:
+        order = self.motion.linkage.joints.bodies.index
+        on, by, sign = reaction.on, reaction.by, 1
+        if order(on) < order(by):
+            on, by, sign = by, on, -1
+        force = full(self.motion, sign * self.state[reaction.force], complex)
+        if reaction.couple is None:
+            return JointForce(force, on, by)
+        slider = next(s for s in self.motion.machine.sliders if s.name == reaction.name)
+        direction = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        at = self.state[f"p({reaction.at})"] - self.motion.points[slider.point].place
+        moment = sign * self.state[reaction.couple] + kernels.cross(at, force)
+        normal = kernels.cross(direction, force)
+        return SliderForce(force, on, by, normal, full(self.motion, moment, float))
+
+    def _mesh(self, reaction: Reaction) -> MeshForce:
+        force = full(self.motion, self.state[reaction.force], complex)
+        tangential = full(self.motion, self.state[f"T({reaction.name})"], float)
+        gear = next(g for g in self.motion.machine.gears if g.name == reaction.name)
+        pin = self.motion.linkage.joints.pins_between(gear.driven, gear.carrier)[0]
+        lever = self.state[f"p({reaction.at})"] - self.state[f"p({pin})"]
+        radial = -kernels.dot(lever, force) / abs(lever)
+        return MeshForce(force, reaction.on, reaction.by, tangential, radial)
+
+
+def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None = None) -> Pass:
+    """Joint forces that meet the demands of all links.
+
+    demands : link -> force and moment about its anchor, of shapes (..., N).
+    like : a pass whose gears are in contact on the same flanks; without it the demands tell.
+    """
+    state = dict(motion.state)
+    for link, (force, moment) in demands.items():
+        state[f"F({link})"], state[f"M({link})"] = force, moment
+    state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
+    steps = motion.linkage.forces
+    if like is not None:
+        flanks = {name: value for name, value in like.state.items() if name.startswith("flank(")}
+        state.update(flanks)
+        steps = tuple(
+            step
+            for step in steps
+            if getattr(step, "outputs", ())[:1] not in [(name,) for name in flanks]
+        )
+    run(steps, state)
+    drive = motion.machine.drive.link
+    state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
+    return Pass(motion, state)
+
+
+def named_reactions(joints: Structure, found: tuple[Reaction, ...]) -> list[tuple[str, Reaction]]:
+    """Name joints: a pin of two bodies by its point, one of several also by the link it holds."""
+    result = []
+    for reaction in found:
+        shared = reaction.kind == "pin" and len(joints.pins[reaction.name]) > 2
+        name = f"{reaction.name}/{reaction.on}" if shared else reaction.name
+        result.append((name, reaction))
+    return result
+
+
+def full(motion: Motion, value: Any, kind: type) -> Array:
+    """Give a value that is the same at all crank angles its axis (N,)."""
+    count = len(motion.crank_angle)
+    if np.ndim(value) and np.shape(value)[-1] == count:
+        return np.asarray(value)
+    return np.broadcast_to(np.asarray(value, dtype=kind), (*np.shape(value)[:-1], count))
