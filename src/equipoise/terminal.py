@@ -1,0 +1,286 @@
+"""What the commands print: tables in the units of the drawing office."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from math import degrees, pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.markup import escape
+from rich.table import Table
+
+from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.newton import LoopGroup
+from equipoise.signals import Figures, figures
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.fourbar import FourBar
+    from equipoise.mechanism.linkage import Linkage
+    from equipoise.mechanism.model import Machine
+    from equipoise.results import Analysis
+Array = np.ndarray[Any, Any]
+
+PER_RPM = pi / 30
+WIDTH = 110
+"""Columns of the tables; a narrower terminal wraps them."""
+
+
+def number(value: float, scale: float = 0.0) -> str:
+    """Four significant digits; 0 where the value is rounding error beside `scale`."""
+    if abs(value) <= 1e-10 * abs(scale) or value == 0:
+        return "0"
+    if not 1e-3 <= abs(value) < 1e6:
+        return f"{value:.3e}"
+    digits = max(0, 3 - int(np.floor(np.log10(abs(value)))))
+    return f"{value:.{digits}f}"
+
+
+def angle(radians: float) -> str:
+    return f"{degrees(radians):.1f}"
+
+
+def span(values: Array, scale: float = 0.0) -> str:
+    """Smallest to largest value."""
+    low, high = float(np.min(values)), float(np.max(values))
+    scale = max(abs(low), abs(high), scale)
+    if high - low <= 1e-10 * scale:
+        return number(high, scale)
+    return f"{number(low, scale)} to {number(high, scale)}"
+
+
+def largest(found: Figures, scale: float = 0.0) -> str:
+    """Largest value and the crank angle of it; no angle where the value hardly changes."""
+    return _at(found, found.max, found.max_at, scale)
+
+
+def smallest(found: Figures, scale: float = 0.0) -> str:
+    """Smallest value and the crank angle of it; no angle where the value hardly changes."""
+    return _at(found, found.min, found.min_at, scale)
+
+
+def _at(found: Figures, value: float, crank_angle: float, scale: float) -> str:
+    if found.peak_to_peak <= 1e-10 * max(found.peak, scale):
+        return number(value, scale)
+    return f"{number(value, scale)} at {angle(crank_angle)}"
+
+
+def _console() -> Console:
+    console = Console(highlight=False, soft_wrap=True)
+    console.width = max(console.width, WIDTH)
+    return console
+
+
+def print_check(machine: Machine) -> None:
+    """How the linkage is built up, and what to look at again."""
+    linkage = assemble(machine)
+    cycle = linkage.cycle
+    console = _console()
+    console.print(f"[bold]{escape(machine.title)}[/]")
+    drive = machine.drive
+    console.print(
+        f"{len(machine.links)} moving links, one free motion; driven: {escape(drive.link)} at "
+        f"{number(drive.speed / PER_RPM)} rpm about {escape(linkage.pivot)}"
+    )
+    for row in _build_up(linkage):
+        console.print(f"  {escape(row)}")
+    turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
+    console.print(f"the crank turns fully; the motion repeats after {turns}")
+    for remark in remarks(linkage):
+        console.print(f"[yellow]note:[/] {escape(remark)}")
+    console.print("the model is sound")
+
+
+def _build_up(linkage: Linkage) -> Iterable[str]:
+    for group in linkage.groups:
+        links = " and ".join(group.links)
+        joints = ", ".join(
+            f"{r.name} ({r.kind} on {r.by})" if r.kind != "slider" else f"{r.name} (slider)"
+            for r in group.reactions
+        )
+        if any(isinstance(step, LoopGroup) for step in group.motion):
+            how = "by Newton's method on the loop equations"
+        elif group.number is None:
+            how = "geared"
+        else:
+            how = "dyad"
+        yield f"{links}: {how}; joints {joints}"
+
+
+def print_analysis(analysis: Analysis) -> None:
+    """Motion, forces and joints as tables."""
+    console = _console()
+    motion = analysis.motion
+    machine = analysis.machine
+    console.print(f"[bold]{escape(machine.title)}[/]")
+    count = len(motion.crank_angle)
+    span = f"{count} crank angles"
+    if motion.whole_cycle:
+        span += " in one turn" if motion.turns == 1 else f" in {motion.turns} turns"
+    console.print(
+        f"{escape(machine.drive.link)} driven at {number(motion.speed / PER_RPM)} rpm "
+        f"({number(motion.speed)} rad/s), {span}"
+    )
+    if analysis.four_bar is not None:
+        console.print(_four_bar(analysis.four_bar))
+    console.print(_links(analysis))
+    console.print(_points(analysis))
+    if analysis.solved is None:
+        console.print(f"[yellow]note:[/] {escape(massless(machine))}")
+        return
+    console.print(_forces(analysis))
+    console.print(_causes(analysis))
+    console.print(_joints(analysis))
+
+
+def _table(title: str, first: str, *columns: str) -> Table:
+    table = Table(
+        title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False
+    )
+    table.add_column(first, no_wrap=True)
+    for column in columns:
+        table.add_column(column, justify="right", no_wrap=True)
+    return table
+
+
+def _four_bar(found: FourBar) -> str:
+    lengths = ", ".join(
+        f"{name} {number(length * 1e3)} mm"
+        for name, length in zip(
+            ("frame", "crank", "coupler", "rocker"),
+            (found.a, found.b, found.c, found.d),
+            strict=True,
+        )
+    )
+    lines = [f"four-bar: {found.type}, {found.grashof}; {lengths}"]
+    if found.transmission_min is not None and found.transmission_max is not None:
+        text = (
+            f"transmission angle {angle(found.transmission_min)} to "
+            f"{angle(found.transmission_max)} deg"
+        )
+        if found.swing is not None:
+            text += f"; rocker swing {angle(found.swing)} deg; time ratio {found.time_ratio:.3f}"
+        lines.append(text)
+    return "\n".join(lines)
+
+
+def _links(analysis: Analysis) -> Table:
+    table = _table(
+        "Links", "", "angle deg", "angular velocity rad/s", "angular acceleration rad/s2"
+    )
+    for name, link in analysis.motion.links.items():
+        rate = abs(analysis.motion.speed)
+        row = [
+            span(np.degrees(link.angle)),
+            span(link.angular_velocity, rate),
+            span(link.angular_acceleration, rate**2),
+        ]
+        table.add_row(escape(name), *row)
+    return table
+
+
+def _points(analysis: Analysis) -> Table:
+    table = _table(
+        "Moving points; largest velocity and acceleration at crank angle, deg",
+        "",
+        "x mm",
+        "y mm",
+        "velocity m/s",
+        "acceleration m/s2",
+    )
+    theta = analysis.crank_angle
+    for name, point in analysis.motion.points.items():
+        if name in analysis.machine.frame:
+            continue
+        reach = 1e3 * float(np.max(np.abs(point.place)))
+        row = [span(1e3 * point.x, reach), span(1e3 * point.y, reach)]
+        for vector in (point.velocity, point.acceleration_vector):
+            found = figures(theta, np.abs(vector))
+            row.append(largest(found))
+        table.add_row(escape(name), *row)
+    return table
+
+
+CAUSES = {
+    "translation": "inertia of the centres of mass",
+    "rotation": "inertia of rotation",
+    "weight": "weight",
+    "load": "loads",
+}
+
+FORCES = (
+    ("shaking force x", "shaking_force.x", "N"),
+    ("shaking force y", "shaking_force.y", "N"),
+    ("shaking force", "shaking_force", "N"),
+    ("shaking moment", "shaking_moment", "N m"),
+    ("drive torque", "drive_torque", "N m"),
+    ("force on frame", "frame_force", "N"),
+    ("moment on frame", "frame_moment", "N m"),
+)
+
+
+def _forces(analysis: Analysis) -> Table:
+    about = analysis.forces.about
+    where = f"({number(about.real * 1e3)}, {number(about.imag * 1e3)}) mm"
+    table = _table(
+        f"On frame and drive; extremes at crank angle, deg; moments about {where}",
+        "",
+        "",
+        "mean",
+        "RMS",
+        "largest",
+        "smallest",
+        "peak to peak",
+    )
+    for label, key, unit in FORCES:
+        found = analysis.summary[key]
+        scale = max(analysis.summary[k].peak for _, k, u in FORCES if u == unit)
+        table.add_row(
+            label,
+            unit,
+            number(found.mean, scale),
+            number(found.rms, scale),
+            largest(found, scale),
+            smallest(found, scale),
+            number(found.peak_to_peak, scale),
+        )
+    return table
+
+
+def _causes(analysis: Analysis) -> Table:
+    table = _table("Drive torque by cause, N m", "", "mean", "RMS", "largest", "smallest")
+    scale = analysis.summary["drive_torque"].peak
+    split = analysis.forces.split.by_cause("drive_torque")
+    for cause, label in CAUSES.items():
+        if cause == "load" and not analysis.machine.loads:
+            continue
+        found = figures(analysis.crank_angle, split[cause])
+        values = (found.mean, found.rms, found.max, found.min)
+        table.add_row(label, *(number(value, scale) for value in values))
+    return table
+
+
+def _joints(analysis: Analysis) -> Table:
+    table = _table(
+        "Force in each joint, N; largest at crank angle, deg",
+        "",
+        "on",
+        "by",
+        "mean",
+        "RMS",
+        "largest",
+        "moment N m",
+    )
+    forces = analysis.forces
+    joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    for name, joint in joints.items():
+        found = figures(analysis.crank_angle, joint.size)
+        moment = joint.moment if isinstance(joint, SliderForce) else None
+        couple = "" if moment is None else number(float(np.max(np.abs(moment))), 1.0)
+        row = (number(found.mean), number(found.rms), largest(found), couple)
+        table.add_row(escape(name), escape(joint.on), escape(joint.by), *row)
+    return table
