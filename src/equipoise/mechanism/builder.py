@@ -116,17 +116,6 @@ class Builder:
         points = self.machine.points_of(link)
         return complex(*points[point]) - complex(*points[origin])
 
-    def length(self, link: str, origin: str, point: str) -> complex:
-        """Like `arm`, for two pins, which must not coincide."""
-        arm = self.arm(link, origin, point)
-        if arm == 0:
-            raise ModelError(
-                f"links.{link}.points",
-                f"{origin} and {point} lie at the same place, which makes a link of length 0; "
-                "set them apart",
-            )
-        return arm
-
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
         if point in self.points:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from math import degrees, pi
 from typing import Any
 
@@ -24,6 +25,7 @@ Array = np.ndarray[Any, Any]
 
 POINTS_PER_TURN = 720
 MOST_TURNS = 1000
+ROCKING_MARGIN = 0.1
 MOST_LOOP_TURNS = 6
 MOST_DIPS = 6
 CHANGE_POINT = 1e-10
@@ -45,6 +47,15 @@ class Cycle:
     windings: Mapping[str, int]
     tables: Mapping[str, Array]
     weakest: Mapping[str, tuple[float, float]]
+
+    @cached_property
+    def rocking(self) -> frozenset[str]:
+        """Links whose running angle never leaves the half turn to either side of 0."""
+        return frozenset(
+            name
+            for name, table in self.tables.items()
+            if table.ndim == 1 and np.max(np.abs(table)) < pi - ROCKING_MARGIN
+        )
 
     def reference(self, name: str, theta: Array) -> Array:
         """Values near those at crank angles (N,): a running angle, or poses of a loop group."""

@@ -33,8 +33,8 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
     arms = (
-        builder.length(link, first.point, pin),
-        builder.length(other, second.point, pin),
+        builder.arm(link, first.point, pin),
+        builder.arm(other, second.point, pin),
     )
     number = f"s({pin})"
     motion = (
@@ -70,7 +70,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
     link, other, guide = pinned.link, sliding.link, _guide(sliding)
     meaning = f"{pin} lies ahead of or behind {pinned.point}, seen along the guide's direction"
     side = builder.side(pin, AHEAD, meaning)
-    arm = builder.length(link, pinned.point, pin)
+    arm = builder.arm(link, pinned.point, pin)
     shift = guide.turn * builder.arm(other, guide.point, pin)
     number = f"s({pin})"
     motion = (

@@ -58,7 +58,7 @@ class Forces:
 
     motion : what they belong to.
     about : point of the frame's plane (m, complex) about which moments are taken.
-    inertia, weights, loads : link -> its demand, by what makes it.
+    inertia, weights, loads : link -> its demand, by what makes it; loads only where there are.
     """
 
     motion: Motion
@@ -99,13 +99,10 @@ class Forces:
     @cached_property
     def solved(self) -> Pass:
         """The run over the joints that belongs to all demands together."""
-        total = {
-            link: (
-                self.inertia[link][0] + self.weights[link][0] + self.loads[link][0],
-                self.inertia[link][1] + self.weights[link][1] + self.loads[link][1],
-            )
-            for link in self.inertia
-        }
+        total = dict(self.inertia)
+        for more in (self.weights, self.loads):
+            for link, (force, moment) in more.items():
+                total[link] = (total[link][0] + force, total[link][1] + moment)
         return reactions(self.motion, total)
 
     @property
@@ -285,7 +282,7 @@ def _causes(whole: Forces, link: str) -> list[Demand]:
         demand_of_inertia(motion, link, speed2, mass, moment, as_point),
         demand_of_inertia(motion, link, speed2, 0.0, 0.0, own),
         whole.weights[link],
-        whole.loads[link],
+        whole.loads.get(link, (0j, 0.0)),
     ]
 
 

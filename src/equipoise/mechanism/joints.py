@@ -53,9 +53,27 @@ def structure(machine: Machine) -> Structure:
         for point in machine.points_of(body):
             shared.setdefault(point, []).append(body)
     pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
+    _check_apart(machine, pins)
     result = Structure(bodies, pins, machine.sliders, machine.gears)
     _check_mobility(result, machine.drive.link)
     return result
+
+
+def _check_apart(machine: Machine, pins: Mapping[str, tuple[str, ...]]) -> None:
+    """Two pins of one body at the same place make a length of 0."""
+    for body in (FRAME, *machine.links):
+        seen: dict[tuple[float, float], str] = {}
+        for point, place in machine.points_of(body).items():
+            if point not in pins:
+                continue
+            if place in seen:
+                where = "frame" if body == FRAME else f"links.{body}"
+                raise ModelError(
+                    f"{where}.points",
+                    f"{seen[place]} and {point} lie at the same place; set them apart, or give "
+                    "them one name if they are one pin",
+                )
+            seen[place] = point
 
 
 def drive_pivot(joints: Structure, drive: str) -> str:

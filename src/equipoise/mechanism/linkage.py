@@ -68,6 +68,19 @@ class Linkage:
         return (drive, *(reaction for group in self.groups for reaction in group.reactions))
 
     @cached_property
+    def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
+        """Joints by name: a pin of several bodies goes by its point and by the link it holds."""
+        return tuple(
+            (
+                f"{r.name}/{r.on}"
+                if r.kind == "pin" and len(self.joints.pins[r.name]) > 2
+                else r.name,
+                r,
+            )
+            for r in self.reactions
+        )
+
+    @cached_property
     def cycle(self) -> Cycle:
         """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
         return close(self.machine, self.groups)

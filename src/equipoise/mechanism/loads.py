@@ -19,14 +19,14 @@ ROUNDING = 1e-9
 
 
 def load_demands(motion: Motion) -> dict[str, Demand]:
-    """What holds the loads, for every link."""
-    result: dict[str, Demand] = dict.fromkeys(motion.machine.links, (0j, 0.0))
+    """What holds the loads, for every link that has one."""
+    result: dict[str, Demand] = {}
     for load in motion.machine.loads:
         anchor = motion.state[f"p({motion.linkage.anchors[load.link]})"]
         at = anchor if load.point is None else motion.points[load.point].place
         force, torque = load_at(load, motion.crank_angle)
         f, m = kernels.load_demand(anchor, at, force, torque)
-        before = result[load.link]
+        before = result.get(load.link, (0.0, 0.0))
         result[load.link] = (before[0] + f, before[1] + m)
     return result
 

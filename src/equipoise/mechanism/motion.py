@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import degrees, pi
@@ -22,6 +22,12 @@ Array = np.ndarray[Any, Any]
 Value = TypeVar("Value")
 MOST_ANGLES = 1_000_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
+
+
+def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:
+    """Second derivative by time, from the derivatives by crank angle."""
+    steady = second * speed**2
+    return steady + first * acceleration if acceleration else steady
 
 
 @dataclass(frozen=True)
@@ -46,7 +52,7 @@ class LinkMotion:
     @property
     def angular_acceleration(self) -> Array:
         """rad/s2."""
-        return self.angle_2 * self.speed**2 + self.angle_1 * self.acceleration
+        return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
 
 
 @dataclass(frozen=True)
@@ -80,7 +86,7 @@ class PointMotion:
     @property
     def acceleration_vector(self) -> Array:
         """m/s2, complex."""
-        return self.place_2 * self.speed**2 + self.place_1 * self.acceleration
+        return in_time(self.place_1, self.place_2, self.speed, self.acceleration)
 
     @property
     def vx(self) -> Array:
@@ -103,28 +109,15 @@ class PointMotion:
         return self.acceleration_vector.imag
 
 
-class Lazy(Mapping[str, Value]):
-    """A mapping whose values are made when they are asked for, and kept."""
+class Named(dict[str, Value]):
+    """A dict that says which names there are when one is asked for that is not."""
 
-    def __init__(self, names: Sequence[str], make: Callable[[str], Value], kind: str) -> None:
-        self._names, self._make, self._kind = list(names), make, kind
-        self._made: dict[str, Value] = {}
+    def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:
+        super().__init__(items)
+        self.kind = kind
 
-    def __getitem__(self, name: str) -> Value:
-        if name not in self._made:
-            if name not in self._names:
-                raise KeyError(unknown(name, self._names, self._kind))
-            self._made[name] = self._make(name)
-        return self._made[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
-
-    def __repr__(self) -> str:
-        return f"<{self._kind}s: {', '.join(self._names)}>"
+    def __missing__(self, name: str) -> Value:
+        raise KeyError(unknown(name, self, self.kind))
 
 
 @dataclass(frozen=True)
@@ -165,7 +158,7 @@ class Motion:
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
         """Motion of each link, by name."""
-        return Lazy(list(self.machine.links), self._link, "link")
+        return Named("link", ((link, self._link(link)) for link in self.machine.links))
 
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
@@ -173,13 +166,13 @@ class Motion:
         names = dict.fromkeys(self.machine.frame)
         for link in self.machine.links.values():
             names.update(dict.fromkeys(link.points))
-        return Lazy(list(names), self._point, "point")
+        return Named("point", ((point, self._point(point)) for point in names))
 
     @cached_property
     def mass_centers(self) -> Mapping[str, PointMotion]:
         """Motion of each link's centre of mass, for links whose mass is known."""
-        links = [name for name, link in self.machine.links.items() if link.has_mass]
-        return Lazy(links, self._mass_center, "link with mass")
+        links = (name for name, link in self.machine.links.items() if link.has_mass)
+        return Named("link with mass", ((link, self._mass_center(link)) for link in links))
 
     def _link(self, link: str) -> LinkMotion:
         rotation, first, second = (self.state[name] for name in u(link))
@@ -195,6 +188,8 @@ class Motion:
             cycle = self.linkage.cycle
         except RangeError:
             return np.unwrap(angle)
+        if link in cycle.rocking:
+            return angle
         reference = cycle.reference(link, self.crank_angle)
         return angle + 2 * pi * np.round((reference - angle) / (2 * pi))
 
@@ -224,8 +219,8 @@ class Motion:
         return PointMotion(self._full(place, complex), *coefficients, self.speed, self.acceleration)
 
     def _full(self, value: Any, kind: type = float) -> Array:
-        if np.shape(value) == self.crank_angle.shape:
-            return np.asarray(value)
+        if isinstance(value, np.ndarray) and value.shape == self.crank_angle.shape:
+            return value
         return np.full(self.crank_angle.shape, value, dtype=kind)
 
 

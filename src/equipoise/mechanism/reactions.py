@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Reaction
-from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import State, run
@@ -92,12 +92,12 @@ class Pass:
     motion: Motion
     state: State
 
-    @property
+    @cached_property
     def drive_torque(self) -> Array:
         """Torque of the drive on its link, N m."""
         return full(self.motion, self.state[f"M({self.motion.machine.drive.link})"], float)
 
-    @property
+    @cached_property
     def frame_force(self) -> Array:
         """Sum of the forces of all joints on the frame, N, complex."""
         drive = self.motion.machine.drive.link
@@ -115,7 +115,7 @@ class Pass:
         """Pins and sliders, by name."""
         return {
             name: self._joint(reaction)
-            for name, reaction in named_reactions(self.motion.linkage.joints, self._reactions)
+            for name, reaction in self.motion.linkage.named_reactions
             if reaction.kind != "gear"
         }
 
@@ -178,19 +178,11 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     return Pass(motion, state)
 
 
-def named_reactions(joints: Structure, found: tuple[Reaction, ...]) -> list[tuple[str, Reaction]]:
-    """Name joints: a pin of two bodies by its point, one of several also by the link it holds."""
-    result = []
-    for reaction in found:
-        shared = reaction.kind == "pin" and len(joints.pins[reaction.name]) > 2
-        name = f"{reaction.name}/{reaction.on}" if shared else reaction.name
-        result.append((name, reaction))
-    return result
-
-
 def full(motion: Motion, value: Any, kind: type) -> Array:
     """Give a value that is the same at all crank angles its axis (N,)."""
     count = len(motion.crank_angle)
-    if np.ndim(value) and np.shape(value)[-1] == count:
-        return np.asarray(value)
-    return np.broadcast_to(np.asarray(value, dtype=kind), (*np.shape(value)[:-1], count))
+    if isinstance(value, np.ndarray) and value.ndim and value.shape[-1] == count:
+        return value
+    if np.ndim(value) == 0:
+        return np.full(count, value, dtype=kind)
+    return np.broadcast_to(value, (*np.shape(value)[:-1], count))
