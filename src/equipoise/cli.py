@@ -67,6 +67,7 @@ def analyze(
     acceleration: str | None = None,
     about: str | None = None,
     json: bool = False,
+    split: bool = False,
     csv: str | None = None,
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
@@ -85,6 +86,8 @@ def analyze(
         Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
     json
         Print one JSON object in SI units, and nothing else.
+    split
+        Add to the JSON object every force by cause and by link.
     csv
         Write every signal against crank angle to this file.
     """
@@ -108,7 +111,7 @@ def analyze(
         output.write(csv, output.to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)
     if json:
-        print(output.to_json(analysis))
+        print(output.to_json(analysis, split))
     else:
         print_analysis(analysis)
 

@@ -60,9 +60,12 @@ class Analysis:
         """Mean, RMS, peak and extremes of each output of the forces, by name."""
         return {name: figures(self.crank_angle, s) for name, s in outputs(self).items()}
 
-    def to_dict(self) -> Values:
-        """The machine-readable output, in SI units: dicts, numbers and arrays (N,)."""
-        return to_dict(self)
+    def to_dict(self, split: bool = False) -> Values:
+        """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
+
+        split : whether to add every force by cause and by link.
+        """
+        return to_dict(self, split)
 
     def to_dataset(self) -> xarray.Dataset:
         """Every array as an `xarray.Dataset` over crank angle (rad); loads xarray."""
@@ -106,7 +109,7 @@ def outputs(analysis: Analysis) -> dict[str, Array]:
     return result
 
 
-def to_dict(analysis: Analysis) -> Values:
+def to_dict(analysis: Analysis, split: bool = False) -> Values:
     """Nested values in SI units; arrays are (N,)."""
     result = _heading(analysis)
     result["crank_angle"] = analysis.crank_angle
@@ -116,6 +119,8 @@ def to_dict(analysis: Analysis) -> Values:
         result["missing"] = massless(analysis.machine)
     else:
         result.update(_forces(analysis.solved))
+        if split:
+            result.update(_split(analysis.solved))
     result["summary"] = _summary(analysis)
     return result
 
@@ -152,7 +157,7 @@ def unit_of(name: str) -> str:
     if last in UNITS:
         return UNITS[last]
     if last in ("x", "y"):
-        return "N" if first in ("shaking_force", "weight", "frame_force") else "m"
+        return "m" if first.startswith("points.") else "N"
     return "N m"
 
 
@@ -218,7 +223,25 @@ def _forces(found: Forces) -> Values:
         "frame_force": _vector(found.frame_force),
         "frame_moment": found.frame_moment,
         "drive_torque": found.drive_torque,
-        "drive_torque_by_cause": found.split.by_cause("drive_torque"),
+    }
+
+
+def _split(found: Forces) -> Values:
+    """Every force by cause, and by link: output -> cause or link -> array, or x and y."""
+    split = found.split
+    names = ["shaking_force", "shaking_moment", "frame_force", "frame_moment", "drive_torque"]
+    result: Values = {}
+    for key, parts in (("by_cause", split.by_cause), ("by_link", split.by_link)):
+        result[key] = {name: _parts(parts(name)) for name in names}
+        joints = [*split.joints, *split.gears]
+        result[key]["joints"] = {name: _parts(parts(name)) for name in joints}
+    return result
+
+
+def _parts(parts: Mapping[str, Array]) -> Values:
+    return {
+        name: _vector(VectorSignal(part)) if np.iscomplexobj(part) else part
+        for name, part in parts.items()
     }
 
 

@@ -165,6 +165,10 @@ def _four_bar(found: FourBar) -> str:
         if found.swing is not None:
             text += f"; rocker swing {angle(found.swing)} deg; time ratio {found.time_ratio:.3f}"
         lines.append(text)
+    holds = {True: "hold", False: "do not hold"}
+    lines.append(
+        f"assembly conditions (5) {holds[found.condition_5]}, (6) {holds[found.condition_6]}"
+    )
     return "\n".join(lines)
 
 

@@ -15,9 +15,9 @@ from equipoise.io.files import FileError, printable, write_text
 from equipoise.results import Analysis, columns, to_dict, unit_of
 
 
-def to_json(analysis: Analysis) -> str:
-    """The machine-readable output as one JSON object, in SI units."""
-    return json.dumps(to_dict(analysis), default=_plain, allow_nan=False, ensure_ascii=False)
+def to_json(analysis: Analysis, split: bool = False) -> str:
+    """The machine-readable output as one JSON object, in SI units; `split` as in `to_dict`."""
+    return json.dumps(to_dict(analysis, split), default=_plain, allow_nan=False, ensure_ascii=False)
 
 
 def _plain(value: Any) -> Any:

@@ -1,0 +1,78 @@
+"""Forces against MuJoCo: of all bodies together, and body by body."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from equipoise.mechanism.model import FRAME
+from support import mujoco_engine
+from support.analyses import (
+    RANDOM,
+    Subject,
+    agree,
+    example_names,
+    example_subject,
+    force_size,
+    moment_size,
+    random_subject,
+    vector,
+)
+from support.engines import TOLERANCE, same_totals
+from support.free_bodies import centre_line
+from support.loads import on_links
+from support.poses import Array, cross
+
+
+def action(subject: Subject, link: str, at: Array, force: Array, couple: Array | float) -> Array:
+    """Return a force and a couple as force and moment about a link's origin, (N, 3)."""
+    arm = at - subject.poses.origin[link]
+    return np.column_stack([force, cross(arm, force) + couple])
+
+
+def acting_on_links(subject: Subject) -> dict[str, Array]:
+    """Add up all that joints, gears, loads and drive do to each link."""
+    machine, poses, forces = subject.machine, subject.poses, subject.forces
+    total = {name: np.zeros((poses.crank_angle.size, 3)) for name in machine.links}
+    sliders = {slider.name: (slider.link, slider.point) for slider in machine.sliders}
+    actions = []
+    for name, joint in forces.joints.items():
+        body, label = sliders.get(name, (joint.on, name.split("/")[0]))
+        at = poses.place(body, machine.points_of(body)[label])
+        actions.append((joint, at, getattr(joint, "moment", np.zeros(len(at)))))
+    for gear in machine.gears:
+        at = centre_line(gear, machine, poses)[0]
+        actions.append((forces.gears[gear.name], at, np.zeros(len(at))))
+    for part, at, couple in actions:
+        for body, sign in ((part.on, 1.0), (part.by, -1.0)):
+            if body != FRAME:
+                total[body] += action(subject, body, at, sign * vector(part), sign * couple)
+    for link, at, force, torque in on_links(machine, poses):
+        total[link] += action(subject, link, at, force, torque)
+    total[machine.drive.link][:, 2] += forces.drive_torque
+    return total
+
+
+def carried(subject: Subject) -> None:
+    """Check that each link gets just what MuJoCo asks for it, weight included."""
+    machine, poses = subject.machine, subject.poses
+    asked = mujoco_engine.demands(machine, poses, machine.gravity).links
+    force, moment = force_size(machine, poses), moment_size(machine, poses)
+    for name, got in acting_on_links(subject).items():
+        want = asked.get(name, np.zeros_like(got))
+        agree(f"force on {name}", got[:, :2], want[:, :2], TOLERANCE, force)
+        agree(f"moment on {name}", got[:, 2], want[:, 2], TOLERANCE, moment)
+
+
+@pytest.mark.parametrize(("kind", "seed"), RANDOM)
+def test_random_machine(kind: str, seed: int) -> None:
+    subject = random_subject(kind, seed)
+    same_totals(subject, mujoco_engine.totals)
+    carried(subject)
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_example(name: str) -> None:
+    subject = example_subject(name)
+    same_totals(subject, mujoco_engine.totals)
+    carried(subject)

@@ -1,0 +1,105 @@
+"""Forces in all joints against the equilibria of all free bodies, solved at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.mechanism.model import FRAME
+from support import free_bodies
+from support.analyses import (
+    RANDOM,
+    Subject,
+    agree,
+    example_names,
+    example_subject,
+    force_size,
+    moment_size,
+    random_subject,
+    vector,
+)
+from support.free_bodies import FreeBodies, Reaction
+from support.poses import pins
+
+TOLERANCE = 1e-10
+FLOOR = 1e-3
+"""Part of the size of all forces below which an output counts as vanishing."""
+
+
+def pairs(subject: Subject) -> dict[str, tuple[str, str]]:
+    """Read which body holds which at the points of more than two bodies.
+
+    The frame, or else the body whose motion is found first, holds the others, except that a gear
+    on the axis of its carrier may be held by the carrier.
+    """
+    found: dict[str, tuple[str, str]] = {}
+    for label, bodies in pins(subject.machine).items():
+        if len(bodies) < 3:
+            continue
+        names = [name for name in subject.forces.joints if name.startswith(f"{label}/")]
+        joints = {name: subject.forces.joints[name] for name in names}
+        assert len(joints) == len(bodies) - 1
+        assert all(name == f"{label}/{joint.on}" for name, joint in joints.items())
+        assert {body for joint in joints.values() for body in (joint.on, joint.by)} == set(bodies)
+        assert FRAME not in {joint.on for joint in joints.values()}
+        found |= {name: (joint.on, joint.by) for name, joint in joints.items()}
+    return found
+
+
+def same_forces(subject: Subject) -> None:
+    """Compare every force and moment with the solution of the free bodies."""
+    machine, poses, forces = subject.machine, subject.poses, subject.forces
+    solved = free_bodies.solve(machine, poses, pairs(subject))
+    force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
+    assert set(forces.joints) == set(solved.joints)
+    assert set(forces.gears) == set(solved.gears)
+    for name, reaction in solved.joints.items():
+        same_reaction(name, forces.joints[name], reaction, force, moment)
+    for name, reaction in solved.gears.items():
+        same_reaction(name, forces.gears[name], reaction, force, moment)
+    same_totals(forces, solved, force, moment)
+    masses = sum(link.mass or 0.0 for link in machine.links.values())
+    weight = np.broadcast_to(masses * np.array(machine.gravity), solved.frame_force.shape)
+    agree("weight", vector(forces.weight) + 0 * solved.frame_force, weight, TOLERANCE, force)
+
+
+def same_reaction(name: str, got: Any, want: Reaction, force: float, moment: float) -> None:
+    """Compare one contact, whichever of its bodies counts as acted on."""
+    assert {got.on, got.by} == {want.on, want.by}
+    sign = 1.0 if got.on == want.on else -1.0
+    agree(f"force in {name}", vector(got), sign * want.force, TOLERANCE, force)
+    if hasattr(got, "moment"):
+        agree(f"couple in {name}", got.moment, sign * want.couple, TOLERANCE, moment)
+
+
+def same_totals(forces: Any, solved: FreeBodies, force: float, moment: float) -> None:
+    """Compare drive torque and what the frame bears."""
+    agree("drive torque", forces.drive_torque, solved.drive_torque, TOLERANCE, moment)
+    agree("frame force", vector(forces.frame_force), solved.frame_force, TOLERANCE, force)
+    agree("frame moment", forces.frame_moment, solved.frame_moment, TOLERANCE, moment)
+
+
+def acting_on_the_later(subject: Subject) -> None:
+    """Check that joints of two bodies give the force on the later one; the frame comes first."""
+    order = [FRAME, *subject.machine.links]
+    sliders = {slider.name for slider in subject.machine.sliders}
+    for name, joint in subject.forces.joints.items():
+        assert hasattr(joint, "moment") == (name in sliders)
+        if name in sliders or len(pins(subject.machine).get(name, ())) == 2:
+            assert order.index(joint.by) < order.index(joint.on), name
+
+
+@pytest.mark.parametrize(("kind", "seed"), RANDOM)
+def test_random_machine(kind: str, seed: int) -> None:
+    subject = random_subject(kind, seed)
+    same_forces(subject)
+    acting_on_the_later(subject)
+
+
+@pytest.mark.parametrize("name", example_names())
+def test_example(name: str) -> None:
+    subject = example_subject(name)
+    same_forces(subject)
+    acting_on_the_later(subject)

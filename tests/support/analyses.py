@@ -1,0 +1,107 @@
+"""Analyses under test: random machines and bundled examples, each computed once a session."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MassError
+from equipoise.mechanism.model import Machine
+from support.machines import KINDS, Case, make
+from support.poses import Array, Poses, from_motion
+
+ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles of every comparison, off the round numbers at which loads may begin or end."""
+
+RANDOM = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in range(10)]
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A machine, what Equipoise says about it, and the poses of its motion."""
+
+    machine: Machine
+    motion: Any
+    analysis: Any
+    case: Case | None = None
+
+    @property
+    def poses(self) -> Poses:
+        return from_motion(self.machine, self.motion)
+
+    @property
+    def forces(self) -> Any:
+        """The forces, or a skipped test for a model without masses."""
+        try:
+            return self.analysis.forces
+        except MassError as error:
+            pytest.skip(str(error))
+
+
+def analysed(machine: Machine, case: Case | None = None) -> Subject:
+    """Analyse a machine at the crank angles of the comparison."""
+    analysis = eq.analyze(machine, angles=ANGLES)
+    return Subject(machine, analysis.motion, analysis, case)
+
+
+@cache
+def random_subject(kind: str, seed: int) -> Subject:
+    """Analyse a random machine."""
+    case = make(kind, seed)
+    return analysed(case.machine, case)
+
+
+@cache
+def example_subject(name: str) -> Subject:
+    """Analyse a bundled example."""
+    return analysed(eq.load(name))
+
+
+def example_names() -> list[str]:
+    """Return the names of the bundled examples."""
+    return sorted(eq.examples())
+
+
+def vector(signal: Any) -> Array:
+    """Return components x and y as (N, 2)."""
+    return np.column_stack([signal.x, signal.y])
+
+
+def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0.0) -> None:
+    """Compare an output over all crank angles with its second route.
+
+    The difference is measured against the output's largest value, or against `least` where the
+    output vanishes and rounding alone is left of it.
+    """
+    got, want = np.asarray(got), np.asarray(want)
+    assert got.shape == want.shape, f"{what}: {got.shape} against {want.shape}"
+    scale = max(float(np.max(np.abs(want))), least)
+    apart = float(np.max(np.abs(got - want)))
+    assert np.all(np.isfinite(got)), f"{what} is not finite"
+    assert apart <= tolerance * scale, f"{what} is {apart:.3g} off, of {scale:.3g}"
+
+
+def force_size(machine: Machine, poses: Poses) -> float:
+    """Return the size of the forces in a machine, N: of inertia, weight and loads together."""
+    size = 0.0
+    for name, link in machine.links.items():
+        change = poses.change(name, link.center_of_mass or (0.0, 0.0))
+        accelerated = float(np.max(np.abs(change)))
+        size += (link.mass or 0.0) * (accelerated + float(np.hypot(*machine.gravity)))
+    for load in machine.loads:
+        columns = () if load.table is None else load.table.values
+        size += float(np.max(np.abs([*(load.force or ()), *np.ravel(columns)]), initial=0.0))
+    return size
+
+
+def moment_size(machine: Machine, poses: Poses) -> float:
+    """Return the size of moments in a machine, N m."""
+    middle = np.mean(list(machine.frame.values()), axis=0)
+    reach = max(float(np.max(np.abs(origin - middle))) for origin in poses.origin.values())
+    size = force_size(machine, poses) * reach
+    return size + sum(abs(load.torque or 0.0) for load in machine.loads)

@@ -1,0 +1,26 @@
+"""What every rigid-body engine is asked: shaking force, shaking moment and drive torque."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from equipoise.mechanism.model import Machine
+from support.analyses import Subject, agree, force_size, moment_size, vector
+from support.mujoco_engine import Totals
+from support.poses import Poses
+
+TOLERANCE = 1e-9
+FLOOR = 1e-3
+"""Part of the size of all forces below which an output counts as vanishing (balanced machines)."""
+
+Engine = Callable[[Machine, Poses], Totals]
+
+
+def same_totals(subject: Subject, engine: Engine) -> None:
+    """Compare the outputs of a machine with those of an engine."""
+    machine, poses, forces = subject.machine, subject.poses, subject.forces
+    told = engine(machine, poses)
+    force, moment = FLOOR * force_size(machine, poses), FLOOR * moment_size(machine, poses)
+    agree("shaking force", vector(forces.shaking_force), told.shaking_force, TOLERANCE, force)
+    agree("shaking moment", forces.shaking_moment, told.shaking_moment, TOLERANCE, moment)
+    agree("drive torque", forces.drive_torque, told.drive_torque, TOLERANCE, moment)

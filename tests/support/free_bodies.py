@@ -1,0 +1,267 @@
+"""Joint forces by brute strength: every link cut free, all equilibria solved at once.
+
+The general form of the nine equations that Lee and Kim write for a four-bar.  With n links there
+are 3 n equations (two forces and the moment about the centre of mass of each link).  A pin brings
+two unknowns, a sliding joint a force across its line and a couple, a gear pair the tangential
+force at the pitch point, and the drive its torque.  A linkage with one free motion and no
+redundant constraint has as many unknowns as equations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from equipoise.mechanism.model import FRAME, Gear, Machine
+from support.loads import on_links
+from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
+
+
+@dataclass(frozen=True)
+class Contact:
+    """Something that passes a load from body `by` to body `on`.
+
+    at : where the force acts, (N, 2).  directions : of the unknown forces, each (N, 2).
+    couple : whether a couple is unknown as well.
+    """
+
+    name: str
+    on: str
+    by: str
+    at: Array
+    directions: tuple[Array, ...] = ()
+    couple: bool = False
+
+    @property
+    def size(self) -> int:
+        return len(self.directions) + self.couple
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """Force (N, 2) and couple (N,) on body `on` by body `by`, acting at `at`."""
+
+    on: str
+    by: str
+    at: Array
+    force: Array
+    couple: Array
+
+
+@dataclass(frozen=True)
+class FreeBodies:
+    """Everything that the free bodies tell, one value a crank angle."""
+
+    joints: Mapping[str, Reaction]
+    gears: Mapping[str, Reaction]
+    drive_torque: Array
+    frame_force: Array
+    frame_moment: Array
+
+
+@dataclass
+class System:
+    """The linear equations of all links at all crank angles."""
+
+    machine: Machine
+    poses: Poses
+    rows: dict[str, int]
+    centers: dict[str, Array]
+    known: Array
+    columns: list[Array] = field(default_factory=list)
+
+    def press(
+        self, column: Array, body: str, at: Array, force: Array, couple: Array | float
+    ) -> None:
+        """Add a force and a couple on a body to a column of the equations; the frame has none."""
+        if body == FRAME:
+            return
+        row = self.rows[body]
+        column[:, row : row + 2] += force
+        column[:, row + 2] += cross(at - self.centers[body], force) + couple
+
+    def pair(self, contact: Contact, force: Array, couple: float) -> Array:
+        """Return the column of an action on one body and its reaction on the other."""
+        column = np.zeros_like(self.known)
+        self.press(column, contact.on, contact.at, force, couple)
+        self.press(column, contact.by, contact.at, -force, -couple)
+        return column
+
+
+def solve(
+    machine: Machine, poses: Poses, pairs: Mapping[str, tuple[str, str]] | None = None
+) -> FreeBodies:
+    """Solve the free bodies of a machine.
+
+    Parameters
+    ----------
+    pairs : for points that join more than two bodies, "POINT/link" -> (acted on, acting), one
+        pair fewer than bodies.  Without it the first body of all holds the others.
+    """
+    joints = [*pin_contacts(machine, poses, pairs or {}), *slider_contacts(machine, poses)]
+    gears = [gear_contact(gear, machine, poses) for gear in machine.gears]
+    system = equations(machine, poses)
+    unknowns = solved(system, joints, gears)
+    for gear, contact in zip(machine.gears, gears, strict=True):
+        tangential = unknowns[gear.name][:, 0]
+        apart = separating(gear, machine, poses, tangential)
+        system.known -= system.pair(contact, apart, 0.0)
+    unknowns = solved(system, joints, gears)
+    return gathered(machine, poses, joints, gears, unknowns)
+
+
+def equations(machine: Machine, poses: Poses) -> System:
+    """Set up the side that is known: what inertia asks for, less loads and weight."""
+    rows = {name: 3 * number for number, name in enumerate(machine.links)}
+    centers = {}
+    known = np.zeros((poses.crank_angle.size, 3 * len(rows)))
+    for name, link in machine.links.items():
+        local = link.center_of_mass or (0.0, 0.0)
+        mass, inertia = link.mass or 0.0, link.inertia or 0.0
+        centers[name] = poses.place(name, local)
+        asked = mass * (poses.change(name, local) - np.array(machine.gravity))
+        known[:, rows[name] : rows[name] + 2] = asked
+        known[:, rows[name] + 2] = inertia * poses.alpha[name]
+    system = System(machine, poses, rows, centers, known)
+    for link_name, at, force, torque in on_links(machine, poses):
+        given = np.zeros_like(known)
+        system.press(given, link_name, at, force, torque)
+        system.known -= given
+    return system
+
+
+def solved(system: System, joints: list[Contact], gears: list[Contact]) -> dict[str, Array]:
+    """Solve for all unknowns, (N, how many) for each contact and for the drive, named ''."""
+    columns, owners = [], []
+    for contact in (*joints, *gears):
+        columns += [system.pair(contact, direction, 0.0) for direction in contact.directions]
+        if contact.couple:
+            columns.append(system.pair(contact, np.zeros_like(contact.at), 1.0))
+        owners += [contact.name] * contact.size
+    torque = np.zeros_like(system.known)
+    torque[:, system.rows[system.machine.drive.link] + 2] = 1.0
+    columns, owners = [*columns, torque], [*owners, ""]
+    matrix = np.stack(columns, -1)
+    assert matrix.shape[1] == matrix.shape[2], "as many unknowns as equations"
+    found = np.linalg.solve(matrix, system.known[..., None])[..., 0]
+    return {name: found[:, [o == name for o in owners]] for name in dict.fromkeys(owners)}
+
+
+# -- contacts --------------------------------------------------------------------------------------
+
+
+def pin_contacts(
+    machine: Machine, poses: Poses, pairs: Mapping[str, tuple[str, str]]
+) -> list[Contact]:
+    """List all pins; which body holds which is a matter of choice where there are more than two."""
+    found = []
+    for label, bodies in pins(machine).items():
+        chosen = {label: (bodies[1], bodies[0])}
+        if len(bodies) > 2:
+            names = [name for name in pairs if name.startswith(f"{label}/")]
+            chosen = {f"{label}/{body}": (body, bodies[0]) for body in bodies[1:]}
+            chosen = {name: pairs[name] for name in names} or chosen
+        for name, (on, by) in chosen.items():
+            found.append(pin_contact(name, on, by, label, machine, poses))
+    return found
+
+
+def pin_contact(name: str, on: str, by: str, label: str, machine: Machine, poses: Poses) -> Contact:
+    """Return the pin between two bodies."""
+    at = poses.place(on, machine.points_of(on)[label])
+    along_x, along_y = (np.broadcast_to(unit, at.shape) for unit in np.eye(2))
+    return Contact(name, on, by, at, (along_x, along_y))
+
+
+def slider_contacts(machine: Machine, poses: Poses) -> list[Contact]:
+    """List all sliding joints; the later of the two bodies is the one acted on."""
+    order = [FRAME, *machine.links]
+    found = []
+    for slider in machine.sliders:
+        by, on = sorted((slider.link, slider.on), key=order.index)
+        at = poses.place(slider.link, machine.links[slider.link].points[slider.point])
+        line = (float(np.cos(slider.direction)), float(np.sin(slider.direction)))
+        across = quarter(poses.turned(slider.on, line))
+        found.append(Contact(slider.name, on, by, at, (across,), couple=True))
+    return found
+
+
+def centre_line(gear: Gear, machine: Machine, poses: Poses) -> tuple[Array, Array]:
+    """Return pitch point and unit vector from the driver's to the driven gear's axis.
+
+    On the carrier the pitch point, at the part s of the centre distance from the driver's axis,
+    has the speed s w of the driver and (s - 1) r w of the driven gear; hence s = r / (r - 1).
+    """
+    axes = []
+    for body in (gear.driver, gear.driven):
+        label = pin_between(machine, body, gear.carrier)
+        axes.append(poses.place(gear.carrier, machine.points_of(gear.carrier)[label]))
+    between = axes[1] - axes[0]
+    part = gear.speed_ratio / (gear.speed_ratio - 1)
+    return axes[0] + part * between, between / np.linalg.norm(between, axis=-1, keepdims=True)
+
+
+def gear_contact(gear: Gear, machine: Machine, poses: Poses) -> Contact:
+    """Return the teeth in mesh, with the force of the driver on the driven gear."""
+    pitch_point, unit = centre_line(gear, machine, poses)
+    return Contact(gear.name, gear.driven, gear.driver, pitch_point, (quarter(unit),))
+
+
+def separating(gear: Gear, machine: Machine, poses: Poses, tangential: Array) -> Array:
+    """Return the radial force on the driven gear.
+
+    A tooth that stands outward is pushed towards its own gear's axis.  Both gears of an external
+    pair have such teeth, and of an internal pair the smaller one.
+    """
+    unit = centre_line(gear, machine, poses)[1]
+    size = np.abs(tangential) * np.tan(gear.pressure_angle)
+    # External: from the pitch point the driven gear's axis lies along +unit.  Internal with a
+    # small driven gear: along -unit.  Internal with a small driver: its axis lies along +unit,
+    # so it is pushed that way and the driven ring the other way.
+    towards = 1.0 if gear.speed_ratio < 0 else -1.0
+    return towards * size[:, None] * unit
+
+
+# -- results ---------------------------------------------------------------------------------------
+
+
+def gathered(
+    machine: Machine,
+    poses: Poses,
+    joints: list[Contact],
+    gears: list[Contact],
+    unknowns: Mapping[str, Array],
+) -> FreeBodies:
+    """Turn the unknowns into vectors and add up what the frame bears."""
+    held = {contact.name: reaction(contact, unknowns[contact.name]) for contact in joints}
+    meshed = {}
+    for gear, contact in zip(machine.gears, gears, strict=True):
+        tangential = reaction(contact, unknowns[contact.name])
+        apart = separating(gear, machine, poses, unknowns[contact.name][:, 0])
+        force = tangential.force + apart
+        meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
+    torque = unknowns[""][:, 0]
+    force, moment = on_frame(machine, [*held.values(), *meshed.values()])
+    return FreeBodies(held, meshed, torque, force, moment - torque)
+
+
+def reaction(contact: Contact, unknowns: Array) -> Reaction:
+    """Return force and couple of one contact."""
+    force = np.zeros_like(contact.at)
+    for number, direction in enumerate(contact.directions):
+        force = force + unknowns[:, number, None] * direction
+    couple = unknowns[:, -1] if contact.couple else np.zeros(len(force))
+    return Reaction(contact.on, contact.by, contact.at, force, couple)
+
+
+def on_frame(machine: Machine, reactions: list[Reaction]) -> tuple[Array, Array]:
+    """Add up the contacts' forces on the frame, with their moment about the drive pivot."""
+    pivot = np.array(machine.frame[drive_pivot(machine)])
+    total, moment = np.zeros_like(reactions[0].force), np.zeros(len(reactions[0].force))
+    for part in reactions:
+        sign = (part.on == FRAME) - (part.by == FRAME) + 0.0
+        total += sign * part.force
+        moment += sign * (cross(part.at - pivot, part.force) + part.couple)
+    return total, moment

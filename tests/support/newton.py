@@ -1,0 +1,270 @@
+"""Motion by brute strength: all constraints of all links at once, followed by Newton's method.
+
+Each link has three coordinates (its origin and its angle).  Pins, sliding joints, gears and the
+drive are equations g(q) = 0; velocities and accelerations follow from their Jacobian alone, so
+that no dyad, no side and no order of solution enters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from equipoise.mechanism.model import FRAME, Gear, Machine, Slider, Vector
+from support.poses import Array, Poses, cross, pins, quarter, turned
+
+
+class NotAssembledError(RuntimeError):
+    """Newton's method has found no pose."""
+
+
+@dataclass(frozen=True)
+class Row:
+    """Two lines or one of the constraints.
+
+    residual : (k,).  jacobian : (k, 3 n).  bend : (k,), minus the second derivative of the
+    residual that remains at zero acceleration.
+    """
+
+    residual: Array
+    jacobian: Array
+    bend: Array
+
+
+@dataclass
+class Constraints:
+    """Equations that hold a machine together; `gear_constants` are set at crank angle 0."""
+
+    machine: Machine
+    gear_constants: dict[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def columns(self) -> dict[str, int]:
+        """First column of each link's coordinates."""
+        return {name: 3 * number for number, name in enumerate(self.machine.links)}
+
+    @cached_property
+    def shared(self) -> dict[str, list[str]]:
+        """Bodies at each pin."""
+        return pins(self.machine)
+
+    def at(self, q: Array, rate: Array, crank_angle: float) -> Row:
+        """Evaluate everything at coordinates `q` moving at `rate`."""
+        rows = [
+            self._pin(q, rate, label, bodies[0], body)
+            for label, bodies in self.shared.items()
+            for body in bodies[1:]
+        ]
+        rows += [row for slider in self.machine.sliders for row in self._slider(q, rate, slider)]
+        rows += [self._gear(q, gear) for gear in self.machine.gears]
+        rows.append(self._turn({self.machine.drive.link: 1.0}, q, -crank_angle))
+        return Row(
+            np.concatenate([row.residual for row in rows]),
+            np.concatenate([row.jacobian for row in rows]),
+            np.concatenate([row.bend for row in rows]),
+        )
+
+    def _place(self, q: Array, rate: Array, body: str, local: Vector) -> Row:
+        """Return position, its Jacobian and centripetal acceleration of a point."""
+        jacobian = np.zeros((2, q.size))
+        if body == FRAME:
+            return Row(np.array(local), jacobian, np.zeros(2))
+        k = self.columns[body]
+        arm = turned(q[k + 2], local)
+        jacobian[:, k : k + 2] = np.eye(2)
+        jacobian[:, k + 2] = quarter(arm)
+        return Row(q[k : k + 2] + arm, jacobian, -(rate[k + 2] ** 2) * arm)
+
+    def _pin(self, q: Array, rate: Array, label: str, one: str, other: str) -> Row:
+        a = self._place(q, rate, one, self.machine.points_of(one)[label])
+        b = self._place(q, rate, other, self.machine.points_of(other)[label])
+        return Row(b.residual - a.residual, b.jacobian - a.jacobian, a.bend - b.bend)
+
+    def _slider(self, q: Array, rate: Array, slider: Slider) -> list[Row]:
+        point = self.machine.links[slider.link].points[slider.point]
+        through = self.machine.points_of(slider.on)[slider.through]
+        a = self._place(q, rate, slider.on, through)
+        b = self._place(q, rate, slider.link, point)
+        angle, spin = 0.0, 0.0
+        weights = {slider.link: 1.0}
+        if slider.on != FRAME:
+            k = self.columns[slider.on] + 2
+            angle, spin = q[k], rate[k]
+            weights[slider.on] = -1.0
+        line = turned(angle, (np.cos(slider.direction), np.sin(slider.direction)))
+        across, apart = quarter(line), b.residual - a.residual
+        jacobian = across @ (b.jacobian - a.jacobian)
+        drift = (b.jacobian - a.jacobian) @ rate
+        bend = across @ (b.bend - a.bend)
+        if slider.on != FRAME:
+            jacobian[k] -= line @ apart
+            bend += -2 * spin * (line @ drift) - spin**2 * (across @ apart)
+        distance = Row(np.array([across @ apart]), jacobian[None], np.array([-bend]))
+        return [distance, self._turn(weights, q, -slider.direction - slider.angle)]
+
+    def _gear(self, q: Array, gear: Gear) -> Row:
+        ratio = gear.speed_ratio
+        if gear.name not in self.gear_constants:
+            return self._turn({gear.driven: 1.0}, q, -gear.start)
+        weights = {gear.driven: 1.0, gear.driver: -ratio, gear.carrier: ratio - 1.0}
+        return self._turn(weights, q, -self.gear_constants[gear.name])
+
+    def _turn(self, weights: dict[str, float], q: Array, constant: float) -> Row:
+        """Return an equation of angles alone."""
+        jacobian = np.zeros((1, q.size))
+        for body, weight in weights.items():
+            if body != FRAME:
+                jacobian[0, self.columns[body] + 2] = weight
+        return Row(jacobian @ q + constant, jacobian, np.zeros(1))
+
+    def mesh(self, q: Array) -> None:
+        """Let the gears mesh as they stand at `q`."""
+        for gear in self.machine.gears:
+            weights = {gear.driven: 1.0, gear.driver: -gear.speed_ratio}
+            weights[gear.carrier] = gear.speed_ratio - 1.0
+            self.gear_constants[gear.name] = float(self._turn(weights, q, 0.0).residual[0])
+
+
+def closed(constraints: Constraints, q: Array, crank_angle: float, steps: int = 40) -> Array:
+    """Close the linkage by Newton's method from the coordinates `q`."""
+    rest, size = np.zeros_like(q), max(reach(constraints.machine), 1e-9)
+    scale = np.tile([size, size, 1.0], q.size // 3)
+    small = 0
+    for _ in range(steps):
+        row = constraints.at(q, rest, crank_angle)
+        try:
+            step = np.linalg.solve(row.jacobian, -row.residual)
+        except np.linalg.LinAlgError:
+            break
+        q = q + step
+        change = float(np.max(np.abs(step / scale)))
+        if not change < 1e6:
+            break
+        small += change < 1e-13
+        if change < 1e-15 or small > 1:
+            return q
+    raise NotAssembledError(f"no pose at crank angle {crank_angle:g}")
+
+
+def reach(machine: Machine) -> float:
+    """Return the largest coordinate of a link's points or between those of the frame."""
+    local = [abs(c) for link in machine.links.values() for xy in link.points.values() for c in xy]
+    frame = np.array(list(machine.frame.values()))
+    return float(max(*local, *np.ptp(frame, axis=0), 0.0))
+
+
+def assembled(machine: Machine, wanted: Callable[[Poses], bool], rng: np.random.Generator) -> Array:
+    """Return coordinates at crank angle 0 in the assembly that is wanted, from random guesses."""
+    constraints, size = Constraints(machine), reach(machine)
+    near = np.mean(list(machine.frame.values()), axis=0)
+    for _ in range(2000):
+        q = rng.normal(size=3 * len(machine.links)) * size
+        q += np.tile([*near, 0.0], len(machine.links))
+        q[2::3] = rng.uniform(-np.pi, np.pi, len(machine.links))
+        try:
+            q = closed(constraints, q, 0.0)
+        except NotAssembledError:
+            continue
+        if np.max(np.abs(q[2::3])) > 20:
+            continue  # many turns away, where angles have lost digits
+        if wanted(moving(constraints, [0.0], [q])):
+            return q
+    raise NotAssembledError("no guess has led to the assembly that is wanted")
+
+
+def trace(machine: Machine, angles: Array, start: Array) -> Poses:
+    """Follow a machine from its pose `start` at crank angle 0 to rising crank angles."""
+    constraints = Constraints(machine)
+    q = closed(constraints, start, 0.0)
+    constraints.mesh(q)
+    found, here = [], 0.0
+    for angle in map(float, angles):
+        q = followed(constraints, q, here, angle)
+        here = angle
+        found.append(q)
+    return moving(constraints, angles, found)
+
+
+def followed(constraints: Constraints, q: Array, here: float, there: float) -> Array:
+    """Follow the machine to another crank angle, in smaller steps where it turns sharply."""
+    guess = q + slope(constraints, q, here) * (there - here)
+    try:
+        end = closed(constraints, guess, there)
+    except NotAssembledError:
+        end = guess + np.inf
+    size = reach(constraints.machine)
+    scale = np.tile([size, size, 1.0], q.size // 3)
+    if np.max(np.abs(end - guess) / scale) < 0.1:
+        return end
+    if abs(there - here) < 1e-6:
+        raise NotAssembledError(f"no way past crank angle {here:g}")
+    middle = (here + there) / 2
+    return followed(constraints, followed(constraints, q, here, middle), middle, there)
+
+
+def slope(constraints: Constraints, q: Array, crank_angle: float) -> Array:
+    """Return the derivative of the coordinates with respect to the crank angle."""
+    row = constraints.at(q, np.zeros_like(q), crank_angle)
+    return np.linalg.solve(row.jacobian, np.eye(q.size)[-1])
+
+
+def moving(constraints: Constraints, angles: Array | list[float], found: list[Array]) -> Poses:
+    """Return poses with the velocities and accelerations that the drive forces on them."""
+    drive = constraints.machine.drive
+    last = np.eye(found[0].size)[-1]
+    rates, changes = [], []
+    for angle, q in zip(angles, found, strict=True):
+        rate = slope(constraints, q, angle) * drive.speed
+        row = constraints.at(q, rate, angle)
+        rates.append(rate)
+        changes.append(np.linalg.solve(row.jacobian, row.bend + last * drive.acceleration))
+    q, v, a = np.array(found), np.array(rates), np.array(changes)
+    columns = constraints.columns.items()
+    return Poses(
+        np.array(angles, float),
+        *({name: part[:, k : k + 2] for name, k in columns} for part in (q, v, a)),
+        *({name: part[:, k + 2] for name, k in columns} for part in (q, v, a)),
+    )
+
+
+def coordinates(poses: Poses, number: int) -> Array:
+    """Return the coordinates of all links at one of the crank angles."""
+    parts = [[*poses.origin[name][number], poses.angle[name][number]] for name in poses.angle]
+    return np.array(parts).ravel()
+
+
+@dataclass(frozen=True)
+class Side:
+    """What an entry of `assembly` asks for, told from where points are.
+
+    inner, first, second : (body, point); for 'left' and 'right' the inner pin against the line
+        from the first to the second.  guide : (body, angle) of a line, instead of `second`; for
+        'forward' and 'backward' along it from the first point's foot.
+    """
+
+    side: str
+    inner: tuple[str, str]
+    first: tuple[str, str]
+    second: tuple[str, str] | None = None
+    guide: tuple[str, float] | None = None
+
+    def holds(self, machine: Machine, poses: Poses) -> bool:
+        """Tell whether the machine is on this side at every crank angle."""
+        inner, first = (self._point(machine, poses, which) for which in (self.inner, self.first))
+        if self.guide is not None:
+            body, angle = self.guide
+            line = poses.turned(body, (float(np.cos(angle)), float(np.sin(angle))))
+            ahead = np.sum((inner - first) * line, -1)
+            return bool(np.all(ahead > 0 if self.side == "forward" else ahead < 0))
+        assert self.second is not None
+        second = self._point(machine, poses, self.second)
+        left = cross(second - first, inner - first)
+        return bool(np.all(left > 0 if self.side == "left" else left < 0))
+
+    @staticmethod
+    def _point(machine: Machine, poses: Poses, which: tuple[str, str]) -> Array:
+        body, label = which
+        return poses.place(body, machine.points_of(body)[label])
