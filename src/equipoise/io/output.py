@@ -17,7 +17,7 @@ from equipoise.results import Analysis, columns, to_dict, unit_of
 
 def to_json(analysis: Analysis, split: bool = False) -> str:
     """The machine-readable output as one JSON object, in SI units; `split` as in `to_dict`."""
-    return json.dumps(to_dict(analysis, split), default=_plain, allow_nan=False, ensure_ascii=False)
+    return json.dumps(to_dict(analysis, split), default=_plain, allow_nan=False)
 
 
 def _plain(value: Any) -> Any:
@@ -43,9 +43,13 @@ def write(path: str | os.PathLike[str], text: str, *, replace: bool = True) -> N
     ------
     UsageError : it cannot be written, or is there already and `replace` is false.
     """
+    shown = printable(path) or "''"
     if not replace and os.path.lexists(path):
-        raise UsageError(f"{printable(path)}: is there already; choose another name")
+        raise UsageError(f"{shown}: is there already; choose another name")
+    if os.path.exists(path) and not os.path.isfile(path):  # it would take the place of a device
+        kind = "a directory" if os.path.isdir(path) else "no regular file"
+        raise UsageError(f"{shown}: this is {kind}; give the name of a file")
     try:
         write_text(path, text)
     except FileError as problem:
-        raise UsageError(f"{printable(path)}: {problem}") from problem
+        raise UsageError(f"{shown}: {problem}") from problem

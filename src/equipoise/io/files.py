@@ -1,0 +1,97 @@
+"""Reading and writing whole text files, with every mishap as one sentence."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+LARGEST = 10_000_000
+"""Bytes; no model file or load table comes near it."""
+
+
+class FileError(Exception):
+    """A file cannot be read or written; `str(problem)` says why and what would be right."""
+
+
+def read_text(path: str | os.PathLike[str]) -> str:
+    """Read a regular file of UTF-8 text, with or without a byte order mark.
+
+    Raises
+    ------
+    FileError
+        Missing, no regular file (a pipe would wait for ever), larger than 10 MB, not UTF-8.
+    """
+    try:
+        data = _bytes(path)
+    except FileNotFoundError as error:
+        raise FileError("there is no such file") from error
+    except PermissionError as error:
+        raise FileError("the file may not be read; change its permissions") from error
+    except (OSError, ValueError) as error:  # ValueError: a path with a null character
+        raise FileError(f"the file cannot be read ({reason(error)})") from error
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise FileError(
+            f"line {line} is not text in UTF-8; give a text file saved as UTF-8"
+        ) from error
+
+
+def _bytes(path: str | os.PathLike[str]) -> bytes:
+    # O_NONBLOCK: opening a pipe that nobody writes to would otherwise wait.
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path, flags)
+    if stat.S_ISDIR(os.fstat(descriptor).st_mode):  # Python would refuse it, and leave it open
+        os.close(descriptor)
+        raise FileError("this is a directory; give a file")
+    with open(descriptor, "rb") as file:
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise FileError("this is no regular file; give a file on disk")
+        data = b"" if status.st_size > LARGEST else file.read(LARGEST + 1)
+        if max(status.st_size, len(data)) > LARGEST:
+            size = max(status.st_size, len(data)) / 1e6
+            raise FileError(f"the file has {size:.0f} MB; at most {LARGEST / 1e6:.0f} MB are read")
+    return data
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write a file such that it is afterwards either the old or the new one, never half of it."""
+    try:
+        data = text.encode("utf-8")
+        target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
+        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+        try:
+            _write_synced(temporary, data, like=target)
+            os.replace(temporary, target)
+        finally:
+            temporary.unlink(missing_ok=True)
+    except (OSError, ValueError) as error:
+        raise FileError(
+            f"the file cannot be written ({reason(error)}); choose another place or name"
+        ) from error
+
+
+def _write_synced(path: Path, data: bytes, like: Path) -> None:
+    with open(path, "wb") as file:
+        if like.is_file():
+            os.chmod(path, stat.S_IMODE(like.stat().st_mode))
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())
+
+
+def printable(path: str | os.PathLike[str]) -> str:
+    """Return a path as text that any terminal can print."""
+    text = os.fspath(path).encode("utf-8", "backslashreplace").decode("utf-8")
+    text = text if len(text) <= 300 else f"{text[:147]}...{text[-150:]}"
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in text)
+
+
+def reason(error: Exception) -> str:
+    """Say briefly why the system refused."""
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror.lower()
+    return str(error).lower()

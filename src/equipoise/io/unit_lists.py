@@ -1,0 +1,114 @@
+"""The units that are accepted, dimension by dimension, and the grammar of a quantity."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Literal
+
+Dimension = Literal[
+    "length",
+    "angle",
+    "mass",
+    "inertia",
+    "angular speed",
+    "angular acceleration",
+    "acceleration",
+    "force",
+    "torque",
+    "speed",
+    "frequency",
+    "time",
+    "stiffness",
+    "damping",
+    "power",
+]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is known of a dimension.
+
+    Attributes
+    ----------
+    noun : with its article.
+    units : all that are accepted, the SI unit first.
+    printed : those that `format_exact` tries before the SI unit, the most usual first.
+    example : a quantity for error messages and the JSON Schema.
+    """
+
+    noun: str
+    units: tuple[str, ...]
+    printed: tuple[str, ...]
+    example: str
+
+
+def _kind(noun: str, units: str, printed: str, example: str) -> Kind:
+    split = re.compile(r",\s*").split
+    return Kind(noun, tuple(split(units)), tuple(split(printed)), example)
+
+
+KINDS: dict[Dimension, Kind] = {
+    "length": _kind("a length", "m, mm, cm, km, um, in, ft", "mm, m", "33.5 mm"),
+    "angle": _kind("an angle", "rad, deg, turn", "deg, rad", "-83 deg"),
+    "mass": _kind("a mass", "kg, g, mg, t, lb, oz", "g, kg", "199 g"),
+    "inertia": _kind(
+        "a moment of inertia",
+        "kg m^2, kg cm^2, kg mm^2, g m^2, g cm^2, g mm^2, lb in^2, lb ft^2, "
+        "kgf m s^2, kgf cm s^2, gf cm s^2",
+        "kg mm^2, kg m^2",
+        "30 kg mm^2",
+    ),
+    "angular speed": _kind(
+        "an angular speed", "rad/s, deg/s, turn/s, rpm", "rpm, rad/s", "193 rpm"
+    ),
+    "angular acceleration": _kind(
+        "an angular acceleration", "rad/s^2, deg/s^2, rpm/s", "rad/s^2, rpm/s", "0 rad/s^2"
+    ),
+    "acceleration": _kind(
+        "an acceleration", "m/s^2, mm/s^2, ft/s^2, gn", "m/s^2", "-9.80665 m/s^2"
+    ),
+    "force": _kind("a force", "N, kN, mN, kgf, gf, lbf", "N", "12 N"),
+    "torque": _kind(
+        "a torque",
+        "N m, N mm, N cm, kN m, kgf m, kgf cm, gf cm, lbf ft, lbf in",
+        "N m",
+        "1.5 N m",
+    ),
+    "speed": _kind("a speed", "m/s, mm/s, cm/s, km/h, ft/s", "m/s, km/h", "0.3 m/s"),
+    "frequency": _kind("a frequency", "Hz, kHz", "Hz", "50 Hz"),
+    "time": _kind("a time", "s, ms, min, h", "s", "2 s"),
+    "stiffness": _kind("a stiffness", "N/m, N/mm, kN/m, kgf/mm, lbf/in", "N/m", "20 kN/m"),
+    "damping": _kind("a damping coefficient", "N s/m, N s/mm, kN s/m", "N s/m", "300 N s/m"),
+    "power": _kind("a power", "W, mW, kW", "W", "40 W"),
+}
+
+_PI = "3.14159265358979323846264338327950288419716939937510582097494459"
+DEFINITIONS = f"""
+m = [length]; mm = 1e-3 m; cm = 1e-2 m; km = 1e3 m; um = 1e-6 m; in = 0.0254 m; ft = 0.3048 m
+rad = []; turn = 2 * {_PI} rad; deg = turn / 360
+kg = [mass]; g = 1e-3 kg; mg = 1e-6 kg; t = 1e3 kg; lb = 0.45359237 kg; oz = lb / 16
+s = [time]; ms = 1e-3 s; min = 60 s; h = 3600 s; Hz = 1 / s; kHz = 1e3 Hz; rpm = turn / min
+gn = 9.80665 m / s**2; N = kg * m / s**2; kN = 1e3 N; mN = 1e-3 N
+kgf = kg * gn; gf = g * gn; lbf = lb * gn; W = N * m / s; mW = 1e-3 W; kW = 1e3 W
+"""
+"""All of them in terms of the SI units, for pint."""
+
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+_SEPARATOR = "(?: | ?[*\N{MIDDLE DOT}] ?)"
+
+
+def pattern(dimension: Dimension) -> str:
+    """Regular expression of exactly the texts that `parse` reads, in ECMA 262 syntax."""
+    units = sorted(map(_unit_pattern, KINDS[dimension].units), key=len, reverse=True)
+    return f"^({NUMBER}) +({'|'.join(units)})$"
+
+
+def _unit_pattern(unit: str) -> str:
+    return unit.replace(" ", _SEPARATOR).replace("^2", "(?:(?:\\^|\\*\\*)2|\N{SUPERSCRIPT TWO})")
+
+
+def plain_unit(unit: str) -> str:
+    """Return the unit as the lists have it."""
+    unit = unit.replace("**", "^").replace("\N{SUPERSCRIPT TWO}", "^2")
+    return re.sub(" ?[*\N{MIDDLE DOT}] ?", " ", unit)
