@@ -5,7 +5,9 @@ Exit status: 0 done, 2 something the user can mend (one sentence says what), 130
 
 from __future__ import annotations
 
+import io
 import os
+import re
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -21,12 +23,14 @@ if TYPE_CHECKING:
 
 FILE = Parameter(name="FILE", negative="")
 OPTION = Parameter(negative="")
+SIGNED = Parameter(negative="", allow_leading_hyphen=True)
 
 app = App(
     name="equipoise",
     help="How a planar linkage moves, what that does to its frame, drive and joints.",
     version=equipoise.__version__,
     default_parameter=OPTION,
+    suppress_keyboard_interrupt=False,
 )
 
 
@@ -42,7 +46,7 @@ def examples_() -> None:
 
 
 @app.command
-def check(file: Annotated[str, FILE]) -> None:
+def check(file: Annotated[str, FILE], /) -> None:
     """Check a model file and tell how the linkage is built up.
 
     Parameters
@@ -61,11 +65,12 @@ def check(file: Annotated[str, FILE]) -> None:
 @app.command
 def analyze(
     file: Annotated[str, FILE],
+    /,
     *,
-    angles: str = "360",
-    speed: str | None = None,
-    acceleration: str | None = None,
-    about: str | None = None,
+    angles: Annotated[str, SIGNED] = "360",
+    speed: Annotated[str | None, SIGNED] = None,
+    acceleration: Annotated[str | None, SIGNED] = None,
+    about: Annotated[str | None, SIGNED] = None,
     json: bool = False,
     split: bool = False,
     csv: str | None = None,
@@ -123,11 +128,11 @@ def schema() -> None:
 
     from equipoise.io.models import json_schema
 
-    print(json.dumps(json_schema(), indent=2, ensure_ascii=False))
+    print(json.dumps(json_schema(), indent=2))
 
 
 @app.command
-def new(file: Annotated[str, FILE] = "machine.toml") -> None:
+def new(file: Annotated[str, FILE] = "machine.toml", /) -> None:
     """Write a commented model file to start from.
 
     Parameters
@@ -158,10 +163,8 @@ def _naming(file: str) -> Iterator[None]:
 def _angles(text: str) -> int | list[float]:
     from equipoise.io.units import parse
 
-    try:
+    if re.fullmatch("[+-]?[0-9]{1,20}", text):
         return int(text)
-    except ValueError:
-        pass
     try:
         return [parse(part.strip(), "angle") for part in text.split(",")]
     except UsageError as error:
@@ -197,7 +200,8 @@ def run(arguments: Sequence[str] | None = None) -> int:
             print_error=False,
             result_action="return_value",
         )
-        sys.stdout.flush()
+        if sys.stdout is not None:  # None where the shell has closed it
+            sys.stdout.flush()
     except (EquipoiseError, CycloptsError) as error:
         print(f"equipoise: {_one_line(str(error))}", file=sys.stderr)
         return 2
@@ -205,14 +209,30 @@ def run(arguments: Sequence[str] | None = None) -> int:
         print("equipoise: interrupted", file=sys.stderr)
         return 130
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
+    except OSError as error:  # everything else that can fail says so itself
+        _drop_output()
+        print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
+        return 2
     return 0
 
 
+def _drop_output() -> None:
+    """Leave nothing that the interpreter would try to write at its end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def _one_line(text: str) -> str:
-    return " ".join(text.split())
+    from equipoise.io.files import printable
+
+    text = " ".join(text.splitlines())
+    text = text if len(text) <= 2000 else f"{text[:1000]} ... {text[-900:]}"
+    return "".join(map(printable, text))
 
 
 def main() -> None:
     """Entry point of the command `equipoise`."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):  # a title may have letters the terminal lacks
+            stream.reconfigure(errors="backslashreplace")
     sys.exit(run())

@@ -23,7 +23,7 @@ from equipoise.mechanism.steps import RunningAngle, Step, run
 
 Array = np.ndarray[Any, Any]
 
-POINTS_PER_TURN = 720
+POINTS_PER_TURN, FEWER_POINTS, MANY_TURNS = 720, 144, 100
 MOST_TURNS = 1000
 ROCKING_MARGIN = 0.1
 MOST_LOOP_TURNS = 6
@@ -62,8 +62,9 @@ class Cycle:
         table = self.tables[name]
         period = 2 * pi * self.turns
         cycles = np.floor(theta / period)
-        place = (theta - cycles * period) * (POINTS_PER_TURN / (2 * pi))
-        left = np.minimum(place.astype(int), POINTS_PER_TURN * self.turns - 1)
+        intervals = table.shape[-1] - 1
+        place = (theta - cycles * period) * (intervals / period)
+        left = np.minimum(place.astype(int), intervals - 1)
         share = place - left
         value = table[..., left] * (1 - share) + table[..., left + 1] * share
         rise = np.asarray(table[..., -1] - table[..., 0])
@@ -115,7 +116,8 @@ class _Grid:
 
     def __init__(self, machine: Machine, turns: int) -> None:
         self.machine, self.turns = machine, turns
-        self.theta = np.linspace(0.0, 2 * pi * turns, POINTS_PER_TURN * turns + 1)
+        points = POINTS_PER_TURN if turns <= MANY_TURNS else FEWER_POINTS
+        self.theta = np.linspace(0.0, 2 * pi * turns, points * turns + 1)
         self.state = initial_state(machine, self.theta)
         self.done: list[Group] = []
         drive = machine.drive.link

@@ -1,13 +1,10 @@
-"""Dyads, one builder for each sequence of joints, and geared links.
+"""Dyads, one builder for each sequence of joints.
 
 A dyad is two links with three joints, R (pin) or P (sliding); the outer joints join it to known
 bodies.  Each builder turns links and joints into kernel calls.
 """
 
 from __future__ import annotations
-
-from dataclasses import dataclass
-from math import tan
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
@@ -16,13 +13,12 @@ from equipoise.mechanism.builder import (
     Group,
     Guide,
     Outer,
-    Reaction,
     demand_names,
     guide_reaction,
     pin_reaction,
 )
-from equipoise.mechanism.model import Gear, Slider
-from equipoise.mechanism.steps import Call, Rotation, p, run, u
+from equipoise.mechanism.model import Slider
+from equipoise.mechanism.steps import Call, p, u
 
 AHEAD = ("forward", "backward")
 
@@ -227,72 +223,6 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         builder.hand_over(sliding.body, guide.point, rail.force, rail.couple),
     )
     return Group((link, other), motion, forces, (ground, rail, inner), number, slider.point)
-
-
-@dataclass(frozen=True)
-class Mesh:
-    """Where and how a pair of gears touches, in the carrier's axes.
-
-    lever : from the driven gear's pin to the pitch point.
-    radial : part of the tooth force along the lever, per unit of tangential force.
-    """
-
-    driver_pin: str
-    driven_pin: str
-    lever: complex
-    radial: float
-
-    @classmethod
-    def of(cls, builder: Builder, gear: Gear, driver_pin: str, driven_pin: str) -> Mesh:
-        """The pitch point divides the line of centres so that both gears move alike there."""
-        ratio = gear.speed_ratio
-        centres = builder.arm(gear.carrier, driven_pin, driver_pin)
-        if centres == 0:
-            raise ModelError(
-                f"gears.{gear.name}",
-                f"both gears turn about {driven_pin}; set their centres apart",
-            )
-        ring_driven = 0 < ratio < 1
-        radial = tan(gear.pressure_angle) * (1 if ring_driven else -1)
-        return cls(driver_pin, driven_pin, centres / (1 - ratio), radial)
-
-
-def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
-    """A link that is pinned to a known carrier and geared to a known driver."""
-    link, carrier, pin = gear.driven, gear.carrier, mesh.driven_pin
-    before = (*builder.running_angle(gear.driver), *builder.running_angle(carrier))
-    now = run(before, builder.now)
-    ratio = gear.speed_ratio
-    offset = gear.start - (
-        now[f"phi({carrier})"] * (1 - ratio) + ratio * now[f"phi({gear.driver})"]
-    )
-    angles = tuple(
-        (f"phi({body})", f"w({body})", f"a({body})") for body in (gear.driver, carrier, link)
-    )
-    motion = (
-        *before,
-        *builder.reach(carrier, pin),
-        Call(kernels.gear, (*angles[0], *angles[1]), (ratio, float(offset[0])), angles[2]),
-        Rotation(link),
-    )
-    builder.add({link: pin}, [pin])
-    builder.running.add(link)
-    pitch, tooth, sense = f"pitch({gear.name})", f"R({gear.name}/{link})", f"flank({gear.name})"
-    ground = pin_reaction(pin, link, carrier)
-    forces = (
-        Call(kernels.point, (*p(pin), *u(carrier)), (mesh.lever,), p(pitch)),
-        Call(kernels.flank, (f"M({link})",), (), (sense,)),
-        Call(
-            kernels.gear_forces,
-            (*demand_names(link), f"u({carrier})", sense),
-            (mesh.lever, mesh.radial),
-            (ground.force, tooth, f"T({gear.name})"),
-        ),
-        builder.hand_over(carrier, pin, ground.force),
-        builder.hand_over(gear.driver, pitch, tooth),
-    )
-    reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
-    return Group((link,), motion, forces, (ground, reaction))
 
 
 def _guide(outer: Outer) -> Guide:

@@ -15,7 +15,7 @@ from itertools import combinations
 import numpy as np
 
 from equipoise.errors import MobilityError, ModelError
-from equipoise.mechanism import dyads
+from equipoise.mechanism import dyads, gears
 from equipoise.mechanism.builder import (
     Builder,
     Group,
@@ -26,7 +26,7 @@ from equipoise.mechanism.builder import (
     pin_reaction,
 )
 from equipoise.mechanism.cycle import Cycle, close, needed_references
-from equipoise.mechanism.joints import Structure, drive_pivot, gear_pins, structure, subsets
+from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
 from equipoise.mechanism.loopgroup import loop_group
 from equipoise.mechanism.model import FRAME, Machine, Slider
 from equipoise.mechanism.steps import State, Step, run
@@ -176,8 +176,7 @@ def _geared(builder: Builder, joints: Structure, link: str) -> Group | None:
     for gear in joints.gears:
         if gear.driven != link or not {gear.driver, gear.carrier} <= builder.rank.keys():
             continue
-        pins = gear_pins(joints, gear)
-        return dyads.geared(builder, gear, dyads.Mesh.of(builder, gear, *pins))
+        return gears.geared(builder, gear, gears.Mesh.of(builder, joints, gear))
     return None
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, degrees, hypot, pi, tan
+from math import ceil, degrees, hypot, pi
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.builder import Builder, Group, Reaction, initial_state
-from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.gears import Mesh
+from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.loopforces import LoopForces
 from equipoise.mechanism.loops import End, GearLoop, Loop, PinLoop, Poses, SlideLoop, StartAngle
 from equipoise.mechanism.model import Gear, Position, Slider
@@ -117,21 +118,16 @@ class _Maker:
         return SlideLoop(slider.name, guide, link, -slider.angle, -slider.direction)
 
     def gear(self, gear: Gear) -> GearLoop:
-        driver_pin, driven_pin = gear_pins(self.joints, gear)
-        ratio, on, by = gear.speed_ratio, gear.driven, gear.driver
-        if on not in self.links:
+        if gear.driven not in self.links:
             raise ModelError(
                 f"gears.{gear.name}",
-                f"{on!r} is moved already by other joints; name the gear that is moved already "
-                "first in between",
+                f"{gear.driven!r} is moved already by other joints; name the gear that is moved "
+                "already first in between",
             )
-        centres = self.builder.arm(gear.carrier, driven_pin, driver_pin)
-        if centres == 0:
-            raise ModelError(f"gears.{gear.name}", "both gears turn about the same point")
-        radial = tan(gear.pressure_angle) * (1 if 0 < ratio < 1 else -1)
-        ends = self.end(on, driven_pin), self.end(by, driver_pin)
-        lever = centres / (1 - ratio)
-        return GearLoop(gear.name, *ends, gear.carrier, ratio, 0.0, lever, radial)
+        mesh = Mesh.of(self.builder, self.joints, gear)
+        on, by = self.end(gear.driven, mesh.driven_pin), self.end(gear.driver, mesh.driver_pin)
+        ratio = gear.speed_ratio
+        return GearLoop(gear.name, on, by, gear.carrier, ratio, 0.0, mesh.lever, mesh.radial)
 
     def reaction(self, loop: Loop) -> Reaction:
         on, by = loop.on.body, loop.by.body

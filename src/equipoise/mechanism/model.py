@@ -20,6 +20,9 @@ Vector = tuple[float, float]
 
 FRAME = "frame"
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
+HUGE, TINY = 10**30, 1e-30
+"""Limits of what is taken for a quantity in SI units."""
+
 SIDES = ("left", "right", "forward", "backward")
 
 
@@ -132,7 +135,7 @@ class LoadTable:
 
     crank_angle: tuple[float, ...]
     values: tuple[tuple[float, ...], ...]
-    file: str = ""
+    file: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
@@ -257,7 +260,7 @@ def _not_finite(machine: Machine) -> Iterator[ModelError]:
     for where, value in _numbers("", machine):
         if not isfinite(value):
             yield ModelError(where, f"got {value}; give a finite number")
-        elif abs(value) > 1e30 or 0 < abs(value) < 1e-30:
+        elif abs(value) > HUGE or 0 < abs(value) < TINY:
             yield ModelError(where, f"got {value:g} in SI units, which no machine can have")
 
 
@@ -265,7 +268,10 @@ def _numbers(where: str, value: Any) -> Iterator[tuple[str, float]]:
     if isinstance(value, bool | str) or value is None:
         return
     if isinstance(value, int | float):
-        yield where, float(value)
+        yield (
+            where,
+            float(max(-2 * HUGE, min(2 * HUGE, value))) if isinstance(value, int) else value,
+        )
     elif isinstance(value, Mapping):
         for key, item in value.items():
             yield from _numbers(f"{where}.{key}".lstrip("."), item)

@@ -1,0 +1,80 @@
+"""Gears: where a pair touches, and a link that is geared to known bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import tan
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.builder import Builder, Group, Reaction, demand_names, pin_reaction
+from equipoise.mechanism.joints import Structure, gear_pins
+from equipoise.mechanism.model import Gear
+from equipoise.mechanism.steps import Call, Rotation, p, run, u
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """Where and how a pair of gears touches, in the carrier's axes.
+
+    lever : from the driven gear's pin to the pitch point.
+    radial : part of the tooth force along the lever, per unit of tangential force.
+    """
+
+    driver_pin: str
+    driven_pin: str
+    lever: complex
+    radial: float
+
+    @classmethod
+    def of(cls, builder: Builder, joints: Structure, gear: Gear) -> Mesh:
+        """The pitch point divides the line of centres so that both gears move alike there."""
+        driver_pin, driven_pin = gear_pins(joints, gear)
+        ratio = gear.speed_ratio
+        centres = builder.arm(gear.carrier, driven_pin, driver_pin)
+        if centres == 0:
+            raise ModelError(
+                f"gears.{gear.name}",
+                f"both gears turn about {driven_pin}; set their centres apart",
+            )
+        ring_driven = 0 < ratio < 1
+        radial = tan(gear.pressure_angle) * (1 if ring_driven else -1)
+        return cls(driver_pin, driven_pin, centres / (1 - ratio), radial)
+
+
+def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
+    """A link that is pinned to a known carrier and geared to a known driver."""
+    link, carrier, pin = gear.driven, gear.carrier, mesh.driven_pin
+    before = (*builder.running_angle(gear.driver), *builder.running_angle(carrier))
+    now = run(before, builder.now)
+    ratio = gear.speed_ratio
+    offset = gear.start - (
+        now[f"phi({carrier})"] * (1 - ratio) + ratio * now[f"phi({gear.driver})"]
+    )
+    angles = tuple(
+        (f"phi({body})", f"w({body})", f"a({body})") for body in (gear.driver, carrier, link)
+    )
+    motion = (
+        *before,
+        *builder.reach(carrier, pin),
+        Call(kernels.gear, (*angles[0], *angles[1]), (ratio, float(offset[0])), angles[2]),
+        Rotation(link),
+    )
+    builder.add({link: pin}, [pin])
+    builder.running.add(link)
+    pitch, tooth, sense = f"pitch({gear.name})", f"R({gear.name}/{link})", f"flank({gear.name})"
+    ground = pin_reaction(pin, link, carrier)
+    forces = (
+        Call(kernels.point, (*p(pin), *u(carrier)), (mesh.lever,), p(pitch)),
+        Call(kernels.flank, (f"M({link})",), (), (sense,)),
+        Call(
+            kernels.gear_forces,
+            (*demand_names(link), f"u({carrier})", sense),
+            (mesh.lever, mesh.radial),
+            (ground.force, tooth, f"T({gear.name})"),
+        ),
+        builder.hand_over(carrier, pin, ground.force),
+        builder.hand_over(gear.driver, pitch, tooth),
+    )
+    reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
+    return Group((link,), motion, forces, (ground, reaction))
