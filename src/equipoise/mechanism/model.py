@@ -20,7 +20,7 @@ Vector = tuple[float, float]
 
 FRAME = "frame"
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
-HUGE, TINY = 10**30, 1e-30
+HUGE, TINY = 1e30, 1e-30
 """Limits of what is taken for a quantity in SI units."""
 
 SIDES = ("left", "right", "forward", "backward")
