@@ -92,7 +92,7 @@ def print_check(machine: Machine) -> None:
     console.print(f"the crank turns fully; the motion repeats after {turns}")
     for remark in remarks(linkage):
         console.print(f"[yellow]note:[/] {escape(remark)}")
-    console.print("the model is sound")
+    console.print("ready to be analysed")
 
 
 def _build_up(linkage: Linkage) -> Iterable[str]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from cmath import exp
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import combinations
+from math import hypot
 from typing import Any
 
 import numpy as np
@@ -92,7 +94,8 @@ class Builder:
     """Bodies and points known so far.
 
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
-    other points are reached and about which its moments are taken.  motion : steps so far, and
+    other points are reached and about which its moments are taken.  sides : joints whose
+    assembly side was asked for.  motion : steps so far, and
     now : the state they lead to at crank angle 0.
     """
 
@@ -102,6 +105,7 @@ class Builder:
     points: set[str] = field(default_factory=set)
     motion: list[Step] = field(default_factory=list)
     now: State = field(default_factory=dict)
+    sides: set[str] = field(default_factory=set)
     running: set[str] = field(default_factory=set)
 
     def add(self, anchors: dict[str, str], points: Iterable[str] = ()) -> None:
@@ -115,6 +119,16 @@ class Builder:
         """Vector from one point of a link to another, in the link's axes."""
         points = self.machine.points_of(link)
         return complex(*points[point]) - complex(*points[origin])
+
+    def size(self) -> float:
+        """Largest distance between two points of one body, m."""
+        bodies = [self.machine.frame, *(link.points for link in self.machine.links.values())]
+        spans = [
+            hypot(a[0] - b[0], a[1] - b[1])
+            for points in bodies
+            for a, b in combinations(points.values(), 2)
+        ]
+        return max(spans, default=0.0) or 1.0
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -138,6 +152,7 @@ class Builder:
 
     def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
         """+1 or -1 for the side on which the file assembles a dyad."""
+        self.sides.add(joint)
         side = self.machine.assembly.get(joint)
         if side not in words:
             given = "missing" if side is None else f"got {side!r}"

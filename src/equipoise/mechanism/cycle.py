@@ -200,7 +200,7 @@ class _Grid:
         smallest, at = self.smallest(group, number)
         names = " and ".join(repr(link) for link in group.links)
         if smallest < -CHANGE_POINT:
-            raise self.range_error(group, number, names)
+            raise self.range_error(group, number, at, names)
         if smallest < CHANGE_POINT:
             raise ChangePointError(
                 f"change point at crank angle {_in_degrees(at)}: {names} lie in line there, and "
@@ -244,43 +244,42 @@ class _Grid:
         assert group.number is not None
         return np.broadcast_to(state[group.number], theta.shape)
 
-    def range_error(self, group: Group, number: Array, names: str) -> RangeError:
-        """Tell between which crank angles a dyad can be closed."""
-        good = number[:-1] > 0
-        if not np.any(good):
+    def range_error(self, group: Group, number: Array, dip: float, names: str) -> RangeError:
+        """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
+        if not np.any(number > 0):
             return RangeError(
                 f"{names} cannot be joined at any crank angle; check their lengths and where "
                 "their pins are"
             )
+        period = 2 * pi * self.turns
+        theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
+        good = np.append(number[:-1] > 0, False)[where]
+        before = np.roll(theta, 1)
+        before[0] -= period
         rising = np.flatnonzero(good & ~np.roll(good, 1))
         falling = np.flatnonzero(~good & np.roll(good, 1))
-        starts = [self.crossing(group, k - 1) for k in rising.tolist()]
-        stops = [self.crossing(group, k - 1) for k in falling.tolist()]
+        starts = [self.crossing(group, before[k], theta[k]) for k in rising]
+        stops = [self.crossing(group, before[k], theta[k]) for k in falling]
         ranges = []
         for begin in starts:
             later = [stop for stop in stops if stop > begin]
-            ranges.append(
-                (begin, min(later)) if later else (begin - 2 * pi * self.turns, min(stops))
-            )
+            ranges.append((begin, min(later)) if later else (begin - period, min(stops)))
         told = " and ".join(f"from {_in_degrees(a)} to {_in_degrees(b)}" for a, b in ranges)
         return RangeError(
             f"the crank cannot turn fully: {names} reach each other only {told} of crank angle",
             tuple(ranges),
         )
 
-    def crossing(self, group: Group, left: int) -> float:
-        """Crank angle at which a dyad's number passes zero between two points of the grid."""
-        if left < 0:
-            left += len(self.theta) - 1
-        low, high = self.theta[left], self.theta[left + 1]
-        for _ in range(4):
+    def crossing(self, group: Group, low: float, high: float) -> float:
+        """Crank angle between two others at which a dyad's number passes zero."""
+        for _ in range(5):
             near = np.linspace(low, high, 41)
             sign = self.number(group, near) > 0
             k = int(np.argmax(sign != sign[0]))
             if k == 0:
                 break
-            low, high = near[k - 1], near[k]
-        return float(0.5 * (low + high))
+            low, high = float(near[k - 1]), float(near[k])
+        return 0.5 * (low + high)
 
 
 def _in_degrees(angle: float) -> str:

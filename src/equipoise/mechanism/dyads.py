@@ -21,6 +21,8 @@ from equipoise.mechanism.model import Slider
 from equipoise.mechanism.steps import Call, p, u
 
 AHEAD = ("forward", "backward")
+NEAR = 1e-3
+"""Distance, over the size of the machine, at which a block counts as near its guide's pivot."""
 
 
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
@@ -115,7 +117,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         Call(
             kernels.rpr,
             (*p(block.point), *p(other.point)),
-            (offset, inner_guide.turn, back, side),
+            (offset, inner_guide.turn, back, (NEAR * builder.size()) ** 2, side),
             (*u(link), *u(on), number),
         ),
     )

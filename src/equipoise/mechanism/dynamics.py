@@ -182,13 +182,12 @@ class Split:
         return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
 
     def _array(self, output: str) -> Array:
+        found = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
         for family in (self.joints, self.gears):
-            if output in family:
-                return family[output].value
-        names = [name for name, value in vars(self).items() if isinstance(value, np.ndarray)]
-        if output not in names:
-            raise UsageError(unknown(output, [*names, *self.joints, *self.gears], "output"))
-        return getattr(self, output)  # type: ignore[no-any-return]
+            found = {name: force.value for name, force in family.items()} | found
+        if output not in found:
+            raise UsageError(unknown(output, found, "output"))
+        return found[output]
 
 
 def forces(motion: Motion, about: str | Vector | complex | None = None) -> Forces:

@@ -112,18 +112,20 @@ def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):
     return to_p / arm, w_p, a_p, n * turn, w, a, p + to_p, c1, c2, number
 
 
-def rpr(p, p1, p2, q, q1, q2, offset, turn, back, side):
+def rpr(p, p1, p2, q, q1, q2, offset, turn, back, small, side):
     """A block pinned at p slides on a guide pinned at q.
 
     offset : distance of p from the line through q along the guide, positive to the left.
     turn : unit vector of the block's x axis, back : of the guide link's x axis, both in axes
-    along the line.  side : +1 where p lies ahead of q along the line, -1 behind.
+    along the line.  small : a length squared beside which p lies at q, where the guide's angle is
+    undecided.  side : +1 where p lies ahead of q along the line, -1 behind.
     Returns rotation of block, rotation of guide, the dyad's number.
     """
     d = p - q
     distance2 = d.real * d.real + d.imag * d.imag
-    number = 1 - offset * offset / distance2
-    reach = side * (positive(number) * distance2) ** 0.5
+    reach2 = distance2 - offset * offset
+    number = reach2 / (distance2 + small)
+    reach = side * positive(reach2) ** 0.5
     n = d / (reach + 1j * offset)
     inverse = n.conjugate()
     e = (p1 - q1) * inverse

@@ -128,17 +128,16 @@ def _assemble(machine: Machine) -> Linkage:
         with np.errstate(all="ignore"):
             run(group.motion, builder.now)
         unknown = [link for link in unknown if link not in group.links]
-    _check_assembly(machine, groups)
+    _check_assembly(machine, builder.sides)
     return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 
 
-def _check_assembly(machine: Machine, groups: list[Group]) -> None:
-    used = {group.joint for group in groups if group.number is not None}
+def _check_assembly(machine: Machine, used: set[str]) -> None:
     for joint in machine.assembly:
         if joint not in used:
             raise ModelError(
                 f"assembly.{joint}",
-                "no dyad has its inner joint there; "
+                "no dyad has its inner joint there that could be assembled on two sides; "
                 f"the dyads of this linkage meet at {', '.join(sorted(used)) or 'no point'}",
             )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import ceil, degrees, hypot, pi
+from math import ceil, degrees, pi
 
 import numpy as np
 
@@ -31,7 +31,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
         tuple((body, builder.anchors[body]) for body in builder.rank),
         loops,
         (),
-        maker.size(),
+        builder.size(),
     )
     run(before, builder.now)
     solved, loops = _solve_start(builder, before, unsolved, loops)
@@ -67,15 +67,6 @@ class _Maker:
             )
             for link in self.links
         }
-
-    def size(self) -> float:
-        lengths = [
-            hypot(a[0] - b[0], a[1] - b[1])
-            for link in self.links
-            for a in self.builder.machine.links[link].points.values()
-            for b in self.builder.machine.links[link].points.values()
-        ]
-        return max(lengths) or 1.0
 
     def end(self, body: str, point: str) -> End:
         anchor = self.anchors.get(body) or self.builder.anchors[body]

@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from math import degrees, pi
+from math import pi
 from typing import Any, TypeVar
 
 import numpy as np
 
-from equipoise.errors import RangeError, UsageError
+from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.cycle import CHANGE_POINT
 from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Machine, unknown
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.steps import State, p, run, u
+from equipoise.mechanism.model import HUGE, Machine, unknown
+from equipoise.mechanism.steps import State, p, u
+from equipoise.mechanism.swinging import solve_swinging
 
 Array = np.ndarray[Any, Any]
 Value = TypeVar("Value")
@@ -151,8 +150,10 @@ class Motion:
         """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
         return replace(
             self,
-            speed=self.speed if speed is None else speed,
-            acceleration=self.acceleration if acceleration is None else acceleration,
+            speed=self.speed if speed is None else _rate(speed, "speed"),
+            acceleration=self.acceleration
+            if acceleration is None
+            else _rate(acceleration, "acceleration"),
         )
 
     @cached_property
@@ -186,7 +187,7 @@ class Motion:
         """Count an angle on through the turns."""
         try:
             cycle = self.linkage.cycle
-        except RangeError:
+        except (RangeError, ChangePointError):
             return np.unwrap(angle)
         if link in cycle.rocking:
             return angle
@@ -250,8 +251,8 @@ def move(
     return Motion(
         linkage,
         theta,
-        drive.speed if speed is None else float(speed),
-        drive.acceleration if acceleration is None else float(acceleration),
+        _rate(drive.speed if speed is None else speed, "speed"),
+        _rate(drive.acceleration if acceleration is None else acceleration, "acceleration"),
         whole_cycle,
         _solve(linkage, theta, whole_cycle),
     )
@@ -283,17 +284,13 @@ def _solve(linkage: Linkage, theta: Array, whole_cycle: bool) -> State:
     """Solve at the crank angles; those given need not belong to a linkage that turns fully."""
     try:
         return linkage.solve(theta)
-    except RangeError as error:
-        motion = linkage.motion
-        if whole_cycle or any(isinstance(step, LoopGroup) for step in motion):
+    except (RangeError, ChangePointError) as error:
+        if whole_cycle:
             raise
-        with np.errstate(all="ignore"):
-            state = run(motion, linkage.start(theta))
-        for group in linkage.groups:
-            if group.number is None:
-                continue
-            bad = ~(np.broadcast_to(state[group.number], theta.shape) > CHANGE_POINT)
-            if np.any(bad):
-                angle = degrees(theta[int(np.argmax(bad))])
-                raise RangeError(f"{error} (asked for {angle:.4g} deg)", error.ranges) from None
-        return state
+        return solve_swinging(linkage, theta, error)
+
+
+def _rate(value: float, name: str) -> float:
+    if not abs(value) < HUGE:
+        raise UsageError(f"got {value!r} for {name}; give a finite number in SI units")
+    return float(value)

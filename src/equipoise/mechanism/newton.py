@@ -18,6 +18,8 @@ from equipoise.mechanism.loops import Array, Equation, Pose, Poses
 from equipoise.mechanism.steps import State, p, u
 
 ITERATIONS = 25
+SETTLED = 1e-11
+"""Last step of Newton's method, in sizes of the machine and radians, that counts as arrived."""
 STRIDE = 12
 """Crank angles between those at which a branch is followed first."""
 JUMP = 0.02
@@ -107,10 +109,9 @@ class LoopGroup:
                 q = q - step
                 if not np.all(np.isfinite(q)):
                     break
-                if np.max(np.abs(step) / self.scale()[:, None]) < 1e-14:
+                if np.max(np.abs(step) / self.scale()[:, None]) < 1e-14:  # rounding error
                     break
-            gap = np.abs(self.gaps(self.poses(known, q), 0))
-        bad = ~(np.max(gap, axis=0) < 1e-10 * max(self.size, 1.0))
+            bad = ~(np.max(np.abs(step) / self.scale()[:, None], axis=0) < SETTLED)
         if np.any(bad):
             raise MotionError(self.failure(theta[int(np.argmax(bad))]))
         return q

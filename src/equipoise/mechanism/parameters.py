@@ -1,9 +1,9 @@
 """Every output is linear in the inertial parameters: the regressor, and the base parameters.
 
 The parameters of a link are its mass, its two first moments and its moment of inertia, the last
-three about the origin of the link's axes.  An output is ``values @ regressor + loads``.  Several
-parameters always act together; the base parameters are the combinations that the outputs can tell
-apart.
+three about the origin of the link's axes.  Without loads an output is ``values @ regressor``.
+Several parameters always act together; the base parameters are the combinations that the outputs
+can tell apart.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import UsageError
+from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
+from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import JointForce, MeshForce, reactions
@@ -36,7 +36,8 @@ class Regressor:
     parameters : P pairs of link and quantity; values : (P,) those of the machine.
     shaking_force, frame_force : (P, N) complex.  shaking_moment, frame_moment, drive_torque :
         (P, N).  joints, gears : name -> force whose arrays are (P, N).
-    loads : output of the loads alone, which `values @ array` leaves out.
+
+    What loads add is `Forces.split` of cause "load".
     """
 
     parameters: tuple[tuple[str, str], ...]
@@ -87,9 +88,9 @@ def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
 def parameter_values(machine: Machine) -> Array:
     """Inertial parameters of a machine (P,), in the order of `parameter_names`."""
     values: list[float] = []
-    for name, link in machine.links.items():
+    for link in machine.links.values():
         if link.mass is None or link.center_of_mass is None or link.inertia is None:
-            raise UsageError(f"the mass of {name!r} is not known")
+            raise MassError(massless(machine))
         x, y = link.center_of_mass
         values += [link.mass, link.mass * x, link.mass * y]
         values.append(link.inertia + link.mass * (x * x + y * y))
@@ -176,8 +177,8 @@ def base_parameters(
     motion = move(_with_any_masses(machine), angles)
     matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
     scale = np.tile([1.0, size, size, size**2], len(machine.links))
-    kept, grouping = _independent(matrix / scale)
-    combinations = grouping * scale / scale[kept][:, None]
+    kept, grouping = _independent(matrix * scale)
+    combinations = grouping * scale[kept][:, None] / scale
     complete = all(link.has_mass for link in machine.links.values())
     values = combinations @ parameter_values(machine) if complete else None
     return BaseParameters(names, combinations, values)

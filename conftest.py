@@ -1,0 +1,78 @@
+"""Runs the snippets of README.md and docs/*.md: one test a page, in a directory of its own.
+
+Python blocks are run as they stand, with ``>>>`` as doctests; in console blocks the output of every
+line that begins with ``$ equipoise`` is compared with what follows.  The snippets of a page
+share their names and files, as a reader types them one after the other.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import chdir
+from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import pytest
+from sybil import Example, Sybil
+from sybil.example import SybilFailure
+from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
+
+ROOT = Path(__file__).parent
+FLAGS = ELLIPSIS | NORMALIZE_WHITESPACE
+
+
+def run_commands(example: Example) -> str | None:
+    """Run the commands of a console block; tell the first whose output is not what is shown."""
+    for part in f"\n{example.parsed}".split("\n$ equipoise ")[1:]:
+        command, _, shown = part.partition("\n")
+        words = [sys.executable, "-m", "equipoise", *command.split()]
+        utf8 = {**os.environ, "PYTHONUTF8": "1"}
+        done = subprocess.run(words, capture_output=True, encoding="utf-8", env=utf8, check=False)
+        if not OutputChecker().check_output(shown, done.stdout, FLAGS):
+            return f"equipoise {command} printed\n{done.stdout}{done.stderr}"
+    return None
+
+
+SNIPPETS = Sybil(
+    parsers=[
+        PythonCodeBlockParser(doctest_optionflags=FLAGS),
+        CodeBlockParser(language="console", evaluator=run_commands),
+    ]
+)
+
+
+class Snippets(pytest.Item):
+    """All snippets of one page, in order: split up, they could not run side by side."""
+
+    def runtest(self) -> None:
+        with TemporaryDirectory() as folder, chdir(folder):
+            for example in SNIPPETS.parse(self.path):
+                example.evaluate()
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException]) -> str:  # type: ignore[override]
+        if isinstance(excinfo.value, SybilFailure):
+            return str(excinfo.value)
+        return str(super().repr_failure(excinfo))
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        return self.path, 0, f"snippets of {self.path.name}"
+
+
+class Page(pytest.File):
+    """A Markdown page."""
+
+    def collect(self) -> Iterator[Snippets]:
+        yield Snippets.from_parent(self, name="snippets")
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> Page | None:
+    """Collect README.md and the pages of docs."""
+    if file_path == ROOT / "README.md" or (
+        file_path.suffix == ".md" and file_path.parent == ROOT / "docs"
+    ):
+        return Page.from_parent(parent, path=file_path)
+    return None

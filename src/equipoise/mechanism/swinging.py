@@ -1,0 +1,72 @@
+"""Linkages whose crank cannot turn fully: solved at given crank angles, if those can be reached.
+
+Without a whole cycle nothing tells the running angles of links that drive gears, except the way
+from crank angle 0, where the start angles of gears hold.
+"""
+
+from __future__ import annotations
+
+from math import ceil, degrees, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ChangePointError, MotionError, RangeError
+from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
+from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.newton import LoopGroup
+from equipoise.mechanism.steps import State, run
+
+Array = np.ndarray[Any, Any]
+
+
+def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePointError) -> State:
+    """State at crank angles (N,) of a linkage whose cycle ended with `error`.
+
+    Raises
+    ------
+    MotionError : one of the crank angles is out of reach.
+    """
+    if any(isinstance(step, LoopGroup) for step in linkage.motion):
+        raise error
+    start = linkage.start(theta)
+    if linkage.needed_references:
+        for side in (1, -1):
+            _add_references(linkage, start, theta * side >= 0, side, error)
+    with np.errstate(all="ignore"):
+        state = run(linkage.motion, start)
+    _check(linkage, state, theta, error, "asked for")
+    return state
+
+
+def _add_references(
+    linkage: Linkage,
+    state: State,
+    chosen: Array,
+    side: int,
+    error: RangeError | ChangePointError,
+) -> None:
+    """Follow the running angles from crank angle 0 to the farthest on one side."""
+    theta = state["theta"]
+    far = float(np.max(np.abs(theta[chosen]), initial=0.0))
+    way = np.linspace(0.0, far, 2 + ceil(far / (2 * pi) * POINTS_PER_TURN))
+    with np.errstate(all="ignore"):
+        followed = run(linkage.motion, linkage.start(side * way))
+    _check(linkage, followed, side * way, error, "on the way from 0 deg, where gears start, at")
+    for name in linkage.needed_references:
+        reference = state.setdefault(f"reference({name})", np.zeros_like(theta))
+        reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
+
+
+def _check(linkage: Linkage, state: State, theta: Array, error: MotionError, doing: str) -> None:
+    for group in linkage.groups:
+        if group.number is None:
+            continue
+        number = np.broadcast_to(state[group.number], theta.shape)
+        bad = ~(number > CHANGE_POINT)
+        if np.any(bad):
+            angle = degrees(theta[int(np.argmax(bad))])
+            told = f"{error} ({doing} {angle:.4g} deg)"
+            if isinstance(error, RangeError):
+                raise RangeError(told, error.ranges) from None
+            raise ChangePointError(told, angle) from None
