@@ -121,7 +121,7 @@ def test_files_that_are_none(tmp_path: Path) -> None:
         ("", "this is a directory; give a file"),
         ("binary", "line 2 is not text in UTF-8"),
         ("utf16", "line 1 is not text in UTF-8"),
-        ("large", "the file has 100 MB; at most 10 MB are read"),
+        ("large", "the file has 100 MB; at most 2 MB are read"),
         ("nu\0ll", "cannot be read"),
         ("x" * 5000, "cannot be read"),
     ]:

@@ -18,7 +18,8 @@ from unit.io.samples import EVERYTHING, FOUR_BAR
 
 size = st.floats(1e-25, 1e25)
 number = size | size.map(lambda x: -x) | st.just(0.0) | st.floats(1e-3, 1e3)
-names = st.text(min_size=1, max_size=8).filter(lambda name: name.strip() and name != "frame")
+printable = st.text(max_size=20).filter(str.isprintable)
+names = printable.filter(lambda name: bool(name.strip()) and name != "frame")
 
 
 def changed(value: Any, draw: Callable[[float], float]) -> Any:
@@ -66,7 +67,7 @@ def test_random_edits_survive(data: st.DataObject) -> None:
 
 @given(
     st.dictionaries(names, st.tuples(number, number), min_size=1, max_size=3),
-    st.text(max_size=20),
+    printable,
     names,
     number,
 )
@@ -130,9 +131,16 @@ def test_a_table_without_a_file_is_not_dumped() -> None:
         dumps(machine)
 
 
-@pytest.mark.parametrize("name", ["missing/model.toml", ".", "nu\0ll.toml"])
-def test_places_that_cannot_be_written(tmp_path: Path, name: str) -> None:
-    with pytest.raises(UsageError, match="cannot be written"):
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("missing/model.toml", "cannot be written"),
+        (".", "this is a directory"),
+        ("nu\0ll.toml", "cannot be written"),
+    ],
+)
+def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) -> None:
+    with pytest.raises(UsageError, match=words):
         save(loads(FOUR_BAR), tmp_path / name)
     assert not list(tmp_path.iterdir())
 

@@ -1,0 +1,147 @@
+"""Machines on which the laws are tried, and the words in which the laws are told.
+
+Bundled examples are run at crank angles over their whole cycle, random machines of every kind at
+some crank angles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import equipoise as eq
+from support.loads import force_and_torque
+from support.machines import KINDS, make
+
+Array = NDArray[Any]
+CAUSES = ("translation", "rotation", "weight", "load")
+SEEDS = (0, 1, 2)
+ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
+"""Crank angles off the round numbers at which loads may begin or end."""
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """Names of all subjects: examples, and kinds of random machines with a seed."""
+    return (*sorted(eq.examples()), *(f"{kind}:{seed}" for kind in KINDS for seed in SEEDS))
+
+
+@cache
+def machine_of(name: str) -> eq.Machine:
+    """Return the machine of a subject."""
+    kind, _, seed = name.partition(":")
+    return make(kind, int(seed)).machine if seed else eq.load(name)
+
+
+@cache
+def forces_of(name: str, speed: float | None = None, acceleration: float | None = None) -> Any:
+    """Return the forces of a subject, at its own or at another speed and acceleration."""
+    return forces(machine_of(name), speed=speed, acceleration=acceleration)
+
+
+def forces(machine: eq.Machine, angles: Any = ANGLES, **how: Any) -> eq.Forces:
+    """Return the forces of a machine."""
+    return eq.analyze(machine, angles, **how).forces
+
+
+def kinetic_power(found: eq.Forces) -> Array:
+    """Rate of change of kinetic energy, from velocities and accelerations, one row a link."""
+    rows = []
+    for name, link in found.motion.machine.links.items():
+        center, turning = found.motion.mass_centers[name], found.motion.links[name]
+        assert link.mass is not None
+        assert link.inertia is not None
+        rows.append(link.mass * along(center.velocity, center.acceleration_vector))
+        rows.append(link.inertia * turning.angular_velocity * turning.angular_acceleration)
+    return np.array(rows)
+
+
+def gravity_power(found: eq.Forces) -> Array:
+    """Power of gravity, one row a link."""
+    machine = found.motion.machine
+    gravity = complex(*machine.gravity)
+    return np.array([
+        (link.mass or 0.0) * along(found.motion.mass_centers[name].velocity, gravity)
+        for name, link in machine.links.items()
+    ])  # fmt: skip
+
+
+def load_power(found: eq.Forces) -> Array:
+    """Power of the loads, one row a load."""
+    motion, rows = found.motion, [np.zeros(len(found.motion.crank_angle))]
+    for load, force, torque in acting(found):
+        at = 0.0 if load.point is None else motion.points[load.point].velocity
+        rows.append(along(at, force) + torque * motion.links[load.link].angular_velocity)
+    return np.array(rows)
+
+
+def acting(found: eq.Forces) -> Iterator[tuple[eq.Load, Array, Array]]:
+    """Loads with their force (complex, N) and torque (N m), evaluated anew."""
+    for load in found.motion.machine.loads:
+        force, torque = force_and_torque(load, found.motion.crank_angle)
+        yield load, force[:, 0] + 1j * force[:, 1], torque
+
+
+def along(a: Any, b: Any) -> Any:
+    """Scalar product of planar vectors."""
+    return (np.conj(a) * b).real
+
+
+def outputs(found: eq.Forces) -> Iterator[tuple[str, Array]]:
+    """Every output of the forces by name; vectors are complex."""
+    for name in ("shaking_force", "frame_force"):
+        yield name, getattr(found, name).value
+    for name in ("shaking_moment", "frame_moment", "drive_torque"):
+        yield name, getattr(found, name)
+    for family in ("joints", "gears"):
+        yield from family_of(family, getattr(found, family))
+
+
+def family_of(family: str, found: Any) -> Iterator[tuple[str, Array]]:
+    """Every array of joints or gears by name."""
+    for name, joint in found.items():
+        for part in ("value", "normal", "moment", "tangential", "radial"):
+            if hasattr(joint, part):
+                yield f"{family}/{name}/{part}", getattr(joint, part)
+
+
+def sizes(found: eq.Forces) -> tuple[float, float]:
+    """Largest force (N) and moment (N m) that occur anywhere in a machine."""
+    force, moment = [0.0], [0.0]
+    for name, value in outputs(found):
+        (force if is_force(name) else moment).append(float(np.max(np.abs(value))))
+    return max(force), max(moment)
+
+
+def is_force(name: str) -> bool:
+    """Tell forces from moments by their name."""
+    return name.rpartition("/")[2] not in ("moment", "shaking_moment", "frame_moment",
+                                           "drive_torque")  # fmt: skip
+
+
+def same(got: Any, want: Any, tolerance: float, scale: float | None = None) -> None:
+    """Check that arrays agree, measured against the largest value or a given scale."""
+    got, want = np.asarray(got), np.asarray(want)
+    largest = float(np.max(np.abs(want))) if scale is None else scale
+    assert np.all(np.isfinite(got))
+    apart = float(np.max(np.abs(got - want)))
+    assert apart <= tolerance * largest, f"{apart:.3g} off, of {largest:.3g}"
+
+
+def same_outputs(got: eq.Forces, want: eq.Forces, tolerance: float) -> None:
+    """Check that two machines have the same outputs, measured against the largest of each sort."""
+    force, moment = sizes(want)
+    expected = dict(outputs(want))
+    assert dict(outputs(got)).keys() == expected.keys()
+    for name, value in outputs(got):
+        same(value, expected[name], tolerance, force if is_force(name) else moment)
+
+
+def without_loads(machine: eq.Machine) -> eq.Machine:
+    """Take all loads away."""
+    return replace(machine, loads=())

@@ -1,0 +1,306 @@
+"""Other ways to describe a machine: moved, turned, mirrored, in other units, in another order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+
+import equipoise as eq
+from equipoise.mechanism.model import FRAME, Vector
+
+Value = TypeVar("Value")
+Map = Callable[[complex], complex]
+
+
+def mapped(points: Mapping[str, Vector], change: Map) -> dict[str, Vector]:
+    return {name: vector(change, place) for name, place in points.items()}
+
+
+def vector(change: Map, place: Vector) -> Vector:
+    moved = change(complex(*place))
+    return moved.real, moved.imag
+
+
+def shifted(machine: eq.Machine, shift: complex) -> eq.Machine:
+    """Move the frame's points, and the rough position with them."""
+    position = machine.position
+    if position is not None:
+        position = replace(position, points=mapped(position.points, lambda z: z + shift))
+    return replace(machine, frame=mapped(machine.frame, lambda z: z + shift), position=position)
+
+
+def turned(machine: eq.Machine, angle: float) -> eq.Machine:
+    """Turn the frame and everything given in its axes; crank angles grow by the same angle."""
+    turn = complex(np.exp(1j * angle))
+    # the start angle of a gear holds at crank angle 0, which is another position now
+    start = eq.move(machine, np.array([-angle]))
+    return replace(
+        machine,
+        frame=mapped(machine.frame, lambda z: z * turn),
+        gravity=vector(lambda z: z * turn, machine.gravity),
+        sliders=tuple(
+            replace(s, direction=s.direction + angle) if s.on == FRAME else s
+            for s in machine.sliders
+        ),
+        gears=tuple(
+            replace(g, start=float(start.links[g.driven].angle[0]) + angle) for g in machine.gears
+        ),
+        loads=tuple(turned_load(load, angle) for load in machine.loads),
+        position=None if machine.position is None else turned_position(machine.position, angle),
+    )
+
+
+def turned_position(position: eq.Position, angle: float) -> eq.Position:
+    turn = complex(np.exp(1j * angle))
+    return eq.Position(
+        position.crank_angle + angle,
+        mapped(position.points, lambda z: z * turn),
+        {link: value + angle for link, value in position.angles.items()},
+    )
+
+
+def turned_load(load: eq.Load, angle: float) -> eq.Load:
+    turn = complex(np.exp(1j * angle))
+    force = None if load.force is None else vector(lambda z: z * turn, load.force)
+    return replace(
+        load,
+        force=force,
+        start=None if load.start is None else load.start + angle,
+        stop=None if load.stop is None else load.stop + angle,
+        table=None if load.table is None else table(load.table, lambda z: z * turn, angle),
+    )
+
+
+def table(given: eq.LoadTable, change: Map, later: float = 0.0) -> eq.LoadTable:
+    """Change a table of forces; one of torques is only put off."""
+    angles = tuple(a + later for a in given.crank_angle)
+    if len(given.values) == 1:
+        return replace(given, crank_angle=angles)
+    forces = [change(complex(x, y)) for x, y in zip(*given.values, strict=True)]
+    values = tuple(z.real for z in forces), tuple(z.imag for z in forces)
+    return replace(given, crank_angle=angles, values=values)
+
+
+def mirrored(machine: eq.Machine) -> eq.Machine:
+    """The image in the x axis; crank angles change their sign."""
+    flip = {"left": "right", "right": "left"}
+    position = machine.position
+    if position is not None:
+        position = eq.Position(
+            -position.crank_angle,
+            mapped(position.points, np.conj),
+            {link: -value for link, value in position.angles.items()},
+        )
+    drive = machine.drive
+    return replace(
+        machine,
+        drive=replace(drive, speed=-drive.speed, acceleration=-drive.acceleration),
+        frame=mapped(machine.frame, np.conj),
+        links={name: mirrored_link(link) for name, link in machine.links.items()},
+        assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
+        sliders=tuple(
+            replace(s, direction=-s.direction, angle=-s.angle) for s in machine.sliders
+        ),
+        gears=tuple(replace(g, start=-g.start) for g in machine.gears),
+        loads=tuple(mirrored_load(load) for load in machine.loads),
+        gravity=vector(np.conj, machine.gravity),
+        position=position,
+    )  # fmt: skip
+
+
+def mirrored_link(link: eq.Link) -> eq.Link:
+    center = link.center_of_mass
+    return replace(
+        link,
+        points=mapped(link.points, np.conj),
+        center_of_mass=None if center is None else vector(np.conj, center),
+    )
+
+
+def mirrored_load(load: eq.Load) -> eq.Load:
+    given = load.table
+    if given is not None:
+        angles = tuple(-a for a in given.crank_angle[::-1])
+        signs = (1, -1) if len(given.values) == 2 else (-1,)
+        columns = zip(signs, given.values, strict=True)
+        values = tuple(tuple(sign * v for v in column[::-1]) for sign, column in columns)
+        given = replace(given, crank_angle=angles, values=values)
+    return replace(
+        load,
+        force=None if load.force is None else vector(np.conj, load.force),
+        torque=None if load.torque is None else -load.torque,
+        start=None if load.stop is None else -load.stop,
+        stop=None if load.start is None else -load.start,
+        table=given,
+    )
+
+
+@dataclass(frozen=True)
+class Units:
+    """How many of the new units make one of the old, of length, mass and time."""
+
+    length: float
+    mass: float
+    time: float
+
+    @property
+    def force(self) -> float:
+        return self.mass * self.length / self.time**2
+
+    @property
+    def moment(self) -> float:
+        return self.force * self.length
+
+
+def in_units(machine: eq.Machine, units: Units) -> eq.Machine:
+    """The machine in other units."""
+    length, drive, position = units.length, machine.drive, machine.position
+
+    def longer(z: complex) -> complex:
+        return z * length
+
+    if position is not None:
+        position = replace(position, points=mapped(position.points, longer))
+    return replace(
+        machine,
+        drive=replace(drive, speed=drive.speed / units.time,
+                      acceleration=drive.acceleration / units.time**2),
+        frame=mapped(machine.frame, longer),
+        links={name: link_in_units(link, units) for name, link in machine.links.items()},
+        loads=tuple(load_in_units(load, units) for load in machine.loads),
+        gravity=vector(lambda z: z * length / units.time**2, machine.gravity),
+        position=position,
+    )  # fmt: skip
+
+
+def link_in_units(link: eq.Link, units: Units) -> eq.Link:
+    assert link.mass is not None
+    assert link.center_of_mass is not None
+    assert link.inertia is not None
+    return eq.Link(
+        mapped(link.points, lambda z: z * units.length),
+        link.mass * units.mass,
+        vector(lambda z: z * units.length, link.center_of_mass),
+        link.inertia * units.mass * units.length**2,
+    )
+
+
+def load_in_units(load: eq.Load, units: Units) -> eq.Load:
+    given = load.table
+    if given is not None:
+        factor = units.force if len(given.values) == 2 else units.moment
+        values = tuple(tuple(v * factor for v in column) for column in given.values)
+        given = replace(given, values=values)
+    return replace(
+        load,
+        force=None if load.force is None else vector(lambda z: z * units.force, load.force),
+        torque=None if load.torque is None else load.torque * units.moment,
+        table=given,
+    )
+
+
+def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> eq.Machine:
+    """Give one link other axes: turned by an angle, and with another origin."""
+
+    def change(z: complex) -> complex:
+        return complex((z - shift) * np.exp(-1j * angle))
+
+    body = machine.links[link]
+    center = body.center_of_mass
+    new = replace(
+        body,
+        points=mapped(body.points, change),
+        center_of_mass=None if center is None else vector(change, center),
+    )
+    position = machine.position
+    if position is not None and link in position.angles:
+        angles = {**position.angles, link: position.angles[link] + angle}
+        position = replace(position, angles=angles)
+    return replace(
+        machine,
+        links={**machine.links, link: new},
+        sliders=tuple(
+            replace(
+                s,
+                direction=s.direction - angle * (s.on == link),
+                angle=s.angle + angle * (s.link == link),
+            )
+            for s in machine.sliders
+        ),
+        gears=tuple(replace(g, start=g.start + angle * (g.driven == link)) for g in machine.gears),
+        position=position,
+    )
+
+
+def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
+    """Give every link and point another name."""
+
+    def body(name: str) -> str:
+        return name if name == FRAME else names(name)
+
+    def keys(given: Mapping[str, Value]) -> dict[str, Value]:
+        return {names(key): value for key, value in given.items()}
+
+    position = machine.position
+    if position is not None:
+        position = replace(position, points=keys(position.points), angles=keys(position.angles))
+    return replace(
+        machine,
+        drive=replace(machine.drive, link=body(machine.drive.link)),
+        frame=keys(machine.frame),
+        links={
+            names(name): replace(link, points=keys(link.points))
+            for name, link in machine.links.items()
+        },
+        assembly=keys(machine.assembly),
+        sliders=tuple(
+            replace(s, link=body(s.link), point=names(s.point), on=body(s.on),
+                    through=names(s.through))
+            for s in machine.sliders
+        ),
+        gears=tuple(
+            replace(g, driver=body(g.driver), driven=body(g.driven), carrier=body(g.carrier))
+            for g in machine.gears
+        ),
+        loads=tuple(
+            replace(load, link=body(load.link),
+                    point=None if load.point is None else names(load.point))
+            for load in machine.loads
+        ),
+        position=position,
+    )  # fmt: skip
+
+
+def reordered(machine: eq.Machine) -> eq.Machine:
+    """Write links, points, sliders, gears and loads in the opposite order.
+
+    "left" and "right" are told from the dyad's earlier link to the later one, so they change too.
+    """
+    flip = {"left": "right", "right": "left"}
+    return replace(
+        machine,
+        frame=dict(reversed(machine.frame.items())),
+        links={
+            name: replace(link, points=dict(reversed(link.points.items())))
+            for name, link in reversed(machine.links.items())
+        },
+        assembly={joint: flip.get(side, side) for joint, side in machine.assembly.items()},
+        sliders=machine.sliders[::-1],
+        gears=machine.gears[::-1],
+        loads=machine.loads[::-1],
+    )
+
+
+def swapped_sliders(machine: eq.Machine) -> eq.Machine:
+    """Describe each slider between two links from its other link."""
+    return replace(
+        machine,
+        sliders=tuple(
+            s if s.on == FRAME else
+            eq.Slider(s.on, s.through, s.link, s.point, -s.angle, -s.direction)
+            for s in machine.sliders
+        ),
+    )  # fmt: skip

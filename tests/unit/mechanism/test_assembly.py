@@ -1,0 +1,270 @@
+"""From a machine to its steps: order, dyads of every kind, sides, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi, radians
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.steps import Call
+from support.machines import KINDS, make
+from unit.mechanism.build import (
+    ORIGIN,
+    body,
+    crank_rocker,
+    four_bar,
+    heavy,
+    machine,
+    slider_crank,
+    two_gears,
+)
+
+ANGLES = np.array([0.2, 1.3, 2.9, 4.4])
+
+
+def kernels_of(given: eq.Machine) -> list[str]:
+    """Dyads, in order of solution."""
+    dyads = {kernels.rrr, kernels.rrp, kernels.rpr, kernels.prp, kernels.rpp, kernels.gear}
+    steps = [step for step in eq.assemble(given).motion if isinstance(step, Call)]
+    return [step.kernel.__name__ for step in steps if step.kernel in dyads]
+
+
+@pytest.mark.parametrize(
+    ("name", "dyads"),
+    [
+        ("yamashita-1", ["rrr"]),
+        ("slider-crank-engine", ["rrp"]),
+        ("quick-return", ["rpr", "rrp"]),
+        ("scotch-yoke", ["rpp"]),
+        ("watt-six-bar", ["rrr", "rrr"]),
+        ("geared-counterweight", ["rrr", "gear"]),
+        ("planetary-planting-arm", ["gear", "gear"]),
+        ("class-three", []),
+    ],
+)
+def test_kinds_of_dyads(name: str, dyads: list[str]) -> None:
+    assert kernels_of(eq.load(name)) == dyads
+
+
+@pytest.mark.parametrize(
+    ("kind", "dyads"),
+    [
+        ("crossed_guides", ["rrr", "prp"]),
+        ("slider_on_rocker", ["rrr", "rrp"]),
+        ("guide_on_dyad", ["rrr", "rrp"]),
+        ("v_twin", ["rrp", "rrp"]),
+        ("geared_five_bar", ["gear", "rrr"]),
+    ],
+)
+def test_kinds_of_dyads_on_moving_bodies(kind: str, dyads: list[str]) -> None:
+    assert kernels_of(make(kind, 0).machine) == dyads
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_link_is_solved_once(kind: str) -> None:
+    linkage = eq.assemble(make(kind, 0).machine)
+    solved = [link for group in linkage.groups for link in group.links]
+    assert sorted([*solved, linkage.machine.drive.link]) == sorted(linkage.machine.links)
+    assert linkage.anchors.keys() == {FRAME, *linkage.machine.links}
+
+
+def test_order_does_not_depend_on_the_file() -> None:
+    given = eq.load("watt-six-bar")
+    names = ["output", "link", "rocker", "coupler", "crank"]
+    moved = replace(given, links={name: given.links[name] for name in names},
+                    assembly={"C": "right", "F": "left"})  # fmt: skip
+    assert [group.links for group in eq.assemble(moved).groups] == [
+        ("rocker", "coupler"), ("output", "link")
+    ]  # fmt: skip
+
+
+# -- sides -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("side", "sign"), [("left", 1), ("right", -1)])
+def test_left_and_right(side: str, sign: int) -> None:
+    points = eq.move(four_bar(1.0, 0.35, 0.9, 0.8, side), 36).points
+    b, c, d = (points[name].place for name in "BCD")
+    assert np.all(sign * kernels.cross(d - b, c - b) > 0)
+
+
+def test_left_is_told_in_file_order() -> None:
+    """With the rocker before the coupler the line runs from D to B."""
+    given = four_bar(1.0, 0.35, 0.9, 0.8, "left")
+    names = ["crank", "rocker", "coupler"]
+    turned = replace(given, links={name: given.links[name] for name in names})
+    right = four_bar(1.0, 0.35, 0.9, 0.8, "right")
+    np.testing.assert_allclose(
+        eq.move(turned, 12).points["C"].place, eq.move(right, 12).points["C"].place, atol=1e-14
+    )
+
+
+@pytest.mark.parametrize(("side", "sign"), [("forward", 1), ("backward", -1)])
+@pytest.mark.parametrize("direction", [0.0, 90.0, 180.0, -135.0])
+def test_forward_and_backward(side: str, sign: int, direction: float) -> None:
+    guide = eq.Slider("piston", "C", FRAME, "A", radians(direction))
+    motion = eq.move(slider_crank(sliders=(guide,), assembly={"C": side}), 36)
+    along = motion.points["C"].place * np.exp(-1j * radians(direction))
+    assert np.all(sign * along.real > 0.69)
+    np.testing.assert_allclose(along.imag, 0, atol=1e-15)
+
+
+def quick_return(side: str, **changes: object) -> eq.Machine:
+    slider = eq.Slider("block", "B", "lever", "D", 0.0)
+    return machine(
+        {"A": ORIGIN, "D": (0.0, -1.0)},
+        {"crank": heavy(A=ORIGIN, B=(0.4, 0.0)), "block": heavy(B=ORIGIN),
+         "lever": heavy(D=ORIGIN, E=(2.0, 0.0))},
+        sliders=(replace(slider, **changes),),  # type: ignore[arg-type]
+        assembly={"B": side},
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(("side", "turn"), [("forward", 0.0), ("backward", pi)])
+def test_sides_of_a_swinging_guide(side: str, turn: float) -> None:
+    motion = eq.move(quick_return(side), 36)
+    towards = motion.points["B"].place - motion.points["D"].place
+    lever = np.exp(1j * motion.links["lever"].angle)
+    np.testing.assert_allclose(towards / abs(towards), lever * np.exp(1j * turn), atol=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("given", "joint", "words"),
+    [
+        (crank_rocker(), "C", 'missing; give "left" or "right": C lies left or right of the line'),
+        (slider_crank(), "C", 'missing; give "forward" or "backward": C lies ahead of or behind B'),
+        (quick_return("forward"), "B", 'missing; give "forward" or "backward": B lies ahead of'),
+    ],
+)
+def test_missing_sides(given: eq.Machine, joint: str, words: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(replace(given, assembly={}))
+    assert caught.value.where == f"assembly.{joint}"
+    assert words in caught.value.what
+
+
+def test_a_side_of_the_wrong_kind() -> None:
+    with pytest.raises(ModelError, match='got \'left\'; give "forward" or "backward"'):
+        eq.assemble(slider_crank(assembly={"C": "left"}))
+    with pytest.raises(ModelError, match='got \'forward\'; give "left" or "right"'):
+        eq.assemble(four_bar(1.0, 0.35, 0.9, 0.8, "forward"))
+
+
+@pytest.mark.parametrize(
+    ("given", "joint", "words"),
+    [
+        (four_bar(1.0, 0.35, 0.9, 0.8), "B", "the dyads of this linkage meet at C"),
+        (eq.load("scotch-yoke"), "B", "no dyad has its inner joint there"),
+        (two_gears(eq.Gear("crank", "wheel", -1.0)), "A", "meet at no point"),
+    ],
+)
+def test_idle_sides(given: eq.Machine, joint: str, words: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(replace(given, assembly={**given.assembly, joint: "left"}))
+    assert caught.value.where == f"assembly.{joint}"
+    assert words in caught.value.what
+
+
+# -- sliders from either side ----------------------------------------------------------------------
+
+
+def same_forces(one: eq.Machine, other: eq.Machine, slider: str, swapped: str) -> None:
+    """Compare all outputs of a machine told in two ways; the slider has another name."""
+    a, b = (eq.analyze(m, ANGLES).forces for m in (one, other))
+    assert a.joints.keys() - {slider} == b.joints.keys() - {swapped}
+    np.testing.assert_allclose(a.drive_torque, b.drive_torque, atol=1e-11)
+    for name in a.joints.keys() - {slider}:
+        np.testing.assert_allclose(a.joints[name].value, b.joints[name].value, atol=1e-11)
+    first, second = a.joints[slider], b.joints[swapped]
+    assert {first.on, first.by} == {second.on, second.by}
+    sign = 1 if first.on == second.on else -1
+    np.testing.assert_allclose(first.value, sign * second.value, atol=1e-11)
+
+
+def test_block_and_guide_change_roles_in_a_swinging_guide() -> None:
+    one = quick_return("forward")
+    other = replace(
+        one,
+        sliders=(eq.Slider("lever", "D", "block", "B", 0.0, 0.0),),
+        assembly={"D": "backward"},
+    )
+    same_forces(one, other, "block on lever", "lever on block")
+
+
+def test_block_and_guide_change_roles_in_a_yoke() -> None:
+    one = eq.load("scotch-yoke")
+    slot, rail = one.sliders
+    swapped = eq.Slider("yoke", "Y", "block", "B", 0.0, -slot.direction)
+    same_forces(one, replace(one, sliders=(swapped, rail)), "block on yoke", "yoke on block")
+
+
+def test_a_guide_on_the_crank() -> None:
+    """The guide may be a known link that names the unknown one as its own guide."""
+    frame = {"A": ORIGIN, "D": (0.3, 0.0)}
+    links = {
+        "crank": heavy(A=ORIGIN, G=(1.0, 0.1)),
+        "block": heavy(C=ORIGIN),
+        "rod": heavy(D=ORIGIN, C=(0.9, 0.0)),
+    }
+    one = machine(frame, links, sliders=(eq.Slider("block", "C", "crank", "G", 0.2, 0.5),),
+                  assembly={"C": "forward"})  # fmt: skip
+    other = replace(one, sliders=(eq.Slider("crank", "G", "block", "C", -0.5, -0.2),))
+    assert kernels_of(one) == kernels_of(other) == ["rrp"]
+    same_forces(one, other, "block on crank", "crank on block")
+
+
+def test_crossed_guides_meet() -> None:
+    """A pin on two guides, of which the crank carries one: they are parallel twice a turn."""
+    given = machine(
+        {"A": ORIGIN, "K": (0.0, 0.4)},
+        {"crank": heavy(A=ORIGIN), "one": heavy(C=ORIGIN), "other": heavy(C=ORIGIN)},
+        sliders=(
+            eq.Slider("one", "C", "crank", "A", 0.0),
+            eq.Slider("other", "C", FRAME, "K", 0.0),
+        ),
+    )
+    theta = np.array([0.7, 1.5, 2.4])
+    motion = eq.move(given, theta)
+    assert kernels_of(given) == ["prp"]
+    np.testing.assert_allclose(motion.points["C"].place, 0.4 / np.tan(theta) + 0.4j, atol=1e-14)
+    np.testing.assert_allclose(motion.points["C"].place_1, -0.4 / np.sin(theta) ** 2, atol=1e-14)
+
+
+def test_parallel_guides_are_refused() -> None:
+    given = eq.load("scotch-yoke")
+    slot, rail = given.sliders
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(replace(given, sliders=(replace(slot, direction=0.0), rail)))
+    assert caught.value.where == "sliders.block on yoke"
+    assert "its line is parallel to that of 'yoke on frame'" in caught.value.what
+
+
+def test_three_sliding_joints_in_a_row_are_refused() -> None:
+    given = machine(
+        {"A": ORIGIN, "H": (0.5, 0.0)},
+        {"crank": body(A=ORIGIN), "one": body(C=ORIGIN), "other": body(E=ORIGIN)},
+        sliders=(
+            eq.Slider("one", "C", "crank", "A", 0.0),
+            eq.Slider("other", "E", "one", "C", 1.0),
+            eq.Slider("other", "E", FRAME, "H", 2.0),
+        ),
+    )
+    with pytest.raises(MobilityError, match="three sliding joints in a row cannot position"):
+        eq.assemble(given)
+
+
+# -- pins that coincide ----------------------------------------------------------------------------
+
+
+def test_a_link_of_no_length() -> None:
+    given = four_bar(1.0, 0.35, 0.9, 0.8)
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(given.with_link("rocker", points={"D": ORIGIN, "C": ORIGIN}))
+    assert caught.value.where == "links.rocker.points"
+    assert "D and C lie at the same place" in caught.value.what

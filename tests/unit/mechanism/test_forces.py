@@ -1,0 +1,227 @@
+"""Names, places and parts of forces; loads; what is missing and what is worth a second look."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.model import FRAME
+from laws.transforms import renamed
+from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
+
+THETA = np.array([0.3, 1.9, 4.0])
+
+
+def forces(given: eq.Machine, **more: Any) -> eq.Forces:
+    return eq.analyze(given, THETA, **more).forces
+
+
+# -- missing masses --------------------------------------------------------------------------------
+
+
+def test_missing_masses_are_named() -> None:
+    given = crank_rocker()
+    for name in ("coupler", "rocker"):
+        given = given.with_link(name, mass=None, center_of_mass=None, inertia=None)
+    analysis = eq.analyze(given, 4)
+    assert analysis.solved is None
+    message = (
+        "forces need mass, center_of_mass and inertia of every link; missing for coupler, rocker "
+        "(a link to be neglected has mass 0)"
+    )
+    with pytest.raises(MassError) as caught:
+        _ = analysis.forces
+    assert str(caught.value) == message
+    with pytest.raises(MassError):
+        eq.forces(analysis.motion)
+    assert list(analysis.motion.mass_centers) == ["crank"]
+
+
+def test_links_of_mass_0_are_neglected() -> None:
+    given = crank_rocker()
+    for name in given.links:
+        given = given.with_link(name, mass=0.0, center_of_mass=ORIGIN, inertia=0.0)
+    found = forces(given)
+    assert not np.any(found.drive_torque)
+    assert not np.any(found.frame_force.size)
+
+
+# -- names and places ------------------------------------------------------------------------------
+
+
+def test_joints_are_named_by_point_and_slider() -> None:
+    assert list(forces(slider_crank()).joints) == ["A", "B", "piston on frame", "C"]
+
+
+def test_pins_of_three_bodies_are_named_by_the_link_held() -> None:
+    given = machine(
+        {"A": ORIGIN, "D": (1.0, 0.0), "G": (0.5, 1.0)},
+        {
+            "crank": heavy(A=ORIGIN, B=(0.3, 0.0)),
+            "coupler": heavy(B=ORIGIN, C=(0.9, 0.0)),
+            "rocker": heavy(D=ORIGIN, C=(0.8, 0.0)),
+            "arm": heavy(C=ORIGIN, F=(0.9, 0.0)),
+            "lever": heavy(G=ORIGIN, F=(0.8, 0.0)),
+        },
+        assembly={"C": "left", "F": "left"},
+    )
+    found = forces(given).joints
+    assert {name for name in found if name.startswith("C")} == {"C/rocker", "C/arm"}
+    assert {found["C/rocker"].by, found["C/arm"].by} == {"coupler"}
+
+
+@pytest.mark.parametrize("about", ["A", (0.0, 0.0), 0j, None])
+def test_ways_to_name_a_pole(about: Any) -> None:
+    found = forces(crank_rocker(), about=about)
+    assert found.about == 0j
+    np.testing.assert_array_equal(found.shaking_moment, forces(crank_rocker()).shaking_moment)
+
+
+def test_poles_elsewhere() -> None:
+    found = forces(crank_rocker(), about="D")
+    assert found.about == 1 + 0j
+    np.testing.assert_allclose(
+        found.shaking_moment, forces(crank_rocker()).shaking_moment_about("D")
+    )
+
+
+@pytest.mark.parametrize(
+    ("about", "words"),
+    [
+        ("B", "no point of the frame is called 'B'; there are 'A', 'D'"),
+        ((float("nan"), 0.0), "give a point of the frame or finite coordinates"),
+    ],
+)
+def test_poles_that_cannot_be_used(about: Any, words: str) -> None:
+    with pytest.raises(UsageError, match=words):
+        forces(crank_rocker(), about=about)
+
+
+def test_unknown_names_tell_what_there_is() -> None:
+    found = forces(crank_rocker())
+    with pytest.raises(UsageError, match="did you mean 'drive_torque'"):
+        found.split.by_cause("drive_torqe")
+    with pytest.raises(KeyError, match="no link is called 'croupier'"):
+        found.motion.links["croupier"]
+    with pytest.raises(KeyError, match="no point is called 'X'"):
+        found.motion.points["X"]
+
+
+def test_a_joint_that_is_called_like_an_output() -> None:
+    given = renamed(crank_rocker(), lambda name: "drive_torque" if name == "B" else name)
+    found = forces(given)
+    parts = found.split.by_cause("drive_torque")
+    np.testing.assert_allclose(sum(parts.values()), found.drive_torque, atol=1e-12)
+
+
+def test_vectors_have_size_and_direction() -> None:
+    force = forces(crank_rocker()).shaking_force
+    np.testing.assert_allclose(force.size * np.exp(1j * force.direction), force.value)
+    np.testing.assert_allclose(force.x + 1j * force.y, force.value)
+
+
+def test_weight_is_the_same_everywhere() -> None:
+    found = forces(crank_rocker())
+    np.testing.assert_allclose(found.weight.value, -1.5j * 9.80665)
+    arms = sum(0.5 * center.x for center in found.motion.mass_centers.values())
+    np.testing.assert_allclose(found.weight_moment, -9.80665 * arms)
+
+
+def test_slider_forces_are_split_by_the_line() -> None:
+    found = forces(slider_crank(sliders=(eq.Slider("piston", "C", FRAME, "A", 1.1),)))
+    rail = found.joints["piston on frame"]
+    along = np.exp(1.1j)
+    np.testing.assert_allclose((rail.value / along).imag, rail.normal)  # type: ignore[attr-defined]
+    np.testing.assert_allclose((rail.value / along).real, 0, atol=1e-12)
+
+
+# -- loads -----------------------------------------------------------------------------------------
+
+CIRCLE = np.radians(np.arange(0, 360, 5))
+
+
+def torque_of(load: eq.Load) -> np.ndarray:
+    """Drive torque that a load on a massless crank asks for."""
+    given = machine({"A": ORIGIN}, {"crank": eq.Link({"A": ORIGIN}, 0.0, ORIGIN, 0.0)})
+    return -eq.analyze(replace(given, loads=(load,)), CIRCLE).forces.drive_torque
+
+
+@pytest.mark.parametrize(("start", "stop"), [(30, 100), (300, 40), (-60, 40), (350, 355)])
+def test_windows(start: float, stop: float) -> None:
+    load = eq.Load("crank", torque=3.0, start=np.radians(start), stop=np.radians(stop))
+    degrees = np.arange(0, 360, 5)
+    inside = (degrees - start) % 360 < (stop - start) % 360
+    np.testing.assert_allclose(torque_of(load), np.where(inside, 3.0, 0.0))
+
+
+def test_tables_are_closed_polygons() -> None:
+    table = eq.LoadTable((pi / 2, pi), ((2.0, 6.0),))
+    want = np.interp(CIRCLE, [-pi, pi / 2, pi, 5 * pi / 2], [6.0, 2.0, 6.0, 2.0])
+    np.testing.assert_allclose(torque_of(eq.Load("crank", table=table)), want)
+
+
+def test_tables_may_begin_before_0() -> None:
+    one = eq.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
+    other = eq.LoadTable((1.0, 2.0, 2 * pi - 1.0), ((5.0, -3.0, 1.0),))
+    np.testing.assert_allclose(
+        torque_of(eq.Load("crank", table=one)), torque_of(eq.Load("crank", table=other))
+    )
+
+
+def test_tables_in_a_window() -> None:
+    load = eq.Load("crank", table=eq.LoadTable((0.0,), ((4.0,),)), start=1.0, stop=2.0)
+    np.testing.assert_allclose(torque_of(load), np.where((CIRCLE >= 1) & (CIRCLE < 2), 4.0, 0.0))
+
+
+def test_loads_go_on_in_every_turn() -> None:
+    load = eq.Load("crank", torque=3.0, start=0.5, stop=1.5)
+    given = replace(crank_rocker(), loads=(load,))
+    first, later = (eq.analyze(given, THETA + 2 * pi * k).forces.drive_torque for k in (0, 7))
+    np.testing.assert_allclose(first, later, atol=1e-11)
+
+
+def test_force_at_a_point_of_the_crank() -> None:
+    given = machine(
+        {"A": ORIGIN}, {"crank": eq.Link({"A": ORIGIN, "P": (0.0, 2.0)}, 0.0, ORIGIN, 0)}
+    )
+    load = eq.Load("crank", "P", force=(1.0, 0.0))
+    found = eq.analyze(replace(given, loads=(load,)), CIRCLE).forces
+    np.testing.assert_allclose(found.drive_torque, 2 * np.cos(CIRCLE), atol=1e-14)
+    np.testing.assert_allclose(found.frame_force.value, 1.0)
+
+
+# -- remarks ---------------------------------------------------------------------------------------
+
+
+def remarked(given: eq.Machine) -> list[str]:
+    return list(remarks(eq.assemble(given)))
+
+
+def test_a_good_machine_gives_no_remark() -> None:
+    assert remarked(crank_rocker()) == []
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (four_bar(1.0, 0.35, 0.7, 0.66), "within 13.9 deg of its dead position, at crank angle"),
+        (crank_rocker().with_link("rocker", inertia=5e4), "links.rocker.inertia gives a radius of"),
+        (crank_rocker().with_link("rocker", center_of_mass=(40.0, 0.0)),
+         "links.rocker.center_of_mass lies far outside the link; check its unit"),
+        (replace(crank_rocker(), frame={"A": ORIGIN, "D": (1.0, 0.0), "Z": (2.0, 2.0)}),
+         "frame.points.Z is not used by any joint"),
+        (crank_rocker().with_link("rocker", mass=None, center_of_mass=None, inertia=None),
+         "missing for rocker"),
+    ],
+)  # fmt: skip
+def test_remarks(given: eq.Machine, words: str) -> None:
+    found = remarked(given)
+    assert len(found) == 1
+    assert words in found[0]

@@ -1,0 +1,169 @@
+"""Counting free motions, and saying which links are free or held."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism.joints import structure
+from equipoise.mechanism.model import FRAME
+from unit.mechanism.build import ORIGIN, body, crank_rocker, machine, slider_crank, two_gears
+
+
+def linked(given: eq.Machine, **links: eq.Link) -> eq.Machine:
+    return replace(given, links={**given.links, **links})
+
+
+def test_one_free_motion_for_every_kind_of_joint() -> None:
+    for given in (crank_rocker(), slider_crank(), two_gears(eq.Gear("crank", "wheel", -1.0))):
+        joints = structure(given)
+        assert joints.freedom(given.links, [FRAME]) == 1
+        assert joints.freedom([n for n in given.links if n != "crank"], [FRAME, "crank"]) == 0
+
+
+def test_a_pin_of_three_bodies_counts_twice() -> None:
+    joints = structure(eq.load("stephenson-six-bar"))
+    assert joints.freedom(["coupler", "rocker"], [FRAME, "crank"]) == 0
+    assert joints.freedom(["coupler"], [FRAME, "crank"]) == 1
+    assert joints.freedom(["coupler"], []) == 3
+    shared = machine(
+        {"A": ORIGIN, "D": (1.0, 0.0), "G": (0.5, 1.0)},
+        {
+            "crank": body(A=ORIGIN, B=(0.3, 0.0)),
+            "coupler": body(B=ORIGIN, C=(0.9, 0.0)),
+            "rocker": body(D=ORIGIN, C=(0.8, 0.0)),
+            "arm": body(C=ORIGIN, F=(0.9, 0.0)),
+            "lever": body(G=ORIGIN, F=(0.8, 0.0)),
+        },
+    )
+    assert structure(shared).pins["C"] == ("coupler", "rocker", "arm")
+    assert structure(shared).freedom(shared.links, [FRAME]) == 1
+
+
+def refused(given: eq.Machine) -> str:
+    with pytest.raises(MobilityError) as caught:
+        eq.assemble(given)
+    return str(caught.value)
+
+
+def test_two_free_motions() -> None:
+    """A four-bar with an arm that dangles from its coupler."""
+    four = crank_rocker()
+    assert refused(linked(four, arm=body(C=ORIGIN, E=(1.0, 0.0)))) == (
+        "the linkage has 2 free motions (4 moving links, 5 pins, 0 sliding joints and 0 gears), "
+        "and one drive can command only one; the drive leaves 'arm' undetermined"
+    )
+
+
+def test_three_free_motions() -> None:
+    """Five links in a row between two pivots."""
+    chain = machine(
+        {"A": ORIGIN, "F": (2.0, 0.0)},
+        {
+            "crank": body(A=ORIGIN, B=(0.3, 0.0)),
+            "one": body(B=ORIGIN, C=(0.9, 0.0)),
+            "two": body(C=ORIGIN, D=(0.8, 0.0)),
+            "three": body(D=ORIGIN, E=(0.9, 0.0)),
+            "four": body(E=ORIGIN, F=(0.8, 0.0)),
+        },
+    )
+    message = refused(chain)
+    assert message.startswith("the linkage has 3 free motions (5 moving links, 6 pins, ")
+    assert message.endswith("the drive leaves 'one', 'two', 'three' and 'four' undetermined")
+
+
+def test_no_free_motion() -> None:
+    """A four-bar whose coupler is held by a third link to the frame."""
+    four = crank_rocker()
+    tied = replace(
+        linked(four, tie=body(E=ORIGIN, P=(1.0, 0.0))),
+        frame={**four.frame, "E": (0.5, -1.0)},
+    )
+    coupler = replace(four.links["coupler"], points={**four.links["coupler"].points, "P": (1, 1)})
+    assert refused(linked(tied, coupler=coupler)) == (
+        "the linkage has no free motion (count 0: 4 moving links, 6 pins, 0 sliding joints and "
+        "0 gears); too many joints hold 'coupler', 'rocker' and 'tie'"
+    )
+
+
+def test_a_single_link_that_is_held() -> None:
+    given = slider_crank()
+    twice = replace(given, sliders=(*given.sliders, eq.Slider("rod", "B", FRAME, "A", 0.3)))
+    assert "count -1: 3 moving links, 3 pins, 2 sliding joints and 0 gears" in refused(twice)
+
+
+def test_held_here_and_free_there() -> None:
+    """The count is one for the whole, but one part has none and another has two."""
+    four = crank_rocker()
+    coupler = replace(four.links["coupler"], points={**four.links["coupler"].points, "P": (1, 1)})
+    tied = replace(
+        linked(four, coupler=coupler, tie=body(E=ORIGIN, P=(1.0, 0.0)),
+               pendulum=body(E=ORIGIN, Q=(1.0, 0.0))),
+        frame={**four.frame, "E": (0.5, -1.0)},
+    )  # fmt: skip
+    message = refused(tied)
+    assert "hold tie, while other links are free to move" in message
+    assert "one free motion, but no drive can command it" in message
+
+
+def test_a_part_that_the_drive_does_not_reach() -> None:
+    """A four-bar of its own beside a crank that is locked to the frame by nothing."""
+    lone = machine(
+        {"A": ORIGIN, "D": (1.0, 0.0), "E": (2.0, 0.0)},
+        {"crank": body(A=ORIGIN), "lever": body(D=ORIGIN)},
+    )
+    assert refused(lone).endswith("the drive leaves 'lever' undetermined")
+
+
+def test_the_drive_turns_about_one_point_of_the_frame() -> None:
+    """A crank that is pinned twice, and two pendulums that make up for it in the count."""
+    given = machine(
+        {"A": ORIGIN, "D": (1.0, 0.0), "E": (2.0, 0.0)},
+        {"crank": body(A=ORIGIN, D=(1.0, 0.0)), "one": body(E=ORIGIN), "other": body(E=ORIGIN)},
+    )
+    with pytest.raises(ModelError, match="'crank' shares 2 points with the frame") as caught:
+        eq.assemble(given)
+    assert caught.value.where == "drive.link"
+
+
+def test_the_drive_needs_a_pivot() -> None:
+    """One free motion, but of a crank that slides."""
+    given = machine(
+        {"A": ORIGIN},
+        {"crank": body(B=ORIGIN)},
+        sliders=(eq.Slider("crank", "B", FRAME, "A", 0.0),),
+    )
+    with pytest.raises(ModelError, match="'crank' shares 0 points with the frame") as caught:
+        eq.assemble(given)
+    assert caught.value.where == "drive.link"
+
+
+def test_two_pins_at_one_place() -> None:
+    four = crank_rocker()
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(four.with_link("coupler", points={"B": (0.1, 0.2), "C": (0.1, 0.2)}))
+    assert caught.value.where == "links.coupler.points"
+    assert "B and C lie at the same place" in caught.value.what
+
+
+def test_gears_turn_on_their_carrier() -> None:
+    """A wheel that is geared to a crank over a carrier that does not hold the crank."""
+    given = machine(
+        {"A": ORIGIN, "E": (0.5, 0.0)},
+        {
+            "crank": body(A=ORIGIN),
+            "wheel2": body(E=ORIGIN, F=(0.2, 0.0)),
+            "planet": body(F=ORIGIN),
+        },
+        gears=(
+            eq.Gear("crank", "wheel2", -1.0),
+            eq.Gear("crank", "planet", -2.0, carrier="wheel2"),
+        ),
+    )
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(given)
+    assert caught.value.where == "gears.crank to planet"
+    assert "'crank' shares 0 points with the carrier 'wheel2'" in caught.value.what

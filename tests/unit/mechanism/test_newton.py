@@ -1,0 +1,312 @@
+"""Groups that no dyad solves, and dyads solved as such groups: the answers must be the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from math import degrees, pi
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError, ModelError, MotionError
+from equipoise.mechanism.newton import LoopGroup
+from laws.subjects import family_of, is_force, outputs, sizes
+from laws.transforms import shifted, turned
+from support.machines import make
+from unit.mechanism.build import ORIGIN, body, crank_rocker, heavy, machine
+
+TRIAD = eq.load("class-three")
+ANGLES = np.linspace(0.1, 6.2, 18)
+
+
+# -- dyads solved as loops -------------------------------------------------------------------------
+
+
+@contextmanager
+def only_loops() -> Iterator[None]:
+    """Let Newton's method solve every group."""
+    with pytest.MonkeyPatch.context() as patch:
+        for solver in ("_dyad", "_geared"):
+            patch.setattr(f"equipoise.mechanism.linkage.{solver}", lambda *_: None)
+        yield
+
+
+def with_position(given: eq.Machine, angle: float = 0.0, off: float = 0.01) -> eq.Machine:
+    """Tell roughly where the machine is, instead of the sides of its dyads."""
+    motion = eq.move(given, [angle])
+    size = max(abs(complex(*place)) for link in given.links.values()
+               for place in link.points.values())  # fmt: skip
+    rng = np.random.default_rng(2)
+    noise = rng.normal(size=2) * off * size
+    points = {
+        name: (float(point.x[0] + noise[0]), float(point.y[0] + noise[1]))
+        for name, point in motion.points.items()
+        if name not in given.frame
+    }
+    angles = {name: float(link.angle[0]) + off for name, link in motion.links.items()}
+    return replace(given, assembly={}, position=eq.Position(angle, points, angles))
+
+
+DYADS = [
+    "yamashita-1", "drag-link", "slider-crank-engine", "quick-return", "scotch-yoke",
+    "watt-six-bar", "stephenson-six-bar", "geared-counterweight", "planetary-planting-arm",
+]  # fmt: skip
+KINDS = ["crossed_guides", "slider_on_rocker", "guide_on_dyad", "swinging_block", "floating_watt",
+         "slider_beside_pin", "geared_coupler", "sun_and_planet", "geared_five_bar",
+         "planetary_arm", "geared_counterweight"]  # fmt: skip
+
+
+def subject(name: str) -> eq.Machine:
+    return make(name, 3).machine if name in KINDS else eq.load(name)
+
+
+@pytest.mark.parametrize("name", [*DYADS, *KINDS])
+def test_loops_give_what_dyads_give(name: str) -> None:
+    given = subject(name)
+    by_dyads = eq.analyze(given, ANGLES).forces
+    rough = with_position(given)
+    with only_loops():
+        by_loops = eq.analyze(rough, ANGLES).forces
+    groups = by_loops.motion.linkage.groups
+    assert all(any(isinstance(step, LoopGroup) for step in group.motion) for group in groups)
+    compare(by_loops, by_dyads)
+
+
+def compare(by_loops: eq.Forces, by_dyads: eq.Forces) -> None:
+    """Compare motion and every output."""
+    force, moment = sizes(by_dyads)
+    for name, point in by_dyads.motion.points.items():
+        got = by_loops.motion.points[name]
+        for part in ("place", "place_1", "place_2"):
+            want = getattr(point, part)
+            scale = max(1e-3, float(np.max(np.abs(want))))
+            np.testing.assert_allclose(getattr(got, part), want, rtol=0, atol=1e-10 * scale)
+    want = dict(outputs(by_dyads))
+    assert dict(outputs(by_loops)).keys() == want.keys()
+    for name, value in outputs(by_loops):
+        if other_hub(name, by_loops, by_dyads):
+            continue
+        scale = force if is_force(name) else moment
+        np.testing.assert_allclose(value, want[name], rtol=0, atol=1e-9 * scale, err_msg=name)
+
+
+def other_hub(name: str, one: eq.Forces, other: eq.Forces) -> bool:
+    """Tell whether a joint belongs to a pin of three bodies that another of them holds."""
+    family, _, rest = name.partition("/")
+    pin = rest.partition("/")[0]
+    return family == "joints" and any(
+        joint.by != other.joints[key].by
+        for key, joint in one.joints.items()
+        if key.partition("/")[0] == pin
+    )
+
+
+@pytest.mark.parametrize("angle", [-3.0, 0.5, 40.0])
+def test_the_position_may_be_at_any_crank_angle(angle: float) -> None:
+    by_dyads = eq.analyze(crank_rocker(), ANGLES).forces
+    rough = with_position(crank_rocker(), angle)
+    with only_loops():
+        compare(eq.analyze(rough, ANGLES).forces, by_dyads)
+
+
+# -- the triad -------------------------------------------------------------------------------------
+
+
+def test_all_joints_stay_together() -> None:
+    motion = eq.move(TRIAD, 90)
+    for name, link in motion.machine.links.items():
+        origin, turn = link_axes(motion, name)
+        for point, local in link.points.items():
+            place = origin + turn * complex(*local)
+            np.testing.assert_allclose(motion.points[point].place, place, atol=1e-13)
+
+
+def link_axes(motion: eq.Motion, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Origin of a link's axes, told by its first point, and its rotation."""
+    point, local = next(iter(motion.machine.links[name].points.items()))
+    turn = np.exp(1j * motion.links[name].angle)
+    return motion.points[point].place - turn * complex(*local), turn
+
+
+def test_angles_in_any_order_lie_on_one_branch() -> None:
+    whole = eq.move(TRIAD, 360)
+    picked = np.random.default_rng(3).permutation(360)[:25]
+    again = eq.move(TRIAD, whole.crank_angle[picked] + 4 * pi)
+    for name, point in whole.points.items():
+        want = point.place[picked]
+        np.testing.assert_allclose(again.points[name].place, want, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("angle", [0.3, -2.0, 3.0])
+def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
+    whole = eq.move(TRIAD, [angle])
+    points = {name: (float(whole.points[name].x[0]), float(whole.points[name].y[0]))
+              for name in "BCPQ"}  # fmt: skip
+    moved = replace(TRIAD, position=eq.Position(angle, points))
+    np.testing.assert_allclose(
+        eq.move(moved, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
+    )
+
+
+def test_the_position_may_be_told_by_angles() -> None:
+    at_zero = eq.move(TRIAD, [0.0])
+    points = {name: (float(at_zero.points[name].x[0]), float(at_zero.points[name].y[0]))
+              for name in "PQ"}  # fmt: skip
+    angles = {name: float(at_zero.links[name].angle[0]) for name in TRIAD.links}
+    told = replace(TRIAD, position=eq.Position(0.0, points, angles))
+    np.testing.assert_allclose(
+        eq.move(told, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
+    )
+
+
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_size_does_not_matter(size: float) -> None:
+    def grown(points: object) -> dict[str, tuple[float, float]]:
+        return {k: (x * size, y * size) for k, (x, y) in points.items()}  # type: ignore[attr-defined]
+
+    assert TRIAD.position is not None
+    big = replace(
+        TRIAD,
+        frame=grown(TRIAD.frame),
+        links={name: eq.Link(grown(link.points)) for name, link in TRIAD.links.items()},
+        position=replace(TRIAD.position, points=grown(TRIAD.position.points)),
+    )
+    want = eq.move(TRIAD, 60).points["Q"].place * size
+    np.testing.assert_allclose(eq.move(big, 60).points["Q"].place, want, atol=1e-12 * size)
+
+
+def test_far_from_the_origin() -> None:
+    moved = shifted(turned(TRIAD, 1.0), 50 - 80j)
+    found = eq.analyze(moved, np.array([1.0, 2.0])).forces
+    plain = eq.analyze(TRIAD, np.array([0.0, 1.0])).forces
+    np.testing.assert_allclose(found.drive_torque, plain.drive_torque, rtol=1e-9)
+
+
+# -- what is refused -------------------------------------------------------------------------------
+
+
+def test_position_missing() -> None:
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(replace(TRIAD, position=None))
+    assert caught.value.where == "position"
+    assert "no dyad solves rod, plate, front-link, rear-link" in caught.value.what
+
+
+@pytest.mark.parametrize(("missing", "link"), [("C", "rod"), ("P", "front-link"), ("Q", "rear")])
+def test_position_incomplete(missing: str, link: str) -> None:
+    assert TRIAD.position is not None
+    points = {name: place for name, place in TRIAD.position.points.items() if name != missing}
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(replace(TRIAD, position=eq.Position(0.0, points)))
+    assert caught.value.where == "position"
+    assert f"does not place '{link}" in caught.value.what
+    assert "at crank angle 0 deg; give two of its points" in caught.value.what
+
+
+def test_a_triad_that_never_closes() -> None:
+    """A front link of 1 m among links of 0.1 m."""
+    given = TRIAD.with_link("front-link", points={"D": ORIGIN, "P": (1.0, 0.0)})
+    with pytest.raises(MotionError, match="the loop equations have no solution nearby"):
+        eq.move(given, 36)
+
+
+def stuck() -> eq.Machine:
+    """The triad with a crank so long that it cannot turn."""
+    points = {"A": ORIGIN, "B": (0.1, 0.0)}
+    place = {"C": (0.192, -0.051), "P": (0.155, -0.015), "Q": (0.095, -0.068)}
+    return replace(TRIAD, position=eq.Position(0.0, place)).with_link("crank", points=points)
+
+
+def test_a_position_far_from_any_solution() -> None:
+    """Newton's method may land in another assembly; that must not pass unseen."""
+    points = {"C": (0.3, -0.2), "P": (0.1, 0.2), "Q": (-0.2, 0.1)}
+    with pytest.raises(EquipoiseError) as caught:
+        eq.assemble(replace(TRIAD, position=eq.Position(0.0, points)))
+    assert "too rough" in str(caught.value) or "no solution nearby" in str(caught.value)
+
+
+def test_angles_start_within_half_a_turn() -> None:
+    motion = eq.move(eq.load("class-three"), [0.0])
+    assert all(abs(link.angle[0]) <= pi for link in motion.links.values())
+
+
+def test_a_triad_that_cannot_turn_tells_the_angle() -> None:
+    with pytest.raises(MotionError, match="cannot be moved past crank angle") as caught:
+        eq.move(stuck(), 36)
+    assert "rod, plate, front-link, rear-link" in str(caught.value)
+
+
+def test_the_angle_told_is_where_it_ends() -> None:
+    """A four-bar that only swings, as a loop group: its end is known in closed form."""
+    limit = np.arccos((1 + 0.9**2 - 1.05**2) / 1.8)
+    given = machine(
+        {"A": ORIGIN, "D": (1.0, 0.0)},
+        {"crank": heavy(A=ORIGIN, B=(0.9, 0.0)), "coupler": heavy(B=ORIGIN, C=(0.5, 0.0)),
+         "rocker": heavy(D=ORIGIN, C=(0.55, 0.0))},
+        assembly={"C": "left"},
+    )  # fmt: skip
+    rough = with_position(given)
+    past = "cannot be moved past crank angle"
+    with only_loops(), pytest.raises(MotionError, match=past) as caught:
+        eq.move(rough, 36)
+    told = float(str(caught.value).split("crank angle ")[1].split(" deg")[0])
+    assert told == pytest.approx(degrees(limit), abs=1.0)
+
+
+def test_gears_need_the_position_at_0() -> None:
+    given = machine(
+        {"A": ORIGIN, "E": (0.5, 0.0)},
+        {"crank": body(A=ORIGIN), "wheel": body(E=ORIGIN)},
+        gears=(eq.Gear("crank", "wheel", ratio=-1.0),),
+        position=eq.Position(0.2, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
+    )
+    with only_loops(), pytest.raises(ModelError) as caught:
+        eq.assemble(given)
+    assert caught.value.where == "position.crank_angle"
+
+
+def geared_loop(gear: eq.Gear) -> eq.Machine:
+    return machine(
+        {"A": ORIGIN, "E": (0.5, 0.0)},
+        {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN)},
+        gears=(gear,),
+        position=eq.Position(0.0, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
+    )
+
+
+def test_a_loop_that_closes_after_several_turns() -> None:
+    with only_loops():
+        motion = eq.move(geared_loop(eq.Gear("crank", "wheel", teeth=(20, 30))), 12)
+    assert motion.turns == 3
+    assert motion.linkage.cycle.windings["wheel"] == -2
+
+
+def test_a_loop_that_never_closes() -> None:
+    with only_loops(), pytest.raises(MotionError, match="does not repeat within 6 turns"):
+        eq.move(geared_loop(eq.Gear("crank", "wheel", ratio=-pi)), 12)
+
+
+def test_the_driver_comes_first() -> None:
+    """A gear pair whose `driven` gear is the one that moves already."""
+    given = machine(
+        {"A": ORIGIN, "E": (0.5, 0.0)},
+        {"crank": body(A=ORIGIN), "wheel": body(E=ORIGIN)},
+        gears=(eq.Gear("wheel", "crank", ratio=-1.0),),
+    )
+    with pytest.raises(ModelError) as caught:
+        eq.assemble(given)
+    assert caught.value.where == "gears.wheel to crank"
+    assert "name the gear that is moved already first in between" in caught.value.what
+
+
+def test_split_and_regressor_go_through_loops() -> None:
+    found = eq.analyze(TRIAD, ANGLES).forces
+    force, _ = sizes(found)
+    rows = dict(family_of("joints", eq.regressor(found.motion).joints))
+    values = eq.regressor(found.motion).values
+    for name, joint in found.joints.items():
+        got = values @ rows[f"joints/{name}/value"]
+        np.testing.assert_allclose(got, joint.value, rtol=0, atol=1e-12 * force)

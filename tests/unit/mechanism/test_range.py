@@ -1,0 +1,327 @@
+"""Linkages whose crank cannot turn fully, or not in a definite way."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import acos, asin, degrees, pi
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ChangePointError, EquipoiseError, MotionError, RangeError, UsageError
+from equipoise.mechanism.model import FRAME
+from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
+
+
+def limits_of(given: eq.Machine) -> tuple[tuple[float, float], ...]:
+    with pytest.raises(RangeError) as caught:
+        eq.move(given)
+    return caught.value.ranges
+
+
+def opposite(one: float, other: float, side: float) -> float:
+    """Angle of a triangle between two sides."""
+    return acos((one**2 + other**2 - side**2) / (2 * one * other))
+
+
+def same_angles(got: object, want: object) -> None:
+    np.testing.assert_allclose(np.degrees(got), np.degrees(want), rtol=0, atol=1e-6)
+
+
+# -- limits ----------------------------------------------------------------------------------------
+
+
+def test_a_triple_rocker_stops_where_its_dyad_is_stretched() -> None:
+    """Crank and frame close a triangle with the stretched dyad."""
+    limit = opposite(1.0, 0.9, 0.5 + 0.55)
+    same_angles(limits_of(four_bar(1.0, 0.9, 0.5, 0.55)), [(-limit, limit)])
+
+
+def test_a_double_rocker_has_two_ranges() -> None:
+    """Between folded and stretched dyad, on either side of the frame's line."""
+    near, far = opposite(1.0, 0.8, 0.9 - 0.3), opposite(1.0, 0.8, 0.9 + 0.3)
+    found = limits_of(four_bar(1.0, 0.8, 0.3, 0.9))
+    same_angles(sorted(found), [(near, far), (2 * pi - far, 2 * pi - near)])
+
+
+def test_the_frame_turned_turns_the_range() -> None:
+    limit, lean = opposite(1.0, 0.9, 0.5 + 0.55), 2.5
+    given = four_bar(1.0, 0.9, 0.5, 0.55)
+    turned = replace(given, frame={"A": ORIGIN, "D": (np.cos(lean), np.sin(lean))})
+    same_angles(limits_of(turned), [(lean - limit, lean + limit)])
+
+
+@pytest.mark.parametrize("end", [-1, 1])
+@pytest.mark.parametrize("beside", [-0.25, -0.1, 0.1])
+def test_a_range_that_ends_beside_crank_angle_0(end: int, beside: float) -> None:
+    """The end lies between the last point of the grid and its first."""
+    limit = opposite(1.0, 0.9, 0.5 + 0.55)
+    lean = float(np.radians(beside)) - end * limit
+    given = four_bar(1.0, 0.9, 0.5, 0.55)
+    turned = replace(given, frame={"A": ORIGIN, "D": (np.cos(lean), np.sin(lean))})
+    (found,) = limits_of(turned)
+    turns = round((found[0] - lean + limit) / (2 * pi))
+    same_angles(np.array(found) - 2 * pi * turns, (lean - limit, lean + limit))
+
+
+def test_a_slider_crank_with_a_short_rod() -> None:
+    given = slider_crank()
+    short = given.with_link("rod", points={"B": ORIGIN, "C": (0.2, 0.0)})
+    limit = asin(0.2 / 0.3)
+    same_angles(sorted(limits_of(short)), [(-limit, limit), (pi - limit, pi + limit)])
+
+
+def test_the_message_tells_links_and_angles() -> None:
+    limit = degrees(opposite(1.0, 0.9, 0.5 + 0.55))
+    message = (
+        "the crank cannot turn fully: 'coupler' and 'rocker' reach each other only from "
+        f"{-limit:.2f} deg to {limit:.2f} deg of crank angle"
+    )
+    with pytest.raises(RangeError) as caught:
+        eq.move(four_bar(1.0, 0.9, 0.5, 0.55))
+    assert str(caught.value) == message
+
+
+def test_two_ranges_are_both_told() -> None:
+    with pytest.raises(RangeError, match=r"from .* deg to .* deg and from .* deg to .* deg of"):
+        eq.move(four_bar(1.0, 0.8, 0.3, 0.9))
+
+
+def test_a_linkage_that_never_closes() -> None:
+    with pytest.raises(RangeError, match="cannot be joined at any crank angle") as caught:
+        eq.move(four_bar(5.0, 0.9, 0.5, 0.7))
+    assert caught.value.ranges == ()
+
+
+@pytest.mark.parametrize(
+    ("gap", "lean"),
+    [
+        (1e-3, 0.0),
+        (1e-3, 0.25),
+        (1e-6, 0.0),
+        (1e-6, 0.1),
+        (1e-6, 0.25),
+        (1e-9, 0.25),
+    ],
+)
+def test_a_narrow_gap(gap: float, lean: float) -> None:
+    """Stretched, the dyad falls short only within a small angle, wherever the frame points."""
+    a, b, c = 1.0, 0.3, 0.7
+    d = a + b - c - gap
+    given = four_bar(a, b, c, d)
+    angle = np.radians(lean)
+    given = replace(given, frame={"A": ORIGIN, "D": (np.cos(angle), np.sin(angle))})
+    found = limits_of(given)
+    limit = opposite(a, b, c + d)
+    same_angles(np.diff(found[0]), 2 * limit)
+    assert len(found) == 1
+
+
+def test_the_second_dyad_may_be_the_one_that_stops() -> None:
+    given = eq.load("watt-six-bar")
+    points = {"G": ORIGIN, "F": (0.03, 0.0)}
+    with pytest.raises(RangeError, match="'link' and 'output' reach each other only from"):
+        eq.move(given.with_link("output", points=points))
+
+
+# -- within the range ------------------------------------------------------------------------------
+
+ROCKING = four_bar(1.0, 0.9, 0.5, 0.55)
+LIMIT = opposite(1.0, 0.9, 0.5 + 0.55)
+
+
+def test_angles_inside_the_range() -> None:
+    theta = np.linspace(-0.99, 0.99, 15) * LIMIT
+    found = eq.analyze(ROCKING, theta).forces
+    b, c, d = (found.motion.points[name].place for name in "BCD")
+    np.testing.assert_allclose(abs(c - b), 0.5)
+    np.testing.assert_allclose(abs(c - d), 0.55)
+    assert np.all(np.isfinite(found.drive_torque))
+    assert not found.motion.whole_cycle
+
+
+@pytest.mark.parametrize("beyond", [1e-4, 0.5, pi - LIMIT])
+def test_angles_outside_the_range(beyond: float) -> None:
+    angle = LIMIT + beyond
+    with pytest.raises(RangeError) as caught:
+        eq.move(ROCKING, [0.0, 0.5, angle])
+    assert f"(asked for {degrees(angle):.4g} deg)" in str(caught.value)
+    same_angles(caught.value.ranges, [(-LIMIT, LIMIT)])
+
+
+def test_angles_of_links_outside_a_cycle_are_continuous() -> None:
+    theta = np.linspace(-0.99, 0.99, 200) * LIMIT
+    for link in eq.move(ROCKING, theta).links.values():
+        assert np.max(np.abs(np.diff(link.angle))) < 0.5
+
+
+def geared(lean: float) -> eq.Machine:
+    """Turn the frame of the rocking four-bar and gear a weight to its rocker."""
+    place = (np.cos(lean), np.sin(lean))
+    return replace(
+        ROCKING,
+        frame={"A": ORIGIN, "D": place, "E": (3.0, 1.0)},
+        links={**ROCKING.links, "weight": heavy(E=ORIGIN)},
+        gears=(eq.Gear("rocker", "weight", ratio=-0.5, start=0.2),),
+    )
+
+
+def test_a_gear_on_a_linkage_that_only_swings() -> None:
+    theta = np.linspace(-0.9, 0.9, 31) * LIMIT
+    motion = eq.move(geared(0.0), theta)
+    rocker, weight = motion.links["rocker"].angle, motion.links["weight"].angle
+    at_zero = int(np.argmin(np.abs(theta)))
+    np.testing.assert_allclose(weight - 0.2, -0.5 * (rocker - rocker[at_zero]), atol=1e-12)
+
+
+def test_a_gear_whose_start_is_out_of_reach() -> None:
+    """`start` holds at crank angle 0, which this linkage cannot reach: that has to be said."""
+    lean = 2.5
+    with pytest.raises(EquipoiseError, match="start"):
+        eq.analyze(geared(lean), lean + np.linspace(-0.9, 0.9, 5) * LIMIT)
+
+
+# -- change points ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("lengths", "angle"),
+    [
+        ((1.0, 0.3, 1.0, 0.3), 0.0),
+        ((1.0, 0.4, 0.8, 0.6), pi),
+        ((1.0, 0.5, 0.8, 0.7), pi),
+        ((0.5, 1.0, 0.5, 1.0), 0.0),
+    ],
+)
+@pytest.mark.parametrize("lean", [0.0, 0.7, -2.1])
+def test_change_points(lengths: tuple[float, ...], angle: float, lean: float) -> None:
+    given = four_bar(*lengths)
+    a = lengths[0]
+    turned = replace(given, frame={"A": ORIGIN, "D": (a * np.cos(lean), a * np.sin(lean))})
+    with pytest.raises(ChangePointError) as caught:
+        eq.move(turned)
+    apart = (caught.value.crank_angle - angle - lean + pi) % (2 * pi) - pi
+    wanted = [0.0, pi] if lengths[0] == lengths[2] else [0.0]
+    assert min(abs(abs(apart) - w) for w in wanted) < 1e-4
+    told = f"change point at crank angle {degrees(caught.value.crank_angle):.2f} deg"
+    assert told in str(caught.value)
+    assert "'coupler' and 'rocker' lie in line there" in str(caught.value)
+
+
+def test_angles_clear_of_the_change_points() -> None:
+    """A parallelogram moves in a definite way between its change points."""
+    theta = np.array([0.5, 1.0, 2.5])
+    motion = eq.move(four_bar(1.0, 0.3, 1.0, 0.3), theta)
+    np.testing.assert_allclose(motion.links["rocker"].angle, theta, atol=1e-13)
+    np.testing.assert_allclose(motion.links["rocker"].angle_2, 0, atol=1e-12)
+    with pytest.raises(MotionError, match="change point at crank angle"):
+        eq.move(four_bar(1.0, 0.3, 1.0, 0.3), [0.5, pi])
+
+
+def test_a_quick_return_whose_slot_reaches_the_crank_pin() -> None:
+    """The lever's pivot lies on the crank pin's circle."""
+    given = machine(
+        {"A": ORIGIN, "D": (0.0, -0.4)},
+        {
+            "crank": heavy(A=ORIGIN, B=(0.4, 0.0)),
+            "block": heavy(B=ORIGIN),
+            "lever": heavy(D=ORIGIN),
+        },
+        sliders=(eq.Slider("block", "B", "lever", "D", 0.0),),
+        assembly={"B": "forward"},
+    )
+    with pytest.raises((ChangePointError, RangeError)):
+        eq.move(given)
+
+
+def test_weakest_position_of_a_dyad() -> None:
+    """Squared sine of the smallest transmission angle, and where it is."""
+    number, angle = eq.assemble(crank_rocker()).cycle.weakest["C"]
+    names = eq.four_bar(crank_rocker())
+    assert names is not None
+    assert names.transmission_min is not None
+    assert number == pytest.approx(np.sin(names.transmission_min) ** 2, rel=1e-9)
+    assert angle % (2 * pi) == pytest.approx(0.0, abs=1e-4)
+
+
+def geared_dyad(length: float) -> eq.Machine:
+    """Gear a lever to the rocker, and hang a dyad on the lever."""
+    four = crank_rocker()
+    return replace(
+        four,
+        frame={**four.frame, "E": (2.0, 0.0), "K": (3.5, 0.2)},
+        links={
+            **four.links,
+            "lever": heavy(E=ORIGIN, H=(0.6, 0.0)),
+            "rod": heavy(H=ORIGIN, J=(length, 0.0)),
+            "output": heavy(K=ORIGIN, J=(1.0, 0.0)),
+        },
+        gears=(eq.Gear("rocker", "lever", ratio=-1.7, start=1.2),),
+        assembly={"C": "left", "J": "left"},
+    )
+
+
+def test_a_dyad_behind_gears_is_watched_too() -> None:
+    given = geared_dyad(1.4)
+    number, angle = eq.assemble(given).cycle.weakest["J"]
+    points = eq.move(given, 7200).points
+    h, j, k = (points[name].place for name in "HJK")
+    sine = np.sin(np.angle((h - j) / (k - j))) ** 2
+    assert number == pytest.approx(sine.min(), rel=1e-4)
+    assert angle % (2 * pi) == pytest.approx(2 * pi * int(np.argmin(sine)) / 7200, abs=2e-3)
+
+
+def test_a_dyad_behind_gears_may_be_the_one_that_stops() -> None:
+    with pytest.raises(RangeError, match="'rod' and 'output' reach each other only from") as caught:
+        eq.move(geared_dyad(0.2))
+    for begin, end in caught.value.ranges:
+        middle = eq.move(geared_dyad(1.4), [begin, end]).points["H"].place
+        reach = abs(middle - (3.5 + 0.2j))
+        np.testing.assert_allclose(reach, 1.2, atol=1e-7)
+
+
+# -- what may be asked for -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("angles", [0, -5])
+def test_counts_of_angles(angles: int) -> None:
+    with pytest.raises(UsageError, match=f"got {angles} crank angles; give at least 1"):
+        eq.move(crank_rocker(), angles)
+
+
+def test_too_many_angles() -> None:
+    with pytest.raises(UsageError, match="give at most 1000000"):
+        eq.move(crank_rocker(), 1_000_001)
+
+
+@pytest.mark.parametrize("angles", [[], [[0.0, 1.0]], [0.0, float("nan")], None])
+def test_angles_in_a_row(angles: object) -> None:
+    with pytest.raises(UsageError, match="one or more finite numbers, in a row"):
+        eq.move(crank_rocker(), angles)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("angles", ["many", ["a", "b"], [0.0, [1.0]]])
+def test_angles_that_are_no_numbers(angles: object) -> None:
+    with pytest.raises(UsageError, match="give a number of crank angles, or angles"):
+        eq.move(crank_rocker(), angles)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("rate", [float("nan"), float("inf"), 1e200])
+@pytest.mark.parametrize("key", ["speed", "acceleration"])
+def test_speeds_must_be_those_of_machines(key: str, rate: float) -> None:
+    with np.errstate(all="ignore"), pytest.raises(UsageError):
+        eq.analyze(crank_rocker(), 4, **{key: rate})
+
+
+def test_one_angle_and_one_number() -> None:
+    assert eq.move(crank_rocker(), 1).crank_angle.tolist() == [0.0]
+    assert eq.move(crank_rocker(), np.int64(3)).crank_angle.size == 3
+    assert eq.move(crank_rocker(), 1.5).crank_angle.tolist() == [1.5]  # type: ignore[arg-type]
+    assert not eq.move(crank_rocker(), 1.5).whole_cycle  # type: ignore[arg-type]
+
+
+def test_frame_is_no_link() -> None:
+    motion = eq.move(crank_rocker(), 4)
+    assert FRAME not in motion.links
+    assert set(motion.points) == {"A", "B", "C", "D"}
