@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from timing import in_turn, report
 
 import equipoise as eq
+from timing import in_turn, report
 
 ANGLES = 360
 MACHINE = eq.load("yamashita-1")

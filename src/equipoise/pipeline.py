@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.dynamics import forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import move
 from equipoise.results import Analysis
@@ -39,6 +39,8 @@ def analyze(
     UsageError : an argument cannot be used.
     """
     motion = move(machine, angles, speed, acceleration)
+    if about is not None:
+        place_of(machine, about)
     if massless(machine):
         return Analysis(motion, None)
     return Analysis(motion, forces(motion, about))

@@ -6,7 +6,7 @@ import os
 import stat
 from pathlib import Path
 
-LARGEST = 10_000_000
+LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
 
 
@@ -20,7 +20,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
     Raises
     ------
     FileError
-        Missing, no regular file (a pipe would wait for ever), larger than 10 MB, not UTF-8.
+        Missing, no regular file (a pipe would wait for ever), larger than 2 MB, not UTF-8.
     """
     try:
         data = _bytes(path)
@@ -62,6 +62,9 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     try:
         data = text.encode("utf-8")
         target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
+        if target.exists() and not target.is_file():  # the file would take the place of a device
+            kind = "a directory" if target.is_dir() else "no regular file"
+            raise FileError(f"this is {kind}; give the name of a file")
         temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
             _write_synced(temporary, data, like=target)

@@ -46,9 +46,6 @@ def write(path: str | os.PathLike[str], text: str, *, replace: bool = True) -> N
     shown = printable(path) or "''"
     if not replace and os.path.lexists(path):
         raise UsageError(f"{shown}: is there already; choose another name")
-    if os.path.exists(path) and not os.path.isfile(path):  # it would take the place of a device
-        kind = "a directory" if os.path.isdir(path) else "no regular file"
-        raise UsageError(f"{shown}: this is {kind}; give the name of a file")
     try:
         write_text(path, text)
     except FileError as problem:

@@ -29,7 +29,7 @@ def remarks(linkage: Linkage) -> Iterator[str]:
                 f"crank angle {degrees(angle):.1f} deg; joint forces are large there"
             )
     for name, link in machine.links.items():
-        size = size_of(link)
+        size = size_of(link.points)
         if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
             continue
         gyration = sqrt(link.inertia / link.mass)

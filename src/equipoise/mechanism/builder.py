@@ -5,15 +5,13 @@ from __future__ import annotations
 from cmath import exp
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from itertools import combinations
-from math import hypot
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.model import FRAME, Machine, Slider, size_of
 from equipoise.mechanism.steps import Call, RunningAngle, State, Step, p, u
 
 Array = np.ndarray[Any, Any]
@@ -43,7 +41,7 @@ class Group:
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
     number : name of the dyad's own number, negative where it cannot be closed; None for others.
-    joint : inner joint of the dyad.
+    joint : inner joint of the dyad.  dead : says what the links do where the number is zero.
     """
 
     links: tuple[str, ...]
@@ -52,6 +50,7 @@ class Group:
     reactions: tuple[Reaction, ...]
     number: str | None = None
     joint: str = ""
+    dead: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,14 +120,9 @@ class Builder:
         return complex(*points[point]) - complex(*points[origin])
 
     def size(self) -> float:
-        """Largest distance between two points of one body, m."""
+        """Size of the largest body, m; 1 where all are points."""
         bodies = [self.machine.frame, *(link.points for link in self.machine.links.values())]
-        spans = [
-            hypot(a[0] - b[0], a[1] - b[1])
-            for points in bodies
-            for a, b in combinations(points.values(), 2)
-        ]
-        return max(spans, default=0.0) or 1.0
+        return max(map(size_of, bodies)) or 1.0
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -188,7 +182,8 @@ def initial_state(machine: Machine, theta: Array) -> State:
     """State in which only the frame and the drive link are known, at crank angles (N,)."""
     state: State = {"theta": theta}
     for name, place in machine.frame.items():
-        state.update({f"p({name})": complex(*place), f"p1({name})": 0j, f"p2({name})": 0j})
+        here = np.complex128(complex(*place))  # unlike Python's, it divides by 0 without an error
+        state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
     state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
     drive = machine.drive.link
     state.update({f"u({drive})": np.exp(1j * theta), f"w({drive})": 1.0, f"a({drive})": 0.0})

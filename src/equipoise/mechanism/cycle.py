@@ -85,20 +85,19 @@ def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
-    base = turns = 1
-    while turns <= MOST_TURNS:
+    base = turns = tried = 1
+    while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
+        tried = turns
         grid = _Grid(machine, turns)
         try:
             for group in groups:
                 grid.add(group)
         except _LongerCycle as longer:
             base, turns = (longer.turns, longer.turns) if longer.turns else (base, turns + base)
-            if turns > MOST_LOOP_TURNS * base:
-                break
             continue
         return Cycle(turns, grid.windings, grid.tables, grid.weakest)
     raise MotionError(
-        f"the motion does not repeat within {min(turns, MOST_TURNS)} turns of the crank; "
+        f"the motion does not repeat within {tried} turns of the crank; "
         "give gears numbers of teeth (or ratios) whose motion closes sooner"
     )
 
@@ -203,7 +202,7 @@ class _Grid:
             raise self.range_error(group, number, at, names)
         if smallest < CHANGE_POINT:
             raise ChangePointError(
-                f"change point at crank angle {_in_degrees(at)}: {names} lie in line there, and "
+                f"change point at crank angle {_in_degrees(at)}: {group.dead} there, and "
                 "nothing decides to which side they go on; change a length so that they do not",
                 at,
             )

@@ -50,6 +50,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     far = pin_reaction(second.point, other, second.body)
     inner = pin_reaction(pin, other, link)
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
+    in_line = f"{link!r} and {other!r} lie in line"
     forces = (
         Call(
             kernels.rrr_forces,
@@ -60,7 +61,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, first.point, ground.force),
         builder.hand_over(second.body, second.point, far.force),
     )
-    return Group((link, other), motion, forces, (ground, far, inner), number, pin)
+    return Group((link, other), motion, forces, (ground, far, inner), number, pin, in_line)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
@@ -87,6 +88,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
     inner = pin_reaction(pin, other, link)
     assert rail.couple is not None
     places = (f"p({pinned.point})", f"p({pin})", f"u({sliding.body})")
+    square = f"{link!r} stands square to the line of {guide.name!r}"
     forces = (
         Call(
             kernels.rrp_forces,
@@ -97,7 +99,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         builder.hand_over(pinned.body, pinned.point, ground.force),
         builder.hand_over(sliding.body, pin, rail.force, rail.couple),
     )
-    return Group((link, other), motion, forces, (ground, rail, inner), number, pin)
+    return Group((link, other), motion, forces, (ground, rail, inner), number, pin, square)
 
 
 def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
@@ -127,6 +129,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     inner = guide_reaction(inner_guide, link, on, block.point)
     assert inner.couple is not None
     places = (f"p({block.point})", f"p({other.point})", f"u({link})")
+    stuck = f"{block.point} comes to {other.point}, or square to it across {slider.name!r}"
     forces = (
         Call(
             kernels.rpr_forces,
@@ -137,7 +140,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         builder.hand_over(block.body, block.point, ground.force),
         builder.hand_over(other.body, other.point, far.force),
     )
-    return Group((link, on), motion, forces, (ground, far, inner), number, slider.point)
+    return Group((link, on), motion, forces, (ground, far, inner), number, slider.point, stuck)
 
 
 def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
@@ -169,6 +172,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     inner = pin_reaction(pin, other, link)
     assert near.couple is not None and far.couple is not None
     turns = (f"u({first.body})", f"u({second.body})")
+    parallel = f"the lines of {guides[0].name!r} and {guides[1].name!r} are parallel"
     forces = (
         Call(
             kernels.prp_forces,
@@ -179,7 +183,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, pin, near.force, near.couple),
         builder.hand_over(second.body, pin, far.force, far.couple),
     )
-    return Group((link, other), motion, forces, (near, far, inner), number, pin)
+    return Group((link, other), motion, forces, (near, far, inner), number, pin, parallel)
 
 
 def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:

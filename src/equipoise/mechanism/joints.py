@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
 
-MOST_SUBSETS = 20_000
+MOST_SUBSETS = 10_000
 
 
 @dataclass(frozen=True)
@@ -166,19 +167,19 @@ def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
         for member in members:
             touching[member].update(members)
     order = {link: k for k, link in enumerate(links)}
-    level: set[tuple[str, ...]] = {(link,) for link in links}
+    level: list[tuple[str, ...]] = [(link,) for link in links]
     budget = MOST_SUBSETS
     while level and budget > 0:
-        ordered = sorted(level, key=lambda group: [order[link] for link in group])
-        yield from ordered
-        budget -= len(ordered)
-        level = {
-            tuple(sorted({*group, new}, key=order.__getitem__))
-            for group in ordered
-            for link in group
-            for new in touching[link]
-            if new not in group
-        }
+        yield from level
+        budget -= len(level)
+        larger = (
+            tuple(sorted((*group, new), key=order.__getitem__))
+            for group in level
+            for new in set().union(*(touching[link] for link in group)).difference(group)
+        )
+        level = sorted(
+            set(islice(larger, budget)), key=lambda group: [order[link] for link in group]
+        )
 
 
 def _number(count: int, word: str) -> str:

@@ -145,14 +145,14 @@ def _check_assembly(machine: Machine, used: set[str]) -> None:
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
     """The smallest group that the known bodies determine: geared link, dyad, or loops."""
     known = builder.rank
-    for link in unknown:
-        if joints.freedom([link], known) == 0:
-            group = _geared(builder, joints, link)
-            if group is not None:
-                return group
-    for pair in combinations(unknown, 2):
+    group = _geared(builder, joints, unknown)
+    if group is not None:
+        return group
+    outers = {link: outer_joints(builder, joints, link) for link in unknown}
+    hung = [link for link in unknown if len(outers[link]) == 1]
+    for pair in combinations(hung, 2):
         if joints.freedom(pair, known) == 0:
-            dyad = _dyad(builder, joints, pair)
+            dyad = _dyad(builder, joints, (outers[pair[0]][0], outers[pair[1]][0]))
             if dyad is not None:
                 return dyad
     for links in subsets(joints, unknown):
@@ -170,28 +170,28 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     )
 
 
-def _geared(builder: Builder, joints: Structure, link: str) -> Group | None:
-    """A link pinned to its gear's carrier, with driver and carrier known."""
+def _geared(builder: Builder, joints: Structure, unknown: list[str]) -> Group | None:
+    """A link pinned to its gear's carrier, with driver and carrier known, if there is one."""
+    known = builder.rank
     for gear in joints.gears:
-        if gear.driven != link or not {gear.driver, gear.carrier} <= builder.rank.keys():
-            continue
-        return gears.geared(builder, gear, gears.Mesh.of(builder, joints, gear))
+        ready = gear.driven in unknown and {gear.driver, gear.carrier} <= known.keys()
+        if ready and joints.freedom([gear.driven], known) == 0:
+            return gears.geared(builder, gear, gears.Mesh.of(builder, joints, gear))
     return None
 
 
-def _dyad(builder: Builder, joints: Structure, pair: tuple[str, str]) -> Group | None:
-    """Two links with one joint each to known bodies and one between them, if they are such."""
-    outers = [outer_joints(builder, joints, link) for link in pair]
-    if any(len(outer) != 1 for outer in outers):
-        return None
-    first, second = outers[0][0], outers[1][0]
+def _dyad(builder: Builder, joints: Structure, outers: tuple[Outer, Outer]) -> Group | None:
+    """Two links with one joint each to known bodies, if one joint is between them."""
+    pair = (outers[0].link, outers[1].link)
     pins = [
         point
         for point in joints.pins_between(*pair)
         if not any(body in builder.rank for body in joints.pins[point])
     ]
     between = [s for s in joints.sliders if {s.link, s.on} == set(pair)]
-    return _by_joints(builder, (first, second), pins, between)
+    if len(pins) + len(between) != 1:
+        return None
+    return _by_joints(builder, outers, pins, between)
 
 
 def _by_joints(
@@ -220,11 +220,11 @@ def _by_joints(
 
 def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
     """Joints of an unknown link to known bodies."""
-    result = [
-        Outer(link, builder.carrier_of(bodies), point)
-        for point, bodies in joints.pins.items()
-        if link in bodies and any(body in builder.rank for body in bodies)
-    ]
+    result = []
+    for point in builder.machine.links[link].points:
+        known = [body for body in joints.pins.get(point, ()) if body in builder.rank]
+        if known:
+            result.append(Outer(link, builder.carrier_of(known), point))
     for slider in joints.sliders:
         other = slider.on if slider.link == link else slider.link
         if link in (slider.link, slider.on) and other in builder.rank:

@@ -19,6 +19,8 @@ from equipoise.mechanism.steps import Step, run
 
 STEPS_PER_TURN = 360
 """Crank angles in a turn at which a branch is followed from one to the next."""
+FAR = 0.25
+"""Distance, in sizes of the machine, between a place in the file and the solution found from it."""
 
 
 def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> Group:
@@ -166,6 +168,8 @@ def _solve_start(
     backwards = {body: pose.pick(slice(None, None, -1)) for body, pose in known.items()}
     columns = stand_in.follow(np.array(guess), backwards, path[::-1])
     at_zero = columns[:, -1]
+    if not meshes:
+        at_zero[2::3] = np.angle(np.exp(1j * at_zero[2::3]))
     at_start = group.poses(known, columns[:, ::-1])
     solved = tuple(
         replace(loop, offset=float(np.ravel(loop.gaps(at_start, 0)[0])[0]))
@@ -173,8 +177,22 @@ def _solve_start(
         else loop
         for loop in loops
     )
+    _check_near(builder, group.poses(backwards, columns[:, :1]), position, group)
     start = tuple(float(x) for x in at_zero)
     return replace(group, start=start, equations=solved), solved
+
+
+def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
+    """A solution far from the position in the file may be another assembly of the links."""
+    for link, anchor in zip(group.links, group.anchors, strict=True):
+        for name in builder.machine.links[link].points.keys() & position.points.keys():
+            found = complex(np.ravel(poses[link].point(builder.arm(link, anchor, name))[0])[0])
+            if abs(found - complex(*position.points[name])) > FAR * group.size:
+                raise ModelError(
+                    f"position.points.{name}",
+                    f"too rough: the links meet with {name} at ({found.real * 1e3:.4g}, "
+                    f"{found.imag * 1e3:.4g}) mm; give a place nearer to where it is",
+                )
 
 
 def _guess(

@@ -23,6 +23,10 @@ STANDARD_GRAVITY: Vector = (0.0, -9.80665)
 HUGE, TINY = 1e30, 1e-30
 """Limits of what is taken for a quantity in SI units."""
 
+MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500}
+LONGEST_NAME = 200
+"""Far beyond any machine; they keep a file of nonsense from running for hours."""
+
 SIDES = ("left", "right", "forward", "backward")
 
 
@@ -235,6 +239,7 @@ def _listed(names: list[str]) -> str:
 
 
 def _problems(machine: Machine) -> Iterator[ModelError]:
+    yield from _too_much(machine)
     yield from _not_finite(machine)
     yield from _wrong_points("frame", machine.frame)
     if not machine.links:
@@ -254,6 +259,32 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
             yield ModelError(f"assembly.{joint}", f"got {side!r}; give one of {_listed([*SIDES])}")
     if machine.position is not None:
         yield from _wrong_position(machine.position, machine)
+
+
+def _too_much(machine: Machine) -> Iterator[ModelError]:
+    bodies = {FRAME: machine.frame} | {name: link.points for name, link in machine.links.items()}
+    counts = {
+        "links": len(machine.links),
+        "points": sum(map(len, bodies.values())),
+        "sliders": len(machine.sliders),
+        "gears": len(machine.gears),
+        "loads": len(machine.loads),
+    }
+    for what, count in counts.items():
+        if count > MOST[what]:
+            yield ModelError(what, f"got {count}; at most {MOST[what]} are computed with")
+    for where, name in [("title", machine.title), *_names(bodies)]:
+        if len(name) > LONGEST_NAME:
+            yield ModelError(where, f"{len(name)} characters; give at most {LONGEST_NAME}")
+        elif not name.isprintable():
+            yield ModelError(where, f"got {name!r}; give printable characters")
+
+
+def _names(bodies: Mapping[str, Mapping[str, Vector]]) -> Iterator[tuple[str, str]]:
+    for body, points in bodies.items():
+        yield "links", body
+        for point in points:
+            yield f"points of {body}", point
 
 
 def _not_finite(machine: Machine) -> Iterator[ModelError]:
@@ -415,7 +446,7 @@ def _wrong_position(position: Position, machine: Machine) -> Iterator[ModelError
             yield ModelError(f"position.angles.{link}", unknown(link, machine.links, "link"))
 
 
-def size_of(link: Link) -> float:
-    """Largest distance between two points of a link, m."""
-    points = list(link.points.values())
-    return max(hypot(a[0] - b[0], a[1] - b[1]) for a in points for b in points)
+def size_of(points: Mapping[str, Vector]) -> float:
+    """Diagonal of the rectangle around some points, m: how large a body is."""
+    xs, ys = zip(*points.values(), strict=True)
+    return hypot(max(xs) - min(xs), max(ys) - min(ys))

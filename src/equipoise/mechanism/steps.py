@@ -56,7 +56,7 @@ class RunningAngle:
     link: str
 
     def run(self, state: State) -> None:
-        angle = np.angle(state[f"u({self.link})"])
+        angle = np.angle(np.broadcast_to(state[f"u({self.link})"], np.shape(state["theta"])))
         reference = state.get(f"reference({self.link})")
         if reference is None:
             state[f"phi({self.link})"] = np.unwrap(angle)
