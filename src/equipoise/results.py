@@ -24,7 +24,7 @@ Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Analysis:
     """What a machine does over its crank angles.
 

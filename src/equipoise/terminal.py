@@ -7,15 +7,11 @@ from math import degrees, pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from rich.box import SIMPLE_HEAD
-from rich.console import Console
-from rich.markup import escape
-from rich.table import Table
+from tabulate import tabulate
 
 from equipoise.mechanism.advice import remarks
 from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.newton import LoopGroup
 from equipoise.signals import Figures, figures
 
 if TYPE_CHECKING:
@@ -26,8 +22,6 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 
 PER_RPM = pi / 30
-WIDTH = 110
-"""Columns of the tables; a narrower terminal wraps them."""
 
 
 def number(value: float, scale: float = 0.0) -> str:
@@ -69,30 +63,30 @@ def _at(found: Figures, value: float, crank_angle: float, scale: float) -> str:
     return f"{number(value, scale)} at {angle(crank_angle)}"
 
 
-def _console() -> Console:
-    console = Console(highlight=False, soft_wrap=True)
-    console.width = max(console.width, WIDTH)
-    return console
-
-
 def print_check(machine: Machine) -> None:
     """How the linkage is built up, and what to look at again."""
     linkage = assemble(machine)
     cycle = linkage.cycle
-    console = _console()
-    console.print(f"[bold]{escape(machine.title)}[/]")
+    print(machine.title)
     drive = machine.drive
-    console.print(
-        f"{len(machine.links)} moving links, one free motion; driven: {escape(drive.link)} at "
-        f"{number(drive.speed / PER_RPM)} rpm about {escape(linkage.pivot)}"
+    print(
+        f"{len(machine.links)} moving links, one free motion; driven: {drive.link} at "
+        f"{number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     )
     for row in _build_up(linkage):
-        console.print(f"  {escape(row)}")
+        print(f"  {row}")
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    console.print(f"the crank turns fully; the motion repeats after {turns}")
+    print(f"the crank turns fully; the motion repeats after {turns}")
     for remark in remarks(linkage):
-        console.print(f"[yellow]note:[/] {escape(remark)}")
-    console.print("ready to be analysed")
+        print(f"note: {remark}")
+    print("ready to be analysed")
+
+
+HOW = {
+    "dyad": "dyad",
+    "geared": "geared",
+    "loops": "by Newton's method on the loop equations",
+}
 
 
 def _build_up(linkage: Linkage) -> Iterable[str]:
@@ -102,49 +96,42 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
             f"{r.name} ({r.kind} on {r.by})" if r.kind != "slider" else f"{r.name} (slider)"
             for r in group.reactions
         )
-        if any(isinstance(step, LoopGroup) for step in group.motion):
-            how = "by Newton's method on the loop equations"
-        elif group.number is None:
-            how = "geared"
-        else:
-            how = "dyad"
-        yield f"{links}: {how}; joints {joints}"
+        yield f"{links}: {HOW[group.kind]}; joints {joints}"
 
 
 def print_analysis(analysis: Analysis) -> None:
     """Motion, forces and joints as tables."""
-    console = _console()
     motion = analysis.motion
     machine = analysis.machine
-    console.print(f"[bold]{escape(machine.title)}[/]")
+    print(machine.title)
     count = len(motion.crank_angle)
     span = f"{count} crank angles"
     if motion.whole_cycle:
         span += " in one turn" if motion.turns == 1 else f" in {motion.turns} turns"
-    console.print(
-        f"{escape(machine.drive.link)} driven at {number(motion.speed / PER_RPM)} rpm "
+    print(
+        f"{machine.drive.link} driven at {number(motion.speed / PER_RPM)} rpm "
         f"({number(motion.speed)} rad/s), {span}"
     )
     if analysis.four_bar is not None:
-        console.print(_four_bar(analysis.four_bar))
-    console.print(_links(analysis))
-    console.print(_points(analysis))
+        print(_four_bar(analysis.four_bar))
+    print(_links(analysis))
+    print(_points(analysis))
     if analysis.solved is None:
-        console.print(f"[yellow]note:[/] {escape(massless(machine))}")
+        print(f"note: {massless(machine)}")
         return
-    console.print(_forces(analysis))
-    console.print(_causes(analysis))
-    console.print(_joints(analysis))
+    print(_forces(analysis))
+    print(_causes(analysis))
+    print(_joints(analysis))
 
 
-def _table(title: str, first: str, *columns: str) -> Table:
-    table = Table(
-        title=title, title_justify="left", title_style="bold", box=SIMPLE_HEAD, pad_edge=False
-    )
-    table.add_column(first, no_wrap=True)
-    for column in columns:
-        table.add_column(column, justify="right", no_wrap=True)
-    return table
+Row = tuple[str, ...]
+
+
+def _table(title: str, header: Row, rows: Iterable[Row], words: int = 1) -> str:
+    """A titled table whose first columns are words and whose others are numbers."""
+    align = ["left"] * words + ["right"] * (len(header) - words)
+    body = tabulate(list(rows), header, tablefmt="simple", disable_numparse=True, colalign=align)
+    return f"\n{title}\n\n{body}"
 
 
 def _four_bar(found: FourBar) -> str:
@@ -172,41 +159,33 @@ def _four_bar(found: FourBar) -> str:
     return "\n".join(lines)
 
 
-def _links(analysis: Analysis) -> Table:
-    table = _table(
-        "Links", "", "angle deg", "angular velocity rad/s", "angular acceleration rad/s2"
-    )
-    for name, link in analysis.motion.links.items():
-        rate = abs(analysis.motion.speed)
-        row = [
+def _links(analysis: Analysis) -> str:
+    rate = abs(analysis.motion.speed)
+    rows = [
+        (
+            name,
             span(np.degrees(link.angle)),
             span(link.angular_velocity, rate),
             span(link.angular_acceleration, rate**2),
-        ]
-        table.add_row(escape(name), *row)
-    return table
+        )
+        for name, link in analysis.motion.links.items()
+    ]
+    header = ("", "angle deg", "angular velocity rad/s", "angular acceleration rad/s2")
+    return _table("Links", header, rows)
 
 
-def _points(analysis: Analysis) -> Table:
-    table = _table(
-        "Moving points; largest velocity and acceleration at crank angle, deg",
-        "",
-        "x mm",
-        "y mm",
-        "velocity m/s",
-        "acceleration m/s2",
-    )
+def _points(analysis: Analysis) -> str:
     theta = analysis.crank_angle
+    rows = []
     for name, point in analysis.motion.points.items():
         if name in analysis.machine.frame:
             continue
         reach = 1e3 * float(np.max(np.abs(point.place)))
-        row = [span(1e3 * point.x, reach), span(1e3 * point.y, reach)]
-        for vector in (point.velocity, point.acceleration_vector):
-            found = figures(theta, np.abs(vector))
-            row.append(largest(found))
-        table.add_row(escape(name), *row)
-    return table
+        places = (span(1e3 * point.x, reach), span(1e3 * point.y, reach))
+        vectors = (point.velocity, point.acceleration_vector)
+        rows.append((name, *places, *(largest(figures(theta, np.abs(v))) for v in vectors)))
+    title = "Moving points; largest velocity and acceleration at crank angle, deg"
+    return _table(title, ("", "x mm", "y mm", "velocity m/s", "acceleration m/s2"), rows)
 
 
 CAUSES = {
@@ -227,64 +206,44 @@ FORCES = (
 )
 
 
-def _forces(analysis: Analysis) -> Table:
+def _forces(analysis: Analysis) -> str:
     about = analysis.forces.about
     where = f"({number(about.real * 1e3)}, {number(about.imag * 1e3)}) mm"
-    table = _table(
-        f"On frame and drive; extremes at crank angle, deg; moments about {where}",
-        "",
-        "",
-        "mean",
-        "RMS",
-        "largest",
-        "smallest",
-        "peak to peak",
-    )
+    title = f"On frame and drive; extremes at crank angle, deg; moments about {where}"
+    rows = []
     for label, key, unit in FORCES:
         found = analysis.summary[key]
         scale = max(analysis.summary[k].peak for _, k, u in FORCES if u == unit)
-        table.add_row(
-            label,
-            unit,
-            number(found.mean, scale),
-            number(found.rms, scale),
-            largest(found, scale),
-            smallest(found, scale),
-            number(found.peak_to_peak, scale),
-        )
-    return table
+        means = (number(found.mean, scale), number(found.rms, scale))
+        extremes = (largest(found, scale), smallest(found, scale))
+        rows.append((label, unit, *means, *extremes, number(found.peak_to_peak, scale)))
+    header = ("", "", "mean", "RMS", "largest", "smallest", "peak to peak")
+    return _table(title, header, rows, words=2)
 
 
-def _causes(analysis: Analysis) -> Table:
-    table = _table("Drive torque by cause, N m", "", "mean", "RMS", "largest", "smallest")
+def _causes(analysis: Analysis) -> str:
     scale = analysis.summary["drive_torque"].peak
     split = analysis.forces.split.by_cause("drive_torque")
+    rows = []
     for cause, label in CAUSES.items():
         if cause == "load" and not analysis.machine.loads:
             continue
         found = figures(analysis.crank_angle, split[cause])
         values = (found.mean, found.rms, found.max, found.min)
-        table.add_row(label, *(number(value, scale) for value in values))
-    return table
+        rows.append((label, *(number(value, scale) for value in values)))
+    header = ("", "mean", "RMS", "largest", "smallest")
+    return _table("Drive torque by cause, N m", header, rows)
 
 
-def _joints(analysis: Analysis) -> Table:
-    table = _table(
-        "Force in each joint, N; largest at crank angle, deg",
-        "",
-        "on",
-        "by",
-        "mean",
-        "RMS",
-        "largest",
-        "moment N m",
-    )
+def _joints(analysis: Analysis) -> str:
     forces = analysis.forces
     joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    rows = []
     for name, joint in joints.items():
         found = figures(analysis.crank_angle, joint.size)
         moment = joint.moment if isinstance(joint, SliderForce) else None
         couple = "" if moment is None else number(float(np.max(np.abs(moment))), 1.0)
-        row = (number(found.mean), number(found.rms), largest(found), couple)
-        table.add_row(escape(name), escape(joint.on), escape(joint.by), *row)
-    return table
+        values = (number(found.mean), number(found.rms), largest(found), couple)
+        rows.append((name, joint.on, joint.by, *values))
+    header = ("", "on", "by", "mean", "RMS", "largest", "moment N m")
+    return _table("Force in each joint, N; largest at crank angle, deg", header, rows, words=3)

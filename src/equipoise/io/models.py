@@ -1,6 +1,6 @@
 """Model files: reading, writing, the bundled examples and the JSON Schema.
 
-pydantic and pint are imported when the first file is read, not before.
+pydantic is imported when the first file is read, not before.
 """
 
 from __future__ import annotations

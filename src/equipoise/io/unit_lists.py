@@ -83,17 +83,6 @@ KINDS: dict[Dimension, Kind] = {
     "power": _kind("a power", "W, mW, kW", "W", "40 W"),
 }
 
-_PI = "3.14159265358979323846264338327950288419716939937510582097494459"
-DEFINITIONS = f"""
-m = [length]; mm = 1e-3 m; cm = 1e-2 m; km = 1e3 m; um = 1e-6 m; in = 0.0254 m; ft = 0.3048 m
-rad = []; turn = 2 * {_PI} rad; deg = turn / 360
-kg = [mass]; g = 1e-3 kg; mg = 1e-6 kg; t = 1e3 kg; lb = 0.45359237 kg; oz = lb / 16
-s = [time]; ms = 1e-3 s; min = 60 s; h = 3600 s; Hz = 1 / s; kHz = 1e3 Hz; rpm = turn / min
-gn = 9.80665 m / s**2; N = kg * m / s**2; kN = 1e3 N; mN = 1e-3 N
-kgf = kg * gn; gf = g * gn; lbf = lb * gn; W = N * m / s; mW = 1e-3 W; kW = 1e3 W
-"""
-"""All of them in terms of the SI units, for pint."""
-
 NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _SEPARATOR = "(?: | ?[*\N{MIDDLE DOT}] ?)"
 

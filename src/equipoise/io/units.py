@@ -1,8 +1,7 @@
 """Quantities at the door: strict text such as ``"33.5 mm"`` to SI floats, and back without loss.
 
-The grammar is number, space, unit.  The units are an explicit list for each dimension; pint only
-works out their factors, in decimal arithmetic, so that ``parse("33.5 mm", "length")`` is the float
-nearest to 0.0335.  pint alone would read ``33,5 mm`` as 0.335 m and ``50 Hz`` as 50 rad/s.
+The grammar is number, space, unit; the units are an explicit list for each dimension.  Conversion
+is in decimal arithmetic, so that ``parse("33.5 mm", "length")`` is the float nearest to 0.0335.
 """
 
 from __future__ import annotations
@@ -11,14 +10,11 @@ import re
 from decimal import Decimal, localcontext
 from functools import cache
 from math import isfinite
-from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.io.unit_lists import DEFINITIONS, KINDS, Dimension, Kind, pattern, plain_unit
+from equipoise.io.unit_factors import FACTORS
+from equipoise.io.unit_lists import KINDS, Dimension, Kind, pattern, plain_unit
 from equipoise.io.unit_problems import described, not_text, too_far, wrong_text
-
-if TYPE_CHECKING:
-    from pint import UnitRegistry
 
 __all__ = [
     "KINDS",
@@ -115,25 +111,9 @@ def _grammar(dimension: Dimension) -> re.Pattern[str]:
     return re.compile(pattern(dimension))
 
 
-@cache
-def _registry() -> UnitRegistry[Decimal]:
-    # An own registry of some thirty units: pint's standard one takes a second to build.
-    from pint import UnitRegistry
-
-    registry: UnitRegistry[Decimal] = UnitRegistry(None, non_int_type=Decimal)
-    for definition in re.split(r"[;\n]\s*", DEFINITIONS.strip()):
-        registry.define(definition)
-    return registry
-
-
-@cache
 def _factor(unit: str) -> Decimal:
     """SI units in one `unit`."""
-    with localcontext() as context:
-        context.prec = _DIGITS
-        expression = unit.replace(" ", "*").replace("^", "**")
-        factor, _ = _registry().get_base_units(expression)
-        return Decimal(str(factor))  # pint gives the int 1 for SI units
+    return Decimal(FACTORS[unit])
 
 
 def _short(value: float, unit: str) -> str | None:

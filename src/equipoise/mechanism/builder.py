@@ -5,7 +5,7 @@ from __future__ import annotations
 from cmath import exp
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -38,12 +38,14 @@ class Reaction:
 class Group:
     """Links that are solved together.
 
+    kind : by a dyad's kernel, by their gear, or by Newton's method on loop equations.
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
     number : name of the dyad's own number, negative where it cannot be closed; None for others.
     joint : inner joint of the dyad.  dead : says what the links do where the number is zero.
     """
 
+    kind: Literal["dyad", "geared", "loops"]
     links: tuple[str, ...]
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]

@@ -18,8 +18,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.builder import Group, initial_state
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.newton import LoopGroup
-from equipoise.mechanism.steps import RunningAngle, Step, run
+from equipoise.mechanism.steps import needed_references, run
 
 Array = np.ndarray[Any, Any]
 
@@ -69,12 +68,6 @@ class Cycle:
         value = table[..., left] * (1 - share) + table[..., left + 1] * share
         rise = np.asarray(table[..., -1] - table[..., 0])
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
-
-
-def needed_references(steps: Iterable[Step]) -> list[str]:
-    """Names of the references that these steps read."""
-    names = [step.link for step in steps if isinstance(step, RunningAngle)]
-    return names + [step.name for step in steps if isinstance(step, LoopGroup)]
 
 
 def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
@@ -141,28 +134,30 @@ class _Grid:
                     np.angle(np.broadcast_to(self.state[f"u({link})"], self.theta.shape))
                 )
             self.tables[link] = angle
-        for step in group.motion:
-            if isinstance(step, LoopGroup):
-                self.record_loops(step)
-                return
-        gear = next((r.name for r in group.reactions if r.kind == "gear"), None)
-        if gear is not None:
+        if group.kind == "loops":
+            self.record_loops(group)
+            return
+        if group.kind == "geared":
+            gear = next(r.name for r in group.reactions if r.kind == "gear")
             self.windings[group.links[0]] = self.gear_winding(gear)
             return
         for link in group.links:
             table = self.tables[link]
             self.windings[link] = round((table[-1] - table[0]) / (2 * pi))
 
-    def record_loops(self, loops: LoopGroup) -> None:
+    def record_loops(self, group: Group) -> None:
         """Newton's method follows a branch, which may come back only after further turns."""
-        q = self.state[f"q({loops.name})"]
-        self.tables[loops.name] = q
+        name = " and ".join(group.links)
+        q = self.state[f"q({name})"]
+        self.tables[name] = q
         rise = q[:, -1] - q[:, 0]
         turns = np.round(rise[2::3] / (2 * pi))
         rise[2::3] -= 2 * pi * turns
-        if np.max(np.abs(rise) / loops.scale()) > 1e-8:
+        angle = np.arange(len(q)) % 3 == 2
+        scale = np.where(angle, 1.0, np.max(np.abs(q[~angle])))
+        if np.max(np.abs(rise) / scale) > 1e-8:
             raise _LongerCycle(0)
-        self.windings.update(zip(loops.links, (int(turn) for turn in turns), strict=True))
+        self.windings.update(zip(group.links, (int(turn) for turn in turns), strict=True))
 
     def gear_winding(self, name: str) -> int:
         """Turns of a driven gear in one cycle, or a longer cycle in which they are whole."""

@@ -61,7 +61,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, first.point, ground.force),
         builder.hand_over(second.body, second.point, far.force),
     )
-    return Group((link, other), motion, forces, (ground, far, inner), number, pin, in_line)
+    return Group("dyad", (link, other), motion, forces, (ground, far, inner), number, pin, in_line)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
@@ -99,7 +99,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         builder.hand_over(pinned.body, pinned.point, ground.force),
         builder.hand_over(sliding.body, pin, rail.force, rail.couple),
     )
-    return Group((link, other), motion, forces, (ground, rail, inner), number, pin, square)
+    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), number, pin, square)
 
 
 def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
@@ -140,7 +140,9 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         builder.hand_over(block.body, block.point, ground.force),
         builder.hand_over(other.body, other.point, far.force),
     )
-    return Group((link, on), motion, forces, (ground, far, inner), number, slider.point, stuck)
+    return Group(
+        "dyad", (link, on), motion, forces, (ground, far, inner), number, slider.point, stuck
+    )
 
 
 def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
@@ -183,7 +185,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, pin, near.force, near.couple),
         builder.hand_over(second.body, pin, far.force, far.couple),
     )
-    return Group((link, other), motion, forces, (near, far, inner), number, pin, parallel)
+    return Group("dyad", (link, other), motion, forces, (near, far, inner), number, pin, parallel)
 
 
 def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:
@@ -228,7 +230,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         builder.hand_over(pinned.body, pinned.point, ground.force),
         builder.hand_over(sliding.body, guide.point, rail.force, rail.couple),
     )
-    return Group((link, other), motion, forces, (ground, rail, inner), number, slider.point)
+    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), number, slider.point)
 
 
 def _guide(outer: Outer) -> Guide:

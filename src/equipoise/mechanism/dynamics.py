@@ -52,7 +52,7 @@ CAUSES = ("translation", "rotation", "weight", "load")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Forces:
     """Forces of a machine in motion; arrays (N,), one value for each crank angle.
 
@@ -155,7 +155,7 @@ class Forces:
         return self.motion.linkage.anchors[link]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Split:
     """Outputs by cause and link: arrays (4, L, N), causes as in `CAUSES`, links in file order.
 

@@ -77,4 +77,4 @@ def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
         builder.hand_over(gear.driver, pitch, tooth),
     )
     reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
-    return Group((link,), motion, forces, (ground, reaction))
+    return Group("geared", (link,), motion, forces, (ground, reaction))

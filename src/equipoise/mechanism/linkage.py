@@ -25,11 +25,10 @@ from equipoise.mechanism.builder import (
     initial_state,
     pin_reaction,
 )
-from equipoise.mechanism.cycle import Cycle, close, needed_references
+from equipoise.mechanism.cycle import Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
-from equipoise.mechanism.loopgroup import loop_group
 from equipoise.mechanism.model import FRAME, Machine, Slider
-from equipoise.mechanism.steps import State, Step, run
+from equipoise.mechanism.steps import State, Step, needed_references, run
 
 
 @dataclass(frozen=True)
@@ -163,6 +162,8 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
                 "the linkage as a whole has one free motion, but no drive can command it"
             )
         if freedom == 0:
+            from equipoise.mechanism.loopgroup import loop_group
+
             return loop_group(builder, joints, links)
     raise MobilityError(
         f"the drive does not determine {', '.join(unknown)}: no group of these links has as many "

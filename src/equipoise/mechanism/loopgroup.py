@@ -51,7 +51,7 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
         for step in builder.reach(reaction.on, reaction.at)
     )
     forces: tuple[Step, ...] = (LoopForces(solved, loops, outputs), *hand_over)
-    return Group(links, (*before, solved, *reach), forces, reactions)
+    return Group("loops", links, (*before, solved, *reach), forces, reactions)
 
 
 @dataclass

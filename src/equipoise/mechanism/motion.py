@@ -29,7 +29,7 @@ def in_time(first: Array, second: Array, speed: float, acceleration: float) -> A
     return steady + first * acceleration if acceleration else steady
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class LinkMotion:
     """Motion of one link; every array (N,).
 
@@ -54,7 +54,7 @@ class LinkMotion:
         return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class PointMotion:
     """Motion of one point; complex arrays (N,), x + i y.
 
@@ -119,7 +119,7 @@ class Named(dict[str, Value]):
         raise KeyError(unknown(name, self, self.kind))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Motion:
     """Motion of a machine at N crank angles.
 

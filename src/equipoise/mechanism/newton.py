@@ -44,14 +44,14 @@ class LoopGroup:
     size: float
 
     @property
-    def name(self) -> str:
+    def reference(self) -> str:
         return " and ".join(self.links)
 
     def run(self, state: State) -> None:
         """Solve at every crank angle; follow the branch where no solution is known nearby."""
         theta = np.atleast_1d(state["theta"])
         known = self.known_poses(state)
-        guess = state.get(f"reference({self.name})")
+        guess = state.get(f"reference({self.reference})")
         if guess is None:
             q = self.follow(np.array(self.start), known, theta)
         else:
@@ -193,4 +193,4 @@ class LoopGroup:
             rotation = (np.exp(1j * q[angle]), q1[angle], q2[angle])
             state.update(zip(u(link), rotation, strict=True))
             state[f"phi({link})"] = q[angle]
-        state[f"q({self.name})"] = q
+        state[f"q({self.reference})"] = q

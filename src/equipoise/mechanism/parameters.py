@@ -29,7 +29,7 @@ QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 FRAME_OUTPUTS = ("shaking_force", "shaking_moment", "drive_torque")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Regressor:
     """Derivative of every output by every inertial parameter.
 
@@ -51,7 +51,7 @@ class Regressor:
     gears: Mapping[str, MeshForce]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class BaseParameters:
     """The combinations of inertial parameters that the outputs can tell apart.
 

@@ -24,7 +24,7 @@ Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class VectorSignal:
     """A planar vector against crank angle; `value` is complex, x + i y, (..., N)."""
 
@@ -49,7 +49,7 @@ class VectorSignal:
         return np.angle(self.value)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class JointForce(VectorSignal):
     """Force in a pin, N: exerted on body `on` by body `by`."""
 
@@ -57,7 +57,7 @@ class JointForce(VectorSignal):
     by: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SliderForce(JointForce):
     """Force in a sliding joint, N.
 
@@ -69,7 +69,7 @@ class SliderForce(JointForce):
     moment: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class MeshForce(JointForce):
     """Force between teeth, N, along the line of action at the pitch point.
 
@@ -82,7 +82,7 @@ class MeshForce(JointForce):
     radial: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Pass:
     """Joint forces of one run over the groups, for one demand or a stack of them.
 

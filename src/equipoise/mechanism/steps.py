@@ -55,6 +55,10 @@ class RunningAngle:
 
     link: str
 
+    @property
+    def reference(self) -> str:
+        return self.link
+
     def run(self, state: State) -> None:
         angle = np.angle(np.broadcast_to(state[f"u({self.link})"], np.shape(state["theta"])))
         reference = state.get(f"reference({self.link})")
@@ -73,6 +77,11 @@ class Rotation:
 
     def run(self, state: State) -> None:
         state[f"u({self.link})"] = np.exp(1j * np.asarray(state[f"phi({self.link})"]))
+
+
+def needed_references(steps: Iterable[Step]) -> list[str]:
+    """Names of the references that these steps read: running angles, and poses of loop groups."""
+    return [step.reference for step in steps if hasattr(step, "reference")]
 
 
 def run(steps: Iterable[Step], state: State) -> State:

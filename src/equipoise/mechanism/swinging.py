@@ -14,7 +14,6 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.steps import State, run
 
 Array = np.ndarray[Any, Any]
@@ -27,7 +26,7 @@ def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePoi
     ------
     MotionError : one of the crank angles is out of reach.
     """
-    if any(isinstance(step, LoopGroup) for step in linkage.motion):
+    if any(group.kind == "loops" for group in linkage.groups):
         raise error
     start = linkage.start(theta)
     if linkage.needed_references:
