@@ -42,8 +42,10 @@ class Mesh:
         return cls(driver_pin, driven_pin, centres / (1 - ratio), radial)
 
 
-def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
+def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
     """A link that is pinned to a known carrier and geared to a known driver."""
+    mesh = Mesh.of(builder, joints, gear)
+    bearer = builder.carrier_of(joints.pins[mesh.driven_pin])
     link, carrier, pin = gear.driven, gear.carrier, mesh.driven_pin
     before = (*builder.running_angle(gear.driver), *builder.running_angle(carrier))
     now = run(before, builder.now)
@@ -56,14 +58,14 @@ def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
     )
     motion = (
         *before,
-        *builder.reach(carrier, pin),
+        *builder.reach(bearer, pin),
         Call(kernels.gear, (*angles[0], *angles[1]), (ratio, float(offset[0])), angles[2]),
         Rotation(link),
     )
     builder.add({link: pin}, [pin])
     builder.running.add(link)
     pitch, tooth, sense = f"pitch({gear.name})", f"R({gear.name}/{link})", f"flank({gear.name})"
-    ground = pin_reaction(pin, link, carrier)
+    ground = pin_reaction(pin, link, bearer)
     forces = (
         Call(kernels.point, (*p(pin), *u(carrier)), (mesh.lever,), p(pitch)),
         Call(kernels.flank, (f"M({link})",), (), (sense,)),
@@ -73,7 +75,7 @@ def geared(builder: Builder, gear: Gear, mesh: Mesh) -> Group:
             (mesh.lever, mesh.radial),
             (ground.force, tooth, f"T({gear.name})"),
         ),
-        builder.hand_over(carrier, pin, ground.force),
+        builder.hand_over(bearer, pin, ground.force),
         builder.hand_over(gear.driver, pitch, tooth),
     )
     reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)

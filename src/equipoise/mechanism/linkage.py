@@ -177,7 +177,7 @@ def _geared(builder: Builder, joints: Structure, unknown: list[str]) -> Group | 
     for gear in joints.gears:
         ready = gear.driven in unknown and {gear.driver, gear.carrier} <= known.keys()
         if ready and joints.freedom([gear.driven], known) == 0:
-            return gears.geared(builder, gear, gears.Mesh.of(builder, joints, gear))
+            return gears.geared(builder, joints, gear)
     return None
 
 
