@@ -93,7 +93,7 @@ def analyze(
     json
         Print one JSON object in SI units, and nothing else.
     split
-        Add to the JSON object every force by cause and by link.
+        With --json: add every force by cause and by link.
     csv
         Write every signal against crank angle to this file.
     """
@@ -101,6 +101,10 @@ def analyze(
     from equipoise.io.models import load
 
     machine = load(file)
+    if split and not json:
+        raise UsageError("--split belongs to --json; give both")
+    if csv is not None:
+        _check_target(csv, file, machine)
     arguments = (
         _angles(angles),
         None if speed is None else _quantity("--speed", speed, "angular speed"),
@@ -185,6 +189,18 @@ def _quantity(option: str, text: str, dimension: str) -> float:
         return parse(text, dimension)  # type: ignore[arg-type]
     except UsageError as error:
         raise UsageError(f"{option}: {error}") from error
+
+
+def _check_target(path: str, file: str, machine: Machine) -> None:
+    """Results must not take the place of what they come from."""
+    if not path:
+        raise UsageError("--csv: got an empty name; give the name of a file")
+    tables = (load.table.file for load in machine.loads if load.table is not None)
+    sources = [file, *(os.path.join(os.path.dirname(file), table) for table in tables)]
+    if os.path.exists(path) and any(
+        os.path.exists(source) and os.path.samefile(source, path) for source in sources
+    ):
+        raise UsageError(f"--csv: {path} is what is to be analysed; give another name")
 
 
 def _place(machine: Machine, text: str) -> str | tuple[float, float]:

@@ -40,7 +40,7 @@ def analyze(
     """
     motion = move(machine, angles, speed, acceleration)
     if about is not None:
-        place_of(machine, about)
+        place_of(machine, about)  # a wrong point is told of a model without masses too
     if massless(machine):
         return Analysis(motion, None)
     return Analysis(motion, forces(motion, about))

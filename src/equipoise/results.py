@@ -13,7 +13,7 @@ from equipoise.errors import MassError
 from equipoise.mechanism.dynamics import Forces, SliderForce, VectorSignal, massless
 from equipoise.mechanism.fourbar import FourBar, four_bar
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.motion import Motion, Named
 from equipoise.signals import Figures, figures
 
 if TYPE_CHECKING:
@@ -58,7 +58,8 @@ class Analysis:
     @cached_property
     def summary(self) -> Mapping[str, Figures]:
         """Mean, RMS, peak and extremes of each output of the forces, by name."""
-        return {name: figures(self.crank_angle, s) for name, s in outputs(self).items()}
+        signals = outputs(self).items()
+        return Named("output", ((name, figures(self.crank_angle, s)) for name, s in signals))
 
     def to_dict(self, split: bool = False) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
@@ -233,8 +234,8 @@ def _split(found: Forces) -> Values:
     result: Values = {}
     for key, parts in (("by_cause", split.by_cause), ("by_link", split.by_link)):
         result[key] = {name: _parts(parts(name)) for name in names}
-        joints = [*split.joints, *split.gears]
-        result[key]["joints"] = {name: _parts(parts(name)) for name in joints}
+        result[key]["joints"] = {n: _parts(parts(f"joints.{n}")) for n in split.joints}
+        result[key]["gears"] = {n: _parts(parts(f"gears.{n}")) for n in split.gears}
     return result
 
 

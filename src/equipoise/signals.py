@@ -57,6 +57,7 @@ def harmonics(samples: Array, orders: int | None = None) -> Array:
 
     orders : highest order; N // 2 if None.  At N / 2 the samples tell only a cosine.
     """
+    samples = np.asarray(samples, dtype=float)
     count = samples.shape[-1]
     amplitudes = np.fft.rfft(samples, axis=-1) / count
     amplitudes[..., 1 : (count + 1) // 2] *= 2

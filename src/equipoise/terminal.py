@@ -105,12 +105,12 @@ def print_analysis(analysis: Analysis) -> None:
     machine = analysis.machine
     print(machine.title)
     count = len(motion.crank_angle)
-    span = f"{count} crank angles"
+    angles = f"{count} crank angles"
     if motion.whole_cycle:
-        span += " in one turn" if motion.turns == 1 else f" in {motion.turns} turns"
+        angles += " in one turn" if motion.turns == 1 else f" in {motion.turns} turns"
     print(
         f"{machine.drive.link} driven at {number(motion.speed / PER_RPM)} rpm "
-        f"({number(motion.speed)} rad/s), {span}"
+        f"({number(motion.speed)} rad/s), {angles}"
     )
     if analysis.four_bar is not None:
         print(_four_bar(analysis.four_bar))
@@ -143,14 +143,14 @@ def _four_bar(found: FourBar) -> str:
             strict=True,
         )
     )
-    lines = [f"four-bar: {found.type}, {found.grashof}; {lengths}"]
+    lines = [f"four-bar: {found.type}, {found.grashof}", lengths]
     if found.transmission_min is not None and found.transmission_max is not None:
         text = (
             f"transmission angle {angle(found.transmission_min)} to "
             f"{angle(found.transmission_max)} deg"
         )
         if found.swing is not None:
-            text += f"; rocker swing {angle(found.swing)} deg; time ratio {found.time_ratio:.3f}"
+            text += f", rocker swing {angle(found.swing)} deg, time ratio {found.time_ratio:.3f}"
         lines.append(text)
     holds = {True: "hold", False: "do not hold"}
     lines.append(
@@ -170,8 +170,8 @@ def _links(analysis: Analysis) -> str:
         )
         for name, link in analysis.motion.links.items()
     ]
-    header = ("", "angle deg", "angular velocity rad/s", "angular acceleration rad/s2")
-    return _table("Links", header, rows)
+    header = ("", "angle deg", "velocity rad/s", "acceleration rad/s2")
+    return _table("Links; angular velocity and acceleration", header, rows)
 
 
 def _points(analysis: Analysis) -> str:
@@ -184,7 +184,7 @@ def _points(analysis: Analysis) -> str:
         places = (span(1e3 * point.x, reach), span(1e3 * point.y, reach))
         vectors = (point.velocity, point.acceleration_vector)
         rows.append((name, *places, *(largest(figures(theta, np.abs(v))) for v in vectors)))
-    title = "Moving points; largest velocity and acceleration at crank angle, deg"
+    title = "Moving points; largest velocity and acceleration, at crank angle deg"
     return _table(title, ("", "x mm", "y mm", "velocity m/s", "acceleration m/s2"), rows)
 
 
@@ -209,16 +209,15 @@ FORCES = (
 def _forces(analysis: Analysis) -> str:
     about = analysis.forces.about
     where = f"({number(about.real * 1e3)}, {number(about.imag * 1e3)}) mm"
-    title = f"On frame and drive; extremes at crank angle, deg; moments about {where}"
+    title = f"On frame and drive; extremes at crank angle deg; moments about {where}"
     rows = []
     for label, key, unit in FORCES:
         found = analysis.summary[key]
         scale = max(analysis.summary[k].peak for _, k, u in FORCES if u == unit)
         means = (number(found.mean, scale), number(found.rms, scale))
         extremes = (largest(found, scale), smallest(found, scale))
-        rows.append((label, unit, *means, *extremes, number(found.peak_to_peak, scale)))
-    header = ("", "", "mean", "RMS", "largest", "smallest", "peak to peak")
-    return _table(title, header, rows, words=2)
+        rows.append((f"{label} {unit}", *means, *extremes, number(found.peak_to_peak, scale)))
+    return _table(title, ("", "mean", "RMS", "largest", "smallest", "range"), rows)
 
 
 def _causes(analysis: Analysis) -> str:
@@ -238,12 +237,13 @@ def _causes(analysis: Analysis) -> str:
 def _joints(analysis: Analysis) -> str:
     forces = analysis.forces
     joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    scale = analysis.summary["frame_moment"].peak
     rows = []
     for name, joint in joints.items():
         found = figures(analysis.crank_angle, joint.size)
         moment = joint.moment if isinstance(joint, SliderForce) else None
-        couple = "" if moment is None else number(float(np.max(np.abs(moment))), 1.0)
+        couple = "" if moment is None else number(float(np.max(np.abs(moment))), scale)
         values = (number(found.mean), number(found.rms), largest(found), couple)
         rows.append((name, joint.on, joint.by, *values))
     header = ("", "on", "by", "mean", "RMS", "largest", "moment N m")
-    return _table("Force in each joint, N; largest at crank angle, deg", header, rows, words=3)
+    return _table("Force in each joint, N; largest at crank angle deg", header, rows, words=3)

@@ -139,7 +139,8 @@ def split_scales(parts: dict[str, Any]) -> dict[bool, float]:
 @pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
 def test_split_by_cause_and_by_link_has_names(name: str) -> None:
     found = forces_of(name)
-    keys = ["drive_torque", "shaking_force", *found.joints, *found.gears]
+    joints = [f"joints.{name}" for name in found.joints]
+    keys = ["drive_torque", "shaking_force", *joints, *(f"gears.{name}" for name in found.gears)]
     for key in keys:
         causes, links = found.split.by_cause(key), found.split.by_link(key)
         assert tuple(causes) == CAUSES

@@ -44,7 +44,10 @@ def load(path_or_name: str | os.PathLike[str]) -> Machine:
     ModelError
         One sentence: file, table and key, what was given and what would be right.
     """
-    name = os.fspath(path_or_name)
+    try:
+        name = os.fspath(path_or_name)
+    except TypeError:
+        raise UsageError(f"got {path_or_name!r}; give a path, or the name of an example") from None
     if not os.path.isfile(name) and name in (bundled := _bundled()):
         example = bundled[name]
         folder = example.parent if isinstance(example, Path) else None

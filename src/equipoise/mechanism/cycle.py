@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.builder import Group, initial_state
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import needed_references, run
+from equipoise.mechanism.steps import needed_references, run, running_angle
 
 Array = np.ndarray[Any, Any]
 
@@ -130,9 +130,7 @@ class _Grid:
         for link in group.links:
             angle = self.state.get(f"phi({link})")
             if angle is None:
-                angle = np.unwrap(
-                    np.angle(np.broadcast_to(self.state[f"u({link})"], self.theta.shape))
-                )
+                angle = running_angle(self.state, link)
             self.tables[link] = angle
         if group.kind == "loops":
             self.record_loops(group)
@@ -169,8 +167,9 @@ class _Grid:
         ratio = gear.exact_ratio
         if ratio is None:
             raise MotionError(
-                f"the motion never repeats: the ratio {gear.speed_ratio!r} of the gears {name} "
-                "is no ratio of whole numbers; give numbers of teeth"
+                f"the motion never repeats, or only after far too many turns: the ratio "
+                f"{gear.speed_ratio!r} of the gears {name} is no fraction of small whole numbers; "
+                "give numbers of teeth"
             )
         winding = carrier + ratio * relative
         if winding.denominator == 1:
@@ -198,7 +197,7 @@ class _Grid:
         if smallest < CHANGE_POINT:
             raise ChangePointError(
                 f"change point at crank angle {_in_degrees(at)}: {group.dead} there, and "
-                "nothing decides to which side they go on; change a length so that they do not",
+                "nothing decides how they go on; change a length or direction so that they do not",
                 at,
             )
         self.weakest[group.joint] = (smallest, at)

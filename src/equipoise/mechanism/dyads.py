@@ -195,7 +195,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
     line = guide.turn * inner_guide.along
     if abs(line.imag) < 1e-9:
         raise ModelError(
-            f"sliders.{slider.name}",
+            f"sliders[{builder.machine.sliders.index(slider) + 1}]",
             f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "
             "slide; turn one of them",
         )

@@ -174,17 +174,20 @@ class Split:
     gears: Mapping[str, MeshForce]
 
     def by_cause(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or the joint ``B``, summed over links."""
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
         return dict(zip(CAUSES, self._array(output).sum(axis=1), strict=True))
 
     def by_link(self, output: str) -> dict[str, Array]:
-        """An output, such as ``drive_torque`` or the joint ``B``, summed over causes."""
+        """An output, such as ``drive_torque`` or ``joints.B``, summed over causes."""
         return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
 
     def _array(self, output: str) -> Array:
         found = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
-        for family in (self.joints, self.gears):
-            found = {name: force.value for name, force in family.items()} | found
+        for name, joint in self.joints.items():
+            found[f"joints.{name}"] = joint.value
+            if isinstance(joint, SliderForce):
+                found[f"joints.{name}.moment"] = joint.moment
+        found |= {f"gears.{name}": mesh.value for name, mesh in self.gears.items()}
         if output not in found:
             raise UsageError(unknown(output, found, "output"))
         return found[output]
@@ -291,7 +294,10 @@ def place_of(machine: Machine, point: str | Vector | complex) -> complex:
         if point not in machine.frame:
             raise UsageError(unknown(point, machine.frame, "point of the frame"))
         return complex(*machine.frame[point])
-    place = complex(*point) if isinstance(point, tuple | list) else complex(point)
+    try:
+        place = complex(*np.asarray(point).ravel().tolist())
+    except (TypeError, ValueError, OverflowError):
+        place = complex("nan")
     if not np.isfinite(hypot(place.real, place.imag)):
-        raise UsageError(f"got {point!r}; give a point of the frame or finite coordinates")
+        raise UsageError(f"got {point!r}; give a point of the frame or two finite coordinates")
     return place

@@ -34,7 +34,7 @@ class Mesh:
         centres = builder.arm(gear.carrier, driven_pin, driver_pin)
         if centres == 0:
             raise ModelError(
-                f"gears.{gear.name}",
+                f"gears[{builder.machine.gears.index(gear) + 1}]",
                 f"both gears turn about {driven_pin}; set their centres apart",
             )
         ring_driven = 0 < ratio < 1

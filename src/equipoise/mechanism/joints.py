@@ -96,7 +96,7 @@ def gear_pins(joints: Structure, gear: Gear) -> tuple[str, str]:
         shared = joints.pins_between(body, gear.carrier)
         if len(shared) != 1:
             raise ModelError(
-                f"gears.{gear.name}",
+                f"gears[{joints.gears.index(gear) + 1}]",
                 f"{body!r} shares {len(shared)} points with the carrier {gear.carrier!r}; each "
                 "gear turns about exactly one point of the carrier",
             )

@@ -8,7 +8,7 @@ order, steps for forces.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -84,6 +84,12 @@ class Linkage:
         """The closed motion; raises a `MotionError` where the crank cannot turn fully."""
         return close(self.machine, self.groups)
 
+    def of(self, machine: Machine) -> Linkage:
+        """The same linkage for a machine that differs in nothing but masses, speed or gravity."""
+        same = replace(self, machine=machine)
+        same.__dict__.update({k: v for k, v in self.__dict__.items() if k not in same.__dict__})
+        return same
+
     def start(self, theta: np.ndarray) -> State:
         """State in which only the frame and the drive link are known."""
         return initial_state(self.machine, theta)
@@ -128,7 +134,19 @@ def _assemble(machine: Machine) -> Linkage:
             run(group.motion, builder.now)
         unknown = [link for link in unknown if link not in group.links]
     _check_assembly(machine, builder.sides)
-    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+    linkage = Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+    _check_names(linkage)
+    return linkage
+
+
+def _check_names(linkage: Linkage) -> None:
+    """Outputs go by the names of joints, which must differ."""
+    names = [name for name, _ in linkage.named_reactions]
+    for name in names:
+        if names.count(name) > 1:
+            raise ModelError(
+                "links", f"two joints would be called {name!r} in the output; rename one"
+            )
 
 
 def _check_assembly(machine: Machine, used: set[str]) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.model import Load
+from equipoise.mechanism.model import Load, LoadTable
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Demand
 
@@ -31,17 +31,20 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
     return result
 
 
+def _interpolated(table: LoadTable, column: tuple[float, ...], crank_angle: Array) -> Array:
+    """Linear between the rows; a table of less than a whole turn goes on to its first row."""
+    first = table.crank_angle[0]
+    angles, values = [a - first for a in table.crank_angle], list(column)
+    if angles[-1] < 2 * pi - ROUNDING:
+        angles, values = [*angles, 2 * pi], [*values, values[0]]
+    return np.interp(np.mod(crank_angle - first, 2 * pi), angles, values)
+
+
 def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     """Force (complex, N) and torque (N m) of a load at crank angles (N,)."""
     zero = np.zeros(len(crank_angle))
     if load.table is not None:
-        angles = np.array(load.table.crank_angle)
-        columns = [
-            np.interp(
-                np.mod(crank_angle - angles[0], 2 * pi), angles - angles[0], column, period=2 * pi
-            )
-            for column in load.table.values
-        ]
+        columns = [_interpolated(load.table, column, crank_angle) for column in load.table.values]
     elif load.force is not None:
         columns = [zero + load.force[0], zero + load.force[1]]
     else:

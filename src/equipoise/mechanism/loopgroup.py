@@ -96,7 +96,9 @@ class _Maker:
     def pins(self, point: str, bodies: list[str]) -> list[Loop]:
         known = [body for body in bodies if body in self.builder.rank]
         free = [body for body in bodies if body in self.links]
-        hub = self.builder.carrier_of(known) if known else free[:1][0] if free else ""
+        if not free:
+            return []
+        hub = self.builder.carrier_of(known) if known else free[0]
         return [
             PinLoop(point, self.end(link, point), self.end(hub, point))
             for link in free
@@ -113,7 +115,7 @@ class _Maker:
     def gear(self, gear: Gear) -> GearLoop:
         if gear.driven not in self.links:
             raise ModelError(
-                f"gears.{gear.name}",
+                f"gears[{self.joints.gears.index(gear) + 1}]",
                 f"{gear.driven!r} is moved already by other joints; name the gear that is moved "
                 "already first in between",
             )

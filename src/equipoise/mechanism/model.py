@@ -6,32 +6,41 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
-from itertools import pairwise
-from math import hypot, isfinite, pi, radians
-from typing import Any, Literal
+from math import hypot, radians
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.mechanism.checks import FRAME, HUGE, problems, unknown
+from equipoise.mechanism.frozen import Frozen
+
+__all__ = [
+    "FRAME",
+    "HUGE",
+    "Drive",
+    "Gear",
+    "Link",
+    "Load",
+    "LoadTable",
+    "Machine",
+    "Position",
+    "Slider",
+    "Vector",
+    "size_of",
+    "unknown",
+]
 
 Vector = tuple[float, float]
 """Components along x (forward) and y (up)."""
 
-FRAME = "frame"
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
-HUGE, TINY = 1e30, 1e-30
-"""Limits of what is taken for a quantity in SI units."""
-
-MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500}
-LONGEST_NAME = 200
-"""Far beyond any machine; they keep a file of nonsense from running for hours."""
-
-SIDES = ("left", "right", "forward", "backward")
+MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 
 
 @dataclass(frozen=True)
-class Link:
+class Link(Frozen):
     """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
 
     Attributes
@@ -41,6 +50,13 @@ class Link:
     center_of_mass : (x, y) in m.
     inertia : kg m2, about the centre of mass.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        "points": "pairs",
+        "mass": "number?",
+        "center_of_mass": "pair?",
+        "inertia": "number?",
+    }
 
     points: Mapping[str, Vector]
     mass: float | None = None
@@ -53,11 +69,13 @@ class Link:
 
 
 @dataclass(frozen=True)
-class Drive:
+class Drive(Frozen):
     """The link that is driven, at `speed` (rad/s, positive counterclockwise).
 
     acceleration : rad/s2, of the drive link at every crank angle that is analysed.
     """
+
+    shapes: ClassVar[dict[str, str]] = {"link": "text", "speed": "number", "acceleration": "number"}
 
     link: str
     speed: float
@@ -65,13 +83,19 @@ class Drive:
 
 
 @dataclass(frozen=True)
-class Slider:
+class Slider(Frozen):
     """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning in it.
 
     through : point of `on` on the line.
     direction : angle (rad) of the line in the axes of `on`.
     angle : angle (rad) of the sliding link's x axis from the line.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("link", "point", "on", "through"), "text"),
+        "direction": "number",
+        "angle": "number",
+    }
 
     link: str
     point: str
@@ -86,7 +110,7 @@ class Slider:
 
 
 @dataclass(frozen=True)
-class Gear:
+class Gear(Frozen):
     """A pair of gears, both pinned to the same carrier.
 
     ratio : speed of driven over speed of driver, both relative to the carrier; negative for an
@@ -95,6 +119,14 @@ class Gear:
     start : angle (rad) of the driven link in the frame at crank angle 0.
     pressure_angle : rad, of the teeth.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        **dict.fromkeys(("driver", "driven", "carrier", "mesh"), "text"),
+        "ratio": "number?",
+        "teeth": "counts?",
+        "start": "number",
+        "pressure_angle": "number",
+    }
 
     driver: str
     driven: str
@@ -129,7 +161,7 @@ class Gear:
 
 
 @dataclass(frozen=True)
-class LoadTable:
+class LoadTable(Frozen):
     """A load over one turn, linear between its rows and from the last row to the first.
 
     crank_angle : rad, rising, within one turn.
@@ -137,13 +169,15 @@ class LoadTable:
     file : name of the CSV file that it came from.
     """
 
+    shapes: ClassVar[dict[str, str]] = {"crank_angle": "row", "values": "rows", "file": "text"}
+
     crank_angle: tuple[float, ...]
     values: tuple[tuple[float, ...], ...]
     file: str = field(default="", compare=False)
 
 
 @dataclass(frozen=True)
-class Load:
+class Load(Frozen):
     """A force at a point of a link, or a torque on a link, from outside the machine.
 
     force : (x, y) in N, in the frame's axes.
@@ -152,6 +186,13 @@ class Load:
         it acts always.
     table : the load against crank angle, instead of force or torque.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        "link": "text",
+        "point": "text?",
+        "force": "pair?",
+        **dict.fromkeys(("torque", "start", "stop"), "number?"),
+    }
 
     link: str
     point: str | None = None
@@ -163,11 +204,17 @@ class Load:
 
 
 @dataclass(frozen=True)
-class Position:
+class Position(Frozen):
     """Where the machine is, roughly, at one crank angle (rad): the start of Newton's method.
 
     points : name -> (x, y) in the frame, m.  angles : link -> angle in the frame, rad.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        "crank_angle": "number",
+        "points": "pairs",
+        "angles": "numbers",
+    }
 
     crank_angle: float = 0.0
     points: Mapping[str, Vector] = field(default_factory=dict)
@@ -175,7 +222,7 @@ class Position:
 
 
 @dataclass(frozen=True)
-class Machine:
+class Machine(Frozen):
     """A planar linkage with its drive, loads and gravity.
 
     Attributes
@@ -186,6 +233,16 @@ class Machine:
     gravity : (x, y) in m/s2.
     position : rough position, needed only where dyads do not suffice.
     """
+
+    shapes: ClassVar[dict[str, str]] = {
+        "title": "text",
+        "frame": "pairs",
+        "links": "values",
+        "assembly": "texts",
+        **dict.fromkeys(("sliders", "gears", "loads"), "list"),
+        "gravity": "pair",
+        "description": "text",
+    }
 
     title: str
     drive: Drive
@@ -200,250 +257,31 @@ class Machine:
     description: str = ""
 
     def __post_init__(self) -> None:
-        for problem in _problems(self):
+        super().__post_init__()
+        for problem in problems(self):
             raise problem
-
-    def __getstate__(self) -> dict[str, Any]:
-        return {key: value for key, value in self.__dict__.items() if not key.startswith("_")}
 
     def with_link(self, name: str, **changes: Any) -> Machine:
         """Return the machine with fields of one link changed."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
-        return replace(self, links={**self.links, name: replace(self.links[name], **changes)})
+        links = {**self.links, name: replace(self.links[name], **changes)}
+        return self._same_motion(replace(self, links=links), set(changes) <= MASS_FIELDS)
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
-        return replace(self, drive=replace(self.drive, **changes))
+        changed = replace(self, drive=replace(self.drive, **changes))
+        return self._same_motion(changed, set(changes) <= {"speed", "acceleration"})
+
+    def _same_motion(self, changed: Machine, same: bool) -> Machine:
+        """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
+        if same and "_linkage" in self.__dict__:
+            changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
+        return changed
 
     def points_of(self, body: str) -> Mapping[str, Vector]:
         """Points of a link, or of the frame."""
         return self.frame if body == FRAME else self.links[body].points
-
-
-def unknown(given: str, known: Iterable[str], kind: str) -> str:
-    """Say that a name is unknown, and what would be right."""
-    from difflib import get_close_matches
-
-    names = list(known)
-    near = get_close_matches(given, names, 1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
-
-
-def _listed(names: list[str]) -> str:
-    return ", ".join(repr(name) for name in names) or "none"
-
-
-# -- checks ----------------------------------------------------------------------------------------
-
-
-def _problems(machine: Machine) -> Iterator[ModelError]:
-    yield from _too_much(machine)
-    yield from _not_finite(machine)
-    yield from _wrong_points("frame", machine.frame)
-    if not machine.links:
-        yield ModelError("links", "there is no link; give at least the drive's")
-    for name, link in machine.links.items():
-        yield from _wrong_link(f"links.{name}", name, link)
-    if machine.drive.link not in machine.links:
-        yield ModelError("drive.link", unknown(machine.drive.link, machine.links, "link"))
-    for number, slider in enumerate(machine.sliders, 1):
-        yield from _wrong_slider(f"sliders[{number}]", slider, machine)
-    for number, gear in enumerate(machine.gears, 1):
-        yield from _wrong_gear(f"gears[{number}]", gear, machine)
-    for number, load in enumerate(machine.loads, 1):
-        yield from _wrong_load(f"loads[{number}]", load, machine)
-    for joint, side in machine.assembly.items():
-        if side not in SIDES:
-            yield ModelError(f"assembly.{joint}", f"got {side!r}; give one of {_listed([*SIDES])}")
-    if machine.position is not None:
-        yield from _wrong_position(machine.position, machine)
-
-
-def _too_much(machine: Machine) -> Iterator[ModelError]:
-    bodies = {FRAME: machine.frame} | {name: link.points for name, link in machine.links.items()}
-    counts = {
-        "links": len(machine.links),
-        "points": sum(map(len, bodies.values())),
-        "sliders": len(machine.sliders),
-        "gears": len(machine.gears),
-        "loads": len(machine.loads),
-    }
-    for what, count in counts.items():
-        if count > MOST[what]:
-            yield ModelError(what, f"got {count}; at most {MOST[what]} are computed with")
-    for where, name in [("title", machine.title), *_names(bodies)]:
-        if len(name) > LONGEST_NAME:
-            yield ModelError(where, f"{len(name)} characters; give at most {LONGEST_NAME}")
-        elif not name.isprintable():
-            yield ModelError(where, f"got {name!r}; give printable characters")
-
-
-def _names(bodies: Mapping[str, Mapping[str, Vector]]) -> Iterator[tuple[str, str]]:
-    for body, points in bodies.items():
-        yield "links", body
-        for point in points:
-            yield f"points of {body}", point
-
-
-def _not_finite(machine: Machine) -> Iterator[ModelError]:
-    for where, value in _numbers("", machine):
-        if not isfinite(value):
-            yield ModelError(where, f"got {value}; give a finite number")
-        elif abs(value) > HUGE or 0 < abs(value) < TINY:
-            yield ModelError(where, f"got {value:g} in SI units, which no machine can have")
-
-
-def _numbers(where: str, value: Any) -> Iterator[tuple[str, float]]:
-    if isinstance(value, bool | str) or value is None:
-        return
-    if isinstance(value, int | float):
-        yield (
-            where,
-            float(max(-2 * HUGE, min(2 * HUGE, value))) if isinstance(value, int) else value,
-        )
-    elif isinstance(value, Mapping):
-        for key, item in value.items():
-            yield from _numbers(f"{where}.{key}".lstrip("."), item)
-    elif isinstance(value, tuple | list):
-        for number, item in enumerate(value, 1):
-            yield from _numbers(f"{where}[{number}]", item)
-    else:
-        yield from _numbers(where, {k: v for k, v in vars(value).items() if k[0] != "_"})
-
-
-def _wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
-    if not points:
-        yield ModelError(f"{where}.points", "there is no point; give at least one")
-    for name in points:
-        if not name.strip():
-            yield ModelError(f"{where}.points", "a point has an empty name")
-
-
-def _wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
-    if name == FRAME or not name.strip():
-        yield ModelError(where, f"a link cannot be called {name!r}; choose another name")
-    yield from _wrong_points(where, link.points)
-    given = {
-        "mass": link.mass,
-        "center_of_mass": link.center_of_mass,
-        "inertia": link.inertia,
-    }
-    missing = [key for key, value in given.items() if value is None]
-    if 0 < len(missing) < 3:
-        yield ModelError(
-            where,
-            f"{' and '.join(missing)} missing; give mass, center_of_mass and inertia together, "
-            "or none of them",
-        )
-        return
-    if link.mass is None or link.inertia is None:
-        return
-    if link.mass < 0:
-        yield ModelError(f"{where}.mass", f"got {link.mass:g} kg; a mass cannot be negative")
-    if link.inertia < 0:
-        yield ModelError(
-            f"{where}.inertia",
-            f"got {link.inertia:g} kg m^2; no body has a negative moment of inertia",
-        )
-    if link.mass == 0 and link.inertia > 0:
-        yield ModelError(
-            f"{where}.inertia",
-            f"got {link.inertia:g} kg m^2 for a mass of 0; no body can have that, give 0",
-        )
-
-
-def _wrong_body(where: str, name: str, machine: Machine) -> Iterator[ModelError]:
-    if name != FRAME and name not in machine.links:
-        yield ModelError(where, unknown(name, [FRAME, *machine.links], "link"))
-
-
-def _wrong_point(where: str, point: str, body: str, machine: Machine) -> Iterator[ModelError]:
-    points = machine.points_of(body)
-    if point not in points:
-        yield ModelError(where, unknown(point, points, f"point of {body}"))
-
-
-def _wrong_slider(where: str, slider: Slider, machine: Machine) -> Iterator[ModelError]:
-    if slider.link not in machine.links:
-        yield ModelError(f"{where}.link", unknown(slider.link, machine.links, "link"))
-        return
-    yield from _wrong_body(f"{where}.on", slider.on, machine)
-    if slider.link == slider.on:
-        yield ModelError(f"{where}.on", f"{slider.link!r} cannot slide on itself")
-    if slider.on == FRAME or slider.on in machine.links:
-        yield from _wrong_point(f"{where}.through", slider.through, slider.on, machine)
-    yield from _wrong_point(f"{where}.point", slider.point, slider.link, machine)
-
-
-def _wrong_gear(where: str, gear: Gear, machine: Machine) -> Iterator[ModelError]:
-    for key, name in (
-        ("between[1]", gear.driver),
-        ("between[2]", gear.driven),
-        ("carrier", gear.carrier),
-    ):
-        yield from _wrong_body(f"{where}.{key}", name, machine)
-    if len({gear.driver, gear.driven, gear.carrier}) < 3 and not (
-        gear.driver != gear.driven and gear.carrier not in (gear.driver, gear.driven)
-    ):
-        yield ModelError(where, "driver, driven link and carrier must be three different bodies")
-    if (gear.ratio is None) == (gear.teeth is None):
-        yield ModelError(where, "give either ratio or teeth")
-        return
-    if gear.teeth is not None and min(gear.teeth) < 1:
-        yield ModelError(f"{where}.teeth", f"got {list(gear.teeth)}; give two positive numbers")
-    elif gear.speed_ratio in (0.0, 1.0):
-        yield ModelError(
-            where,
-            f"the ratio is {gear.speed_ratio:g}; no pair of gears has that, it would be rigid",
-        )
-    if not 0 <= gear.pressure_angle < pi / 2:
-        yield ModelError(f"{where}.pressure_angle", "give an angle from 0 deg to less than 90 deg")
-
-
-def _wrong_load(where: str, load: Load, machine: Machine) -> Iterator[ModelError]:
-    if load.link not in machine.links:
-        yield ModelError(f"{where}.link", unknown(load.link, machine.links, "link"))
-        return
-    if load.point is not None:
-        yield from _wrong_point(f"{where}.point", load.point, load.link, machine)
-    given = [load.force is not None, load.torque is not None, load.table is not None]
-    if sum(given) != 1:
-        yield ModelError(where, "give exactly one of force, torque and table")
-        return
-    forces = load.force is not None or (load.table is not None and len(load.table.values) == 2)
-    if forces and load.point is None:
-        yield ModelError(f"{where}.point", "missing; a force acts at a point of the link")
-    if not forces and load.point is not None:
-        yield ModelError(f"{where}.point", "a torque acts on a link, not at a point; leave it out")
-    if (load.start is None) != (load.stop is None):
-        yield ModelError(where, "give both from and to, or neither")
-    if load.table is not None:
-        yield from _wrong_table(f"{where}.table", load.table)
-
-
-def _wrong_table(where: str, table: LoadTable) -> Iterator[ModelError]:
-    angles = table.crank_angle
-    if not angles:
-        yield ModelError(where, "the table has no rows")
-        return
-    if any(b <= a for a, b in pairwise(angles)):
-        yield ModelError(where, "the crank angles must rise from row to row")
-    if angles[-1] - angles[0] > 2 * pi * (1 + 1e-12):
-        yield ModelError(where, "the crank angles cover more than one turn")
-    if any(len(column) != len(angles) for column in table.values):
-        yield ModelError(where, "the columns differ in length")
-
-
-def _wrong_position(position: Position, machine: Machine) -> Iterator[ModelError]:
-    known = {point for link in machine.links.values() for point in link.points}
-    for point in position.points:
-        if point not in known:
-            yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
-    for link in position.angles:
-        if link not in machine.links:
-            yield ModelError(f"position.angles.{link}", unknown(link, machine.links, "link"))
 
 
 def size_of(points: Mapping[str, Vector]) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
+from numbers import Real
 from typing import Any, TypeVar
 
 import numpy as np
@@ -14,12 +15,12 @@ from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import HUGE, Machine, unknown
-from equipoise.mechanism.steps import State, p, u
-from equipoise.mechanism.swinging import solve_swinging
+from equipoise.mechanism.steps import State, p, running_angle, u
+from equipoise.mechanism.swinging import middle_angle, solve_swinging
 
 Array = np.ndarray[Any, Any]
 Value = TypeVar("Value")
-MOST_ANGLES = 1_000_000
+MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
 
 
@@ -176,23 +177,23 @@ class Motion:
         return Named("link with mass", ((link, self._mass_center(link)) for link in links))
 
     def _link(self, link: str) -> LinkMotion:
-        rotation, first, second = (self.state[name] for name in u(link))
+        _, first, second = (self.state[name] for name in u(link))
         angle = self.state.get(f"phi({link})")
         if angle is None:
-            angle = self._running_angle(link, np.angle(rotation))
+            angle = self._running_angle(link)
         coefficients = (self._full(first), self._full(second))
         return LinkMotion(self._full(angle), *coefficients, self.speed, self.acceleration)
 
-    def _running_angle(self, link: str, angle: Array) -> Array:
-        """Count an angle on through the turns."""
+    def _running_angle(self, link: str) -> Array:
+        """Angle counted on through the turns; without a cycle, from the middle of the range."""
         try:
             cycle = self.linkage.cycle
-        except (RangeError, ChangePointError):
-            return np.unwrap(angle)
+        except (RangeError, ChangePointError) as error:
+            middle = middle_angle(self.linkage, link, self.crank_angle, error)
+            return running_angle(self.state, link, middle)
         if link in cycle.rocking:
-            return angle
-        reference = cycle.reference(link, self.crank_angle)
-        return angle + 2 * pi * np.round((reference - angle) / (2 * pi))
+            return running_angle(self.state, link, 0.0)
+        return running_angle(self.state, link, cycle.reference(link, self.crank_angle))
 
     def _point(self, point: str) -> PointMotion:
         names = p(point)
@@ -245,7 +246,9 @@ def move(
     UsageError : the crank angles cannot be used.
     """
     linkage = assemble(machine)
-    whole_cycle = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+    if isinstance(angles, bool):
+        raise UsageError(f"got {angles}; give a number of crank angles, or angles")
+    whole_cycle = isinstance(angles, int | np.integer)
     theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
     drive = machine.drive
     return Motion(
@@ -273,7 +276,7 @@ def _cycle_angles(linkage: Linkage, count: int) -> Array:
 def _given_angles(angles: Any) -> Array:
     try:
         theta = np.atleast_1d(np.asarray(angles, dtype=float))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise UsageError(f"got {angles!r}; give a number of crank angles, or angles") from None
     if theta.ndim != 1 or theta.size == 0 or not np.all(np.isfinite(theta)):
         raise UsageError("the crank angles must be one or more finite numbers, in a row")
@@ -291,6 +294,6 @@ def _solve(linkage: Linkage, theta: Array, whole_cycle: bool) -> State:
 
 
 def _rate(value: float, name: str) -> float:
-    if not abs(value) < HUGE:
+    if not isinstance(value, Real) or not abs(value) < HUGE:
         raise UsageError(f"got {value!r} for {name}; give a finite number in SI units")
     return float(value)

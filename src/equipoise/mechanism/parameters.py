@@ -172,6 +172,10 @@ def base_parameters(
     The columns are taken in order; one that is a combination of those before it is grouped with
     them, after Gautier, "Numerical calculation of the base inertial parameters of robots", 1991.
     """
+    if isinstance(outputs, str):
+        outputs = [outputs]
+    if not outputs:
+        raise UsageError("give at least one output, such as drive_torque")
     names = parameter_names(machine)
     size = _length(machine)
     motion = move(_with_any_masses(machine), angles)

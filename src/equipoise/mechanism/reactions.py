@@ -16,7 +16,7 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.motion import Motion, Named
 from equipoise.mechanism.steps import State, run
 
 Array = np.ndarray[Any, Any]
@@ -113,16 +113,14 @@ class Pass:
     @property
     def joints(self) -> dict[str, JointForce]:
         """Pins and sliders, by name."""
-        return {
-            name: self._joint(reaction)
-            for name, reaction in self.motion.linkage.named_reactions
-            if reaction.kind != "gear"
-        }
+        named = self.motion.linkage.named_reactions
+        return Named("joint", ((n, self._joint(r)) for n, r in named if r.kind != "gear"))
 
     @property
     def gears(self) -> dict[str, MeshForce]:
         """Pairs of gears, by name; the force is on the driven gear."""
-        return {r.name: self._mesh(r) for r in self._reactions if r.kind == "gear"}
+        gears = (r for r in self._reactions if r.kind == "gear")
+        return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
     def _reactions(self) -> tuple[Reaction, ...]:

@@ -60,13 +60,18 @@ class RunningAngle:
         return self.link
 
     def run(self, state: State) -> None:
-        angle = np.angle(np.broadcast_to(state[f"u({self.link})"], np.shape(state["theta"])))
         reference = state.get(f"reference({self.link})")
-        if reference is None:
-            state[f"phi({self.link})"] = np.unwrap(angle)
-        else:
-            turns = np.round((reference - angle) / (2 * np.pi))
-            state[f"phi({self.link})"] = angle + 2 * np.pi * turns
+        state[f"phi({self.link})"] = running_angle(state, self.link, reference)
+
+
+def running_angle(state: State, link: str, reference: Any = None) -> np.ndarray[Any, Any]:
+    """Angle of a link (N,), counted on from a reference, or else from angle to angle."""
+    angle = np.angle(np.broadcast_to(state[f"u({link})"], np.shape(state["theta"])))
+    if reference is None:
+        reference = np.unwrap(angle)
+    turns = np.round((reference - angle) / (2 * np.pi))
+    running: np.ndarray[Any, Any] = angle + 2 * np.pi * turns
+    return running
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.steps import State, run
+from equipoise.mechanism.steps import State, run, running_angle
 
 Array = np.ndarray[Any, Any]
 
@@ -36,6 +36,23 @@ def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePoi
         state = run(linkage.motion, start)
     _check(linkage, state, theta, error, "asked for")
     return state
+
+
+def middle_angle(
+    linkage: Linkage, link: str, theta: Array, error: RangeError | ChangePointError
+) -> Array:
+    """Angle of a link (N,) in the middle of the range that each crank angle lies in.
+
+    Within a range a link swings less than half a turn to either side of that.
+    """
+    middles = np.zeros_like(theta)
+    for low, high in getattr(error, "ranges", ()):
+        middle = 0.5 * (low + high)
+        inside = np.abs(np.mod(theta - middle + pi, 2 * pi) - pi) <= 0.5 * (high - low)
+        middles[inside] = middle
+    with np.errstate(all="ignore"):
+        state = run(linkage.motion, linkage.start(middles))
+    return running_angle(state, link, 0.0)
 
 
 def _add_references(

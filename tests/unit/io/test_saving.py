@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields, is_dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
@@ -26,7 +26,7 @@ def changed(value: Any, draw: Callable[[float], float]) -> Any:
     """Return the same structure with other numbers."""
     if isinstance(value, float):
         return draw(value)
-    if isinstance(value, dict):
+    if isinstance(value, Mapping):
         return {key: changed(item, draw) for key, item in value.items()}
     if isinstance(value, tuple):
         return tuple(changed(item, draw) for item in value)
@@ -61,7 +61,11 @@ def test_random_edits_survive(data: st.DataObject) -> None:
         new = data.draw(st.floats(1e-25, 1.5) | st.floats(1e-3, 1.5))
         return new if old > 0 else -new
 
-    machine = changed(loads(EVERYTHING), draw)
+    try:
+        machine = changed(loads(EVERYTHING), draw)
+    except ModelError as error:  # a window of no width
+        assume("from and to must differ" not in str(error))
+        raise
     assert loads(dumps(machine)) == machine
 
 

@@ -241,7 +241,7 @@ def test_parallel_guides_are_refused() -> None:
     slot, rail = given.sliders
     with pytest.raises(ModelError) as caught:
         eq.assemble(replace(given, sliders=(replace(slot, direction=0.0), rail)))
-    assert caught.value.where == "sliders.block on yoke"
+    assert caught.value.where == "sliders[1]"
     assert "its line is parallel to that of 'yoke on frame'" in caught.value.what
 
 

@@ -12,6 +12,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
@@ -96,7 +97,7 @@ def test_poles_elsewhere() -> None:
     ("about", "words"),
     [
         ("B", "no point of the frame is called 'B'; there are 'A', 'D'"),
-        ((float("nan"), 0.0), "give a point of the frame or finite coordinates"),
+        ((float("nan"), 0.0), "give a point of the frame or two finite coordinates"),
     ],
 )
 def test_poles_that_cannot_be_used(about: Any, words: str) -> None:
@@ -225,3 +226,27 @@ def test_remarks(given: eq.Machine, words: str) -> None:
     found = remarked(given)
     assert len(found) == 1
     assert words in found[0]
+
+
+# -- load tables -----------------------------------------------------------------------------------
+
+
+def table(degrees_: tuple[float, ...], torques: tuple[float, ...]) -> eq.Load:
+    angles = tuple(float(np.radians(d)) for d in degrees_)
+    return eq.Load("coupler", table=eq.LoadTable(angles, (torques,)))
+
+
+@pytest.mark.parametrize(
+    ("given", "at", "torque"),
+    [
+        (table((0, 180, 360), (1.0, 2.0, 3.0)), (0, 90, 270, 359.999), (1.0, 1.5, 2.5, 3.0)),
+        (table((0, 180), (1.0, 2.0)), (90, 270, 359.999), (1.5, 1.5, 1.0)),
+        (table((-90, 90), (1.0, 3.0)), (-90, 0, 90, 180, 270), (1.0, 2.0, 3.0, 2.0, 1.0)),
+        (table((45,), (4.0,)), (0, 45, 200), (4.0, 4.0, 4.0)),
+    ],
+)
+def test_tables_between_their_rows(
+    given: eq.Load, at: tuple[float, ...], torque: tuple[float, ...]
+) -> None:
+    found = load_at(given, np.radians(at))[1]
+    np.testing.assert_allclose(found, torque, atol=1e-4)

@@ -62,7 +62,10 @@ def test_a_train_closes_when_all_of_it_has() -> None:
 
 
 def test_a_ratio_that_never_closes() -> None:
-    with pytest.raises(MotionError, match=r"the motion never repeats: the ratio -3\.14159"):
+    with pytest.raises(
+        MotionError,
+        match=r"the motion never repeats, or only after far too many turns: the ratio -3\.14159",
+    ):
         eq.move(two_gears(eq.Gear("crank", "wheel", ratio=-pi)), 36)
 
 
@@ -100,7 +103,7 @@ def test_a_rocker_drives_with_any_ratio(ratio: float) -> None:
 
 
 def test_a_cycle_of_many_angles_is_refused() -> None:
-    with pytest.raises(eq.EquipoiseError, match="give at most 32258"):
+    with pytest.raises(eq.EquipoiseError, match="give at most 12903"):
         eq.move(two_gears(teeth(17, 31)), 40_000)
 
 
@@ -115,7 +118,7 @@ def test_gears_on_one_centre() -> None:
     )
     with pytest.raises(ModelError) as caught:
         eq.assemble(given)
-    assert caught.value.where == "gears.crank to wheel"
+    assert caught.value.where == "gears[1]"
     assert "both gears turn about A; set their centres apart" in caught.value.what
 
 

@@ -165,5 +165,5 @@ def test_gears_turn_on_their_carrier() -> None:
     )
     with pytest.raises(ModelError) as caught:
         eq.assemble(given)
-    assert caught.value.where == "gears.crank to planet"
+    assert caught.value.where == "gears[2]"
     assert "'crank' shares 0 points with the carrier 'wheel2'" in caught.value.what

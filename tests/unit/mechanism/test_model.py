@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import copy
 import pickle
 from dataclasses import replace
 from math import inf, nan, pi
 from typing import Any
 
+import numpy as np
 import pytest
 
 import equipoise as eq
@@ -313,3 +315,85 @@ def test_an_error_knows_its_file() -> None:
     error = ModelError("links", "there is none").in_file("machine.toml")
     assert str(error) == "machine.toml: links: there is none"
     assert str(ModelError("", "broken")) == "broken"
+
+
+# -- values that stay as they are ------------------------------------------------------------------
+
+
+def test_mappings_are_copied_and_cannot_be_changed() -> None:
+    points = {"A": ORIGIN, "B": (1.0, 0.0)}
+    link = eq.Link(points)
+    points["B"] = (2.0, 0.0)
+    assert link.points["B"] == (1.0, 0.0)
+    with pytest.raises(TypeError):
+        link.points["B"] = (3.0, 0.0)  # type: ignore[index]
+    with pytest.raises(TypeError):
+        FOUR.links["crank"] = link  # type: ignore[index]
+
+
+def test_machines_are_pickled_and_copied() -> None:
+    for again in (pickle.loads(pickle.dumps(FOUR)), copy.deepcopy(FOUR)):
+        assert again == FOUR
+        with pytest.raises(TypeError):
+            again.frame["A"] = (1.0, 1.0)
+
+
+def test_numbers_of_any_kind_become_floats() -> None:
+    link = eq.Link({"A": np.array([1, 2])}, np.int64(2), [np.float32(0.5), 1], 3)  # type: ignore
+    assert link == eq.Link({"A": (1.0, 2.0)}, 2.0, (0.5, 1.0), 3.0)
+    assert type(link.mass) is float
+    assert type(link.points["A"][0]) is float
+
+
+@pytest.mark.parametrize(
+    ("changes", "where", "wanted"),
+    [
+        ({"mass": "5"}, "mass", "a number"),
+        ({"mass": True}, "mass", "a number"),
+        ({"inertia": 10**400}, "inertia", "a number"),
+        ({"center_of_mass": (1, 2, 3)}, "center_of_mass", "two numbers"),
+        ({"center_of_mass": 1.0}, "center_of_mass", "two numbers"),
+        ({"points": ["A"]}, "points", "a mapping of names to two numbers"),
+    ],
+)
+def test_values_of_the_wrong_kind(changes: dict[str, Any], where: str, wanted: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        replace(FOUR.links["crank"], **changes)
+    assert caught.value.where == where
+    assert f"give {wanted}" in caught.value.what
+
+
+def test_a_changed_mass_keeps_the_solved_linkage() -> None:
+    eq.move(FOUR)
+    heavier, faster = FOUR.with_link("crank", mass=9.0), FOUR.with_drive(speed=3.0)
+    for given in (heavier, faster):
+        assert "_linkage" in vars(given)
+        assert eq.assemble(given).machine is given
+    longer = FOUR.with_link("crank", points={"A": ORIGIN, "B": (0.3, 0.0)})
+    assert "_linkage" not in vars(longer)
+    anew = replace(heavier)
+    np.testing.assert_array_equal(
+        eq.analyze(heavier, 12).forces.drive_torque, eq.analyze(anew, 12).forces.drive_torque
+    )
+
+
+@pytest.mark.parametrize(("start", "stop"), [(1.0, 1.0), (0.0, 13.0)])
+def test_windows_of_loads(start: float, stop: float) -> None:
+    load = replace(FORCE, start=start, stop=stop)
+    refused("loads[1]", "must differ, by one turn at most", lambda: replace(FOUR, loads=(load,)))
+
+
+def test_joints_of_one_name_are_refused() -> None:
+    pinned = slider_crank()
+    renamed = replace(
+        pinned,
+        links={
+            name: replace(
+                link,
+                points={"piston on frame" if p == "B" else p: q for p, q in link.points.items()},
+            )
+            for name, link in pinned.links.items()
+        },
+    )
+    with pytest.raises(ModelError, match="two joints would be called 'piston on frame'"):
+        eq.assemble(renamed)

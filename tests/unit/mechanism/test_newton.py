@@ -298,7 +298,7 @@ def test_the_driver_comes_first() -> None:
     )
     with pytest.raises(ModelError) as caught:
         eq.assemble(given)
-    assert caught.value.where == "gears.wheel to crank"
+    assert caught.value.where == "gears[1]"
     assert "name the gear that is moved already first in between" in caught.value.what
 
 
