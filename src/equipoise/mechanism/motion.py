@@ -15,7 +15,7 @@ from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import HUGE, Machine, unknown
-from equipoise.mechanism.steps import State, p, running_angle, u
+from equipoise.mechanism.steps import State, p, plain_angle, running_angle, u
 from equipoise.mechanism.swinging import middle_angle, solve_swinging
 
 Array = np.ndarray[Any, Any]
@@ -192,7 +192,7 @@ class Motion:
             middle = middle_angle(self.linkage, link, self.crank_angle, error)
             return running_angle(self.state, link, middle)
         if link in cycle.rocking:
-            return running_angle(self.state, link, 0.0)
+            return plain_angle(self.state, link)
         return running_angle(self.state, link, cycle.reference(link, self.crank_angle))
 
     def _point(self, point: str) -> PointMotion:

@@ -66,12 +66,18 @@ class RunningAngle:
 
 def running_angle(state: State, link: str, reference: Any = None) -> np.ndarray[Any, Any]:
     """Angle of a link (N,), counted on from a reference, or else from angle to angle."""
-    angle = np.angle(np.broadcast_to(state[f"u({link})"], np.shape(state["theta"])))
+    angle = plain_angle(state, link)
     if reference is None:
-        reference = np.unwrap(angle)
+        return np.unwrap(angle)
     turns = np.round((reference - angle) / (2 * np.pi))
     running: np.ndarray[Any, Any] = angle + 2 * np.pi * turns
     return running
+
+
+def plain_angle(state: State, link: str) -> np.ndarray[Any, Any]:
+    """Angle of a link (N,) within half a turn of 0."""
+    angle: np.ndarray[Any, Any] = np.angle(state[f"u({link})"])
+    return angle if np.ndim(angle) else np.full(np.shape(state["theta"]), angle)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.steps import State, run, running_angle
+from equipoise.mechanism.steps import State, plain_angle, run
 
 Array = np.ndarray[Any, Any]
 
@@ -52,7 +52,7 @@ def middle_angle(
         middles[inside] = middle
     with np.errstate(all="ignore"):
         state = run(linkage.motion, linkage.start(middles))
-    return running_angle(state, link, 0.0)
+    return plain_angle(state, link)
 
 
 def _add_references(
