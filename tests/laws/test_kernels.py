@@ -402,6 +402,14 @@ def test_inertia_demand_is_newton_and_euler(trial: int) -> None:
 
 
 @repeated
+def test_inertia_about_another_point_is_steiner(trial: int) -> None:
+    arm, shift = vectors(2)
+    mass, own = RNG.normal(size=2)
+    got = kernels.about(mass, mass * arm, own + mass * abs(arm) ** 2, shift)
+    close(got, [mass, mass * (arm - shift), own + mass * abs(arm - shift) ** 2])
+
+
+@repeated
 def test_demands_of_weight_and_load(trial: int) -> None:
     arm, gravity, anchor, at, force = vectors(5)
     (u,) = units(1)
@@ -425,6 +433,8 @@ def test_transfer_moves_a_reaction_to_an_anchor(trial: int) -> None:
 # -- forces from every library ---------------------------------------------------------------------
 
 SIGNATURES = {
+    "about": "rcrc",
+    "along_line": "cccurr",
     "inertia_demand": "ccurrrrrcr",
     "weight_demand": "urcc",
     "load_demand": "cccr",
@@ -453,7 +463,7 @@ def arguments(name: str) -> list[Any]:
 
 def test_every_force_kernel_is_tried() -> None:
     motion = {formula.kernel for formula in FORMULAS.values()}
-    assert FUNCTIONS.keys() - motion - {"cross", "dot", "positive"} == SIGNATURES.keys()
+    assert FUNCTIONS.keys() - motion - {"cross", "dot", "positive", "tooth"} == SIGNATURES.keys()
 
 
 @pytest.mark.parametrize("name", SIGNATURES)

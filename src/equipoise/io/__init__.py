@@ -10,7 +10,10 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from equipoise.io.models import dumps, examples, json_schema, load, loads, save
 
-__all__ = ["dumps", "examples", "json_schema", "load", "loads", "save"]
+SCHEMA_VERSION = 1
+"""Version of the model file that is read and written."""
+
+__all__ = ["SCHEMA_VERSION", "dumps", "examples", "json_schema", "load", "loads", "save"]
 
 
 def __getattr__(name: str) -> Any:

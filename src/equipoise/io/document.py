@@ -14,6 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from equipoise.errors import ModelError
+from equipoise.io import SCHEMA_VERSION
 from equipoise.io.fields import (
     PAIR,
     Acceleration,
@@ -31,10 +32,6 @@ from equipoise.io.fields import (
 )
 from equipoise.mechanism import model
 from equipoise.mechanism.model import LoadTable, Machine
-
-VERSION = 1
-"""The version of the model file that this program reads."""
-
 
 # -- tables ----------------------------------------------------------------------------------------
 
@@ -218,7 +215,7 @@ class Document(Table):
     """A planar linkage with its drive, loads and gravity."""
 
     version: Literal[1] = Field(
-        alias="schema", description="version of this format", examples=[VERSION]
+        alias="schema", description="version of this format", examples=[SCHEMA_VERSION]
     )
     title: str = Field(description="shown in reports", examples=["Slider-crank"])
     description: str = Field("", description="further text")

@@ -15,12 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.io import SCHEMA_VERSION
 from equipoise.io.files import LARGEST, FileError, printable, read_text, write_text
 from equipoise.mechanism.model import LoadTable, Machine, unknown
 
 __all__ = ["dumps", "examples", "json_schema", "load", "loads", "save"]
-
-_SCHEMA_VERSION = 1
 
 # tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
 # minute for forty thousand.  No key of a model file has more than four.
@@ -195,14 +194,14 @@ def _syntax(message: str) -> str:
 def _check_version(content: dict[str, Any]) -> None:
     if "schema" not in content:
         raise ModelError(
-            "schema", f"missing; begin the file with schema = {_SCHEMA_VERSION} (all tables after)"
+            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
         )
     given = content["schema"]
-    if type(given) is not int or given != _SCHEMA_VERSION:
+    if type(given) is not int or given != SCHEMA_VERSION:
         from equipoise.io.unit_problems import described
 
         raise ModelError(
-            "schema", f"got {described(given)}; this program reads schema = {_SCHEMA_VERSION}"
+            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
         )
 
 

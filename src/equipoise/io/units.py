@@ -22,7 +22,6 @@ __all__ = [
     "Kind",
     "described",
     "format_exact",
-    "in_unit",
     "parse",
     "pattern",
     "rounded",
@@ -93,17 +92,6 @@ def format_exact(value: float, dimension: Dimension) -> str:
 def rounded(value: float, unit: str, digits: int) -> str:
     """Write a value in a given unit with so many significant digits at most."""
     return f"{_digits_of(_rounded(value, unit, digits))} {unit}"
-
-
-def in_unit(value: float, unit: str) -> float:
-    """Convert an SI value to a unit of the lists, for output.
-
-    Parameters
-    ----------
-    value : in SI units and radians.
-    unit : one of ``KINDS[...].units``.
-    """
-    return value / float(_factor(unit))
 
 
 @cache

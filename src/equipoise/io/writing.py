@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
+from equipoise.io import SCHEMA_VERSION
 from equipoise.io.points import written
 from equipoise.io.units import Dimension, format_exact
 from equipoise.mechanism.model import (
@@ -34,7 +35,7 @@ def document_of(machine: Machine, tables: Sequence[str | None]) -> dict[str, Any
     drive = machine.drive
     loads = [_load(load, name) for load, name in zip(machine.loads, tables, strict=True)]
     return {
-        "schema": 1,
+        "schema": SCHEMA_VERSION,
         "title": machine.title,
         **_unless(machine.description == "", description=machine.description),
         **_unless(

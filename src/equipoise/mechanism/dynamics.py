@@ -233,8 +233,11 @@ def inertia_about_anchor(motion: Motion, link: str) -> tuple[float, complex, flo
     """Mass, first moment (complex) and moment of inertia of a link about its anchor."""
     body = motion.machine.links[link]
     assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
-    arm = complex(*body.center_of_mass) - complex(*body.points[motion.linkage.anchors[link]])
-    return body.mass, body.mass * arm, body.inertia + body.mass * abs(arm) ** 2
+    anchor = complex(*body.points[motion.linkage.anchors[link]])
+    mass, moment, inertia = kernels.about(
+        body.mass, 0.0, body.inertia, anchor - complex(*body.center_of_mass)
+    )
+    return mass, moment, inertia
 
 
 def demand_of_inertia(

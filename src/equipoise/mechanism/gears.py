@@ -50,16 +50,16 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
     before = (*builder.running_angle(gear.driver), *builder.running_angle(carrier))
     now = run(before, builder.now)
     ratio = gear.speed_ratio
-    offset = gear.start - (
-        now[f"phi({carrier})"] * (1 - ratio) + ratio * now[f"phi({gear.driver})"]
-    )
     angles = tuple(
         (f"phi({body})", f"w({body})", f"a({body})") for body in (gear.driver, carrier, link)
     )
+    bare = Call(kernels.gear, (*angles[0], *angles[1]), (ratio, 0.0), angles[2])
+    at_start = run([bare], dict(now))[f"phi({link})"]
+    offset = gear.start - float(at_start[0])
     motion = (
         *before,
         *builder.reach(bearer, pin),
-        Call(kernels.gear, (*angles[0], *angles[1]), (ratio, float(offset[0])), angles[2]),
+        Call(kernels.gear, (*angles[0], *angles[1]), (ratio, offset), angles[2]),
         Rotation(link),
     )
     builder.add({link: pin}, [pin])

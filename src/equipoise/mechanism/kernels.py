@@ -56,6 +56,16 @@ def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
     )
 
 
+def along_line(d, d1, d2, n, w, a):
+    """Vector d and its derivatives in axes along the unit vector n, which turns by w, a."""
+    inverse = n.conjugate()
+    return (
+        d * inverse,
+        (d1 - 1j * w * d) * inverse,
+        (d2 - 2j * w * d1 - (1j * a + w * w) * d) * inverse,
+    )
+
+
 def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     """Two links pinned at p and q meet in the pin c.
 
@@ -174,11 +184,8 @@ def rpp(p, p1, p2, g, g1, g2, u, w, a, along, turn, inner, inner_turn, shift):
     Returns rotations of first and second link, the second link's sliding point, the number.
     """
     n = u * along
-    inverse = n.conjugate()
-    d, d1, d2 = p - g, p1 - g1, p2 - g2
-    z = d * inverse + shift
-    z1 = (d1 - 1j * w * d) * inverse
-    z2 = (d2 - 2j * w * d1 - (1j * a + w * w) * d) * inverse
+    z, z1, z2 = along_line(p - g, p1 - g1, p2 - g2, n, w, a)
+    z = z + shift
     slope = inner.real / inner.imag
     t, t1, t2 = z.real - slope * z.imag, z1.real - slope * z1.imag, z2.real - slope * z2.imag
     s1 = g1 + (1j * w * t + t1) * n
@@ -190,6 +197,11 @@ def rpp(p, p1, p2, g, g1, g2, u, w, a, along, turn, inner, inner_turn, shift):
 #
 # The demand of a link is what its joints together must supply: force F and moment M about the
 # link's anchor (named with each kernel).  A reaction is what the earlier body exerts on the link.
+
+
+def about(mass, moment, inertia, shift):
+    """Mass, first moment and moment of inertia about another point, which lies at `shift`."""
+    return mass, moment - mass * shift, inertia - 2 * dot(shift, moment) + mass * dot(shift, shift)
 
 
 def inertia_demand(p1, p2, u, w, a, speed2, acceleration, mass, moment, inertia):
@@ -289,6 +301,11 @@ def flank(moment):
     return (moment / (abs(moment) + 1e-300),)
 
 
+def tooth(u, sense, lever, radial):
+    """Tooth force on a driven gear, complex, for a unit of tangential force; see `gear_forces`."""
+    return (1j + radial * sense) * u * lever / abs(lever)
+
+
 def gear_forces(force, moment, u, sense, lever, radial):
     """Demand of a driven gear about its own pin.
 
@@ -299,8 +316,6 @@ def gear_forces(force, moment, u, sense, lever, radial):
     Returns force on the gear at its pin, tooth force on the gear at the pitch point, and the
     tooth force's tangential part.
     """
-    length = abs(lever)
-    direction = u * lever / length
-    tangential = moment / length
-    tooth = (1j + radial * sense) * direction * tangential
-    return force - tooth, tooth, tangential
+    tangential = moment / abs(lever)
+    mesh = tooth(u, sense, lever, radial) * tangential
+    return force - mesh, mesh, tangential

@@ -95,10 +95,9 @@ class SlideLoop:
         d, d1, d2 = (
             a - b for a, b in zip(link.point(self.on.arm), guide.point(self.by.arm), strict=True)
         )
-        _, w, a = guide.turn
-        inverse = np.exp(-1j * (guide.turn[0] + self.direction))
-        rates = (d, d1 - 1j * w * d, d2 - 2j * w * d1 - (1j * a + w * w) * d)
-        return [turn, (inverse * rates[level]).imag]
+        angle, w, a = guide.turn
+        line = np.exp(1j * (angle + self.direction))
+        return [turn, kernels.along_line(d, d1, d2, line, w, a)[level].imag]
 
     def place(self, poses: Poses) -> Any:
         return poses[self.on.body].point(self.on.arm)[0]
@@ -124,11 +123,9 @@ class GearLoop:
     unknowns: ClassVar[int] = 1
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
-        driven, driver, carrier = (
-            poses[body].turn[level] for body in (self.on.body, self.by.body, self.carrier)
-        )
-        gap = driven - carrier - self.ratio * (driver - carrier)
-        return [gap - self.offset if level == 0 else gap]
+        driver, carrier = poses[self.by.body].turn, poses[self.carrier].turn
+        wanted = kernels.gear(*driver, *carrier, self.ratio, self.offset)
+        return [poses[self.on.body].turn[level] - wanted[level]]
 
     def place(self, poses: Poses) -> Any:
         """The pitch point."""
@@ -137,8 +134,8 @@ class GearLoop:
 
     def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
         """The flank in contact, told by `sense`, sets the line of action."""
-        direction = np.exp(1j * poses[self.carrier].turn[0]) * self.lever / abs(self.lever)
-        return [((1j + self.radial * sense) * direction, 0.0)]
+        turn = np.exp(1j * poses[self.carrier].turn[0])
+        return [(kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
 
 
 @dataclass(frozen=True)

@@ -91,9 +91,9 @@ def parameter_values(machine: Machine) -> Array:
     for link in machine.links.values():
         if link.mass is None or link.center_of_mass is None or link.inertia is None:
             raise MassError(massless(machine))
-        x, y = link.center_of_mass
-        values += [link.mass, link.mass * x, link.mass * y]
-        values.append(link.inertia + link.mass * (x * x + y * y))
+        to_origin = -complex(*link.center_of_mass)
+        mass, moment, inertia = kernels.about(link.mass, 0j, link.inertia, to_origin)
+        values += [mass, moment.real, moment.imag, inertia]
     return np.array(values)
 
 
@@ -145,8 +145,8 @@ def _about_anchor(motion: Motion, link: str) -> tuple[Array, Array, Array]:
     mass = np.array([1.0, 0, 0, 0])
     moment = np.array([0, 1, 1j, 0])
     inertia = np.array([0, 0, 0, 1.0])
-    shifted = inertia - 2 * kernels.dot(r, moment) + mass * abs(r) ** 2
-    return mass[:, None], (moment - mass * r)[:, None], shifted[:, None]
+    mass, moment, inertia = kernels.about(mass, moment, inertia, r)
+    return mass[:, None], moment[:, None], inertia[:, None]
 
 
 def _spread(demand: tuple[Any, Any], k: int, count: int, shape: int) -> tuple[Array, Array]:

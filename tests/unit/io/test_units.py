@@ -155,8 +155,3 @@ def test_printed_units_are_listed() -> None:
 def test_no_unit_is_in_two_lists() -> None:
     listed = [unit for kind in KINDS.values() for unit in kind.units]
     assert len(set(listed)) == len(listed)
-
-
-def test_output_units() -> None:
-    assert units.in_unit(0.0335, "mm") == pytest.approx(33.5)
-    assert units.in_unit(pi, "deg") == pytest.approx(180)
