@@ -15,6 +15,7 @@ from equipoise.errors import UsageError
 from equipoise.io.unit_factors import FACTORS
 from equipoise.io.unit_lists import KINDS, Dimension, Kind, pattern, plain_unit
 from equipoise.io.unit_problems import described, not_text, too_far, wrong_text
+from equipoise.mechanism.checks import HUGE, TINY
 
 __all__ = [
     "KINDS",
@@ -29,8 +30,6 @@ __all__ = [
 
 _DIGITS = 60
 """Digits carried in conversions: enough that only the last step, to a float, rounds."""
-
-_LARGEST, _SMALLEST = 1e30, 1e-30
 
 
 def parse(text: object, dimension: Dimension) -> float:
@@ -59,7 +58,7 @@ def parse(text: object, dimension: Dimension) -> float:
     with localcontext() as context:
         context.prec = _DIGITS
         value = float(Decimal(match[1]) * _factor(plain_unit(match[2])))
-    if not isfinite(value) or abs(value) > _LARGEST or 0 < abs(value) < _SMALLEST:
+    if not isfinite(value) or abs(value) > HUGE or 0 < abs(value) < TINY:
         raise UsageError(too_far(text))
     return value
 

@@ -23,10 +23,14 @@ from equipoise.mechanism.steps import needed_references, run, running_angle
 Array = np.ndarray[Any, Any]
 
 POINTS_PER_TURN, FEWER_POINTS, MANY_TURNS = 720, 144, 100
+"""Crank angles of the grid in a turn, and in each of more than so many turns."""
 MOST_TURNS = 1000
-ROCKING_MARGIN = 0.1
 MOST_LOOP_TURNS = 6
+"""Turns of the crank in which a motion has to close; for groups of loops, in rounds of the rest."""
 MOST_DIPS = 6
+"""Lowest dips of a dyad's number that are looked at between the points of the grid."""
+ROCKING_MARGIN = 0.1
+"""rad: how far from half a turn an angle stays that is never counted on."""
 CHANGE_POINT = 1e-10
 """Squared sine of a transmission angle below which a dyad counts as stretched out or folded."""
 

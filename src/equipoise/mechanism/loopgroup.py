@@ -208,11 +208,9 @@ def _guess(
         if name in position.points
     ]
     for body, pose in known.items():
-        for name, place in builder.machine.points_of(body).items():
+        for name in builder.machine.points_of(body):
             if name in points and name not in position.points:
-                arm = complex(*place) - complex(
-                    *builder.machine.points_of(body)[builder.anchors[body]]
-                )
+                arm = builder.arm(body, builder.anchors[body], name)
                 given.append((complex(*points[name]), complex(pose.point(arm)[0][-1])))
     anchor = complex(*points[group.anchors[group.links.index(link)]])
     angle = position.angles.get(link)

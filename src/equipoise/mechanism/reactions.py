@@ -17,7 +17,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion, Named
-from equipoise.mechanism.steps import State, run
+from equipoise.mechanism.steps import Call, State, Step, run
 
 Array = np.ndarray[Any, Any]
 Demand = tuple[Any, Any]
@@ -123,6 +123,11 @@ class Pass:
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
+    def flanks(self) -> State:
+        """Which flank of each pair of gears is in contact, by name in the state."""
+        return {name: value for name, value in self.state.items() if name.startswith("flank(")}
+
+    @property
     def _reactions(self) -> tuple[Reaction, ...]:
         return self.motion.linkage.reactions
 
@@ -161,19 +166,17 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     for link, (force, moment) in demands.items():
         state[f"F({link})"], state[f"M({link})"] = force, moment
     state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
-    steps = motion.linkage.forces
-    if like is not None:
-        flanks = {name: value for name, value in like.state.items() if name.startswith("flank(")}
-        state.update(flanks)
-        steps = tuple(
-            step
-            for step in steps
-            if getattr(step, "outputs", ())[:1] not in [(name,) for name in flanks]
-        )
-    run(steps, state)
+    known = {} if like is None else like.flanks
+    state.update(known)
+    run([step for step in motion.linkage.forces if not _tells(step, known)], state)
     drive = motion.machine.drive.link
     state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
     return Pass(motion, state)
+
+
+def _tells(step: Step, known: Mapping[str, Any]) -> bool:
+    """Whether a step does nothing but find values that are known already."""
+    return isinstance(step, Call) and set(step.outputs) <= known.keys()
 
 
 def full(motion: Motion, value: Any, kind: type) -> Array:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ChangePointError, MotionError, RangeError
+from equipoise.errors import ChangePointError, RangeError
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.steps import State, plain_angle, run
@@ -74,7 +74,14 @@ def _add_references(
         reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
 
 
-def _check(linkage: Linkage, state: State, theta: Array, error: MotionError, doing: str) -> None:
+def _check(
+    linkage: Linkage,
+    state: State,
+    theta: Array,
+    error: RangeError | ChangePointError,
+    doing: str,
+) -> None:
+    """Raise the error again, with the crank angle, where a dyad cannot be closed."""
     for group in linkage.groups:
         if group.number is None:
             continue
@@ -85,4 +92,4 @@ def _check(linkage: Linkage, state: State, theta: Array, error: MotionError, doi
             told = f"{error} ({doing} {angle:.4g} deg)"
             if isinstance(error, RangeError):
                 raise RangeError(told, error.ranges) from None
-            raise ChangePointError(told, angle) from None
+            raise ChangePointError(told, error.crank_angle) from None

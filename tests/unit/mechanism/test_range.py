@@ -346,3 +346,12 @@ def test_angles_do_not_depend_on_which_others_are_asked_for() -> None:
     many = eq.move(given, np.linspace(*ends, 400))
     for name, link in eq.move(given, ends).links.items():
         np.testing.assert_allclose(link.angle, many.links[name].angle[[0, -1]], atol=1e-9)
+
+
+def test_a_change_point_asked_for_is_told_in_radians() -> None:
+    given = four_bar(1.0, 0.3, 1.0, 0.3)
+    with pytest.raises(ChangePointError) as whole:
+        eq.move(given)
+    with pytest.raises(ChangePointError, match="asked for") as caught:
+        eq.move(given, [whole.value.crank_angle])
+    assert caught.value.crank_angle == whole.value.crank_angle
