@@ -70,6 +70,13 @@ Acceleration = TypeAliasType(
 )
 Force = TypeAliasType("Force", Annotated[float, _reader("force"), _json("force")])
 Torque = TypeAliasType("Torque", Annotated[float, _reader("torque"), _json("torque")])
+Speed = TypeAliasType("Speed", Annotated[float, _reader("speed"), _json("speed")])
+Stiffness = TypeAliasType("Stiffness", Annotated[float, _reader("stiffness"), _json("stiffness")])
+Damping = TypeAliasType("Damping", Annotated[float, _reader("damping"), _json("damping")])
+DampingPerLength = TypeAliasType(
+    "DampingPerLength",
+    Annotated[float, _reader("damping per length"), _json("damping per length")],
+)
 
 # TOML knows lists only, which a strict tuple would refuse; what is in them stays strict.
 PAIR = Field(strict=False)

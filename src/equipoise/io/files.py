@@ -57,10 +57,26 @@ def _bytes(path: str | os.PathLike[str]) -> bytes:
     return data
 
 
+def make_folder(path: str | os.PathLike[str]) -> None:
+    """Make a folder, with those above it, where it is not there."""
+    try:
+        os.makedirs(path, exist_ok=True)
+    except FileExistsError as error:
+        raise FileError("this is a file; give the name of a folder") from error
+    except (OSError, ValueError) as error:
+        raise FileError(
+            f"the folder cannot be made ({reason(error)}); choose another place or name"
+        ) from error
+
+
 def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write text in UTF-8; see `write_bytes`."""
+    write_bytes(path, text.encode("utf-8"))
+
+
+def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
     """Write a file such that it is afterwards either the old or the new one, never half of it."""
     try:
-        data = text.encode("utf-8")
         target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"

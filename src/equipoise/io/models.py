@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from functools import partial
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -17,6 +16,7 @@ from typing import Any
 from equipoise.errors import ModelError, UsageError
 from equipoise.io import SCHEMA_VERSION
 from equipoise.io.files import LARGEST, FileError, printable, read_text, write_text
+from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine, unknown
 
 __all__ = ["dumps", "examples", "json_schema", "load", "loads", "save"]
@@ -87,47 +87,63 @@ def loads(
 def dumps(machine: Machine) -> str:
     """Write a machine as the text of a model file; `loads` of it gives an equal machine.
 
-    Load tables are named, not written: `save` writes them too.
+    Tables of loads and soil are named, not written: `save` writes them too.
 
     Raises
     ------
     ModelError
-        A load table has no file name.
+        A table has no file name.
     """
     from equipoise.io.writing import document_of, toml_text
 
-    for number, load in enumerate(machine.loads, 1):
-        if load.table is not None and not load.table.file:
-            raise ModelError(
-                f"loads[{number}].table", "the table has no file; save the machine instead"
-            )
-    names = [None if load.table is None else load.table.file for load in machine.loads]
-    return toml_text(document_of(machine, names))
+    tables = _tables(machine)
+    for where, table in tables.items():
+        if not table.file:
+            raise ModelError(where, "the table has no file; save the machine instead")
+    return toml_text(document_of(machine, {where: table.file for where, table in tables.items()}))
 
 
 def save(machine: Machine, path: str | os.PathLike[str]) -> None:
-    """Write a machine as a model file, and its load tables as ``<stem>.load-<n>.csv`` beside it.
+    """Write a machine as a model file, and its tables of loads and soil as CSV files beside it.
 
-    Each file is afterwards either the old or the new one, never half of it; the model file comes
-    last, so that it never names a table that is not there.
+    They are called ``<stem>.load-<n>.csv`` and ``<stem>.soil.csv``.  Each file is afterwards either
+    the old or the new one, never half of it; the model file comes last, so that it never names a
+    table that is not there.
 
     Raises
     ------
     UsageError
         The file cannot be written; says why.
     """
-    from equipoise.io.tables import format_table
+    from equipoise.io.tables import format_load, format_soil
     from equipoise.io.writing import document_of, toml_text
 
     path = Path(path)
-    names: list[str | None] = []
-    for number, load in enumerate(machine.loads, 1):
-        names.append(None if load.table is None else f"{path.stem}.load-{number}.csv")
+    tables = _tables(machine)
+    names = {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in tables}
     text = toml_text(document_of(machine, names))
-    for name, load in zip(names, machine.loads, strict=True):
-        if name is not None and load.table is not None:
-            _write(path.with_name(name), format_table(load.table))
+    for where, table in tables.items():
+        write = format_load(table) if isinstance(table, LoadTable) else format_soil(table)
+        _write(path.with_name(names[where]), write)
     _write(path, text)
+
+
+def _tables(machine: Machine) -> dict[str, LoadTable | SoilTable]:
+    """Tables of a machine by the key that names them."""
+    tables: dict[str, LoadTable | SoilTable] = {
+        f"loads[{number}].table": load.table
+        for number, load in enumerate(machine.loads, 1)
+        if load.table is not None
+    }
+    planting = machine.planting
+    if planting is not None and planting.soil is not None and planting.soil.table is not None:
+        tables["planting.soil.table"] = planting.soil.table
+    return tables
+
+
+def _part_of_name(where: str) -> str:
+    number = re.search("[0-9]+", where)
+    return f"load-{number[0]}" if number else "soil"
 
 
 def examples() -> dict[str, str]:
@@ -149,8 +165,7 @@ def json_schema() -> dict[str, Any]:
 
 
 def _machine(text: str, folder: Path | None) -> Machine:
-    content = _toml(text)
-    _check_version(content)
+    content = toml_content(text)
 
     from pydantic import ValidationError
 
@@ -161,7 +176,19 @@ def _machine(text: str, folder: Path | None) -> Machine:
         document = Document.model_validate(content)
     except ValidationError as error:
         raise translated(error) from error
-    return document.to_machine(partial(_table, folder=folder))
+    return document.to_machine(_Beside(folder))
+
+
+def toml_content(text: str) -> dict[str, Any]:
+    """Content of a file that begins with the version of its schema.
+
+    Raises
+    ------
+    ModelError : it is no TOML, or of another version.
+    """
+    content = _toml(text)
+    _check_version(content)
+    return content
 
 
 def _toml(text: str) -> dict[str, Any]:
@@ -205,12 +232,26 @@ def _check_version(content: dict[str, Any]) -> None:
         )
 
 
-def _table(file: str, folder: Path | None) -> LoadTable:
-    from equipoise.io.tables import read_table
+class _Beside:
+    """Reads the tables that lie beside a model file."""
 
-    if folder is None:
-        raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
-    return read_table(file, folder)
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+
+    def load(self, file: str) -> LoadTable:
+        from equipoise.io.tables import read_load
+
+        return read_load(file, self._folder(file))
+
+    def soil(self, file: str) -> SoilTable:
+        from equipoise.io.tables import read_soil
+
+        return read_soil(file, self._folder(file))
+
+    def _folder(self, file: str) -> Path:
+        if self.folder is None:
+            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
+        return self.folder
 
 
 def _bundled() -> dict[str, Traversable]:

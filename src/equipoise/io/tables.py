@@ -1,4 +1,4 @@
-"""Load tables: CSV files of force or torque against crank angle, with units in the header.
+"""Tables of loads and of soil: CSV files with units in the header.
 
 ::
 
@@ -12,13 +12,14 @@ from __future__ import annotations
 import csv
 import io
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import isfinite
 from pathlib import Path
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.io import units
 from equipoise.io.files import FileError, printable, read_text
+from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable
 
 COLUMNS: dict[str, units.Dimension] = {
@@ -26,12 +27,26 @@ COLUMNS: dict[str, units.Dimension] = {
     "force_x": "force",
     "force_y": "force",
     "torque": "torque",
+    "depth": "length",
+    "resistance": "force",
 }
-_FORMS = (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque"))
-_RIGHT = "the header is crank_angle [deg],force_x [N],force_y [N] or crank_angle [deg],torque [N m]"
+COLUMN_UNITS = {"crank_angle": "deg", "force_x": "N", "force_y": "N", "torque": "N m"} | {
+    "depth": "mm",
+    "resistance": "N",
+}
+"""Units that a header is shown with."""
+Forms = tuple[tuple[str, ...], ...]
+_LOAD: Forms = (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque"))
+_SOIL: Forms = (("depth", "resistance"),)
+"""Columns of each kind of table; the first must rise from row to row."""
 
 
-def read_table(file: str, folder: Path) -> LoadTable:
+def _right(forms: Forms) -> str:
+    headers = [",".join(f"{name} [{COLUMN_UNITS[name]}]" for name in form) for form in forms]
+    return f"the header is {' or '.join(headers)}"
+
+
+def read_load(file: str, folder: Path) -> LoadTable:
     """Read a load table.
 
     Parameters
@@ -44,21 +59,42 @@ def read_table(file: str, folder: Path) -> LoadTable:
     ModelError
         Names the table's file, line and column; `where` is empty.
     """
+    columns = _read(file, folder, _LOAD)
+    return _load_table(columns, file)
+
+
+def read_soil(file: str, folder: Path) -> SoilTable:
+    """Read a table of the soil's resistance against depth; as `read_load`."""
+    columns = _read(file, folder, _SOIL)
+    return SoilTable(columns["depth"], columns["resistance"], file)
+
+
+def parse_load(text: str, file: str = "") -> LoadTable:
+    """Read the text of a load table; errors begin with the number of the line."""
+    return _load_table(_columns(text, _LOAD), file)
+
+
+def _load_table(columns: dict[str, tuple[float, ...]], file: str) -> LoadTable:
+    angles = columns.pop("crank_angle")
+    return LoadTable(angles, tuple(columns[key] for key in COLUMNS if key in columns), file)
+
+
+def _read(file: str, folder: Path, forms: Forms) -> dict[str, tuple[float, ...]]:
     try:
         text = read_text(folder / file)
     except FileError as problem:
         raise ModelError("", f"{printable(file)}: {problem}") from problem
     try:
-        return parse_table(text, file)
+        return _columns(text, forms)
     except ModelError as error:
         raise ModelError("", f"{printable(file)}, {error.what}") from error
 
 
-def parse_table(text: str, file: str = "") -> LoadTable:
-    """Read the text of a load table; errors begin with the number of the line."""
+def _columns(text: str, forms: Forms) -> dict[str, tuple[float, ...]]:
+    """Columns of a table by name, in SI units and radians."""
     rows = _rows(text)
     number, header = next(rows, (1, []))
-    names, unit_of = _header(number, header)
+    names, unit_of = _header(number, header, forms)
     columns: list[list[float]] = [[] for _ in names]
     lines = []
     for number, row in rows:
@@ -74,23 +110,30 @@ def parse_table(text: str, file: str = "") -> LoadTable:
             "", f"line {number}: there are no rows below the header; give at least one"
         )
     by_name = dict(zip(names, map(tuple, columns), strict=True))
-    angles = by_name.pop("crank_angle")
-    _check_rising(angles, lines)
-    return LoadTable(angles, tuple(by_name[key] for key in COLUMNS if key in by_name), file)
+    _check_rising(forms[0][0], by_name[forms[0][0]], lines)
+    return by_name
 
 
-def format_table(table: LoadTable) -> str:
+def format_load(table: LoadTable) -> str:
     """Write a load table as CSV such that reading it gives exactly the same numbers."""
-    names = _FORMS[0] if len(table.values) == 2 else _FORMS[1]
+    names = _LOAD[0] if len(table.values) == 2 else _LOAD[1]
     degrees = [units.format_exact(angle, "angle").split(" ", 1) for angle in table.crank_angle]
     if all(unit == "deg" for _, unit in degrees):
         unit, angles = "deg", [number for number, _ in degrees]
     else:
         unit, angles = "rad", [repr(float(angle)) for angle in table.crank_angle]
     unit_of = [unit, *(units.KINDS[COLUMNS[name]].units[0] for name in names[1:])]
+    return _csv(names, unit_of, [angles, *(map(repr, column) for column in table.values)])
+
+
+def format_soil(table: SoilTable) -> str:
+    """Write a table of soil as CSV such that reading it gives exactly the same numbers."""
+    return _csv(_SOIL[0], ["m", "N"], [map(repr, table.depth), map(repr, table.resistance)])
+
+
+def _csv(names: Iterable[str], unit_of: Iterable[str], columns: Iterable[Iterable[str]]) -> str:
     lines = [",".join(f"{name} [{unit}]" for name, unit in zip(names, unit_of, strict=True))]
-    for angle, *values in zip(angles, *table.values, strict=True):
-        lines.append(",".join([angle, *(repr(float(value)) for value in values)]))
+    lines += map(",".join, zip(*columns, strict=True))
     return "\n".join(lines) + "\n"
 
 
@@ -108,26 +151,26 @@ def _rows(text: str) -> Iterator[tuple[int, list[str]]]:
         ) from error
 
 
-def _header(line: int, cells: list[str]) -> tuple[list[str], list[str]]:
+def _header(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
     names, unit_of = [], []
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
-        if name not in COLUMNS:
-            raise ModelError("", f"line {line}: got the column {_cut(cell)}; {_RIGHT}")
+        if not any(name in form for form in forms):
+            raise ModelError("", f"line {line}: got the column {_cut(cell)}; {_right(forms)}")
         if match is None:
             unit = units.KINDS[COLUMNS[name]].units[0]
             raise ModelError(
                 "", f"line {line}, column {name}: the unit is missing; {name} [{unit}]"
             )
         if name in names:
-            raise ModelError("", f"line {line}, column {name}: given twice; {_RIGHT}")
+            raise ModelError("", f"line {line}, column {name}: given twice; {_right(forms)}")
         _value(line, name, match[2], "0")  # a wrong unit is the header's fault, not the row's
         names.append(name)
         unit_of.append(match[2])
-    if not any(sorted(names) == sorted(form) for form in _FORMS):
+    if not any(sorted(names) == sorted(form) for form in forms):
         given = ", ".join(names) or "no column"
-        raise ModelError("", f"line {line}: got {given}; {_RIGHT}")
+        raise ModelError("", f"line {line}: got {given}; {_right(forms)}")
     return names, unit_of
 
 
@@ -154,9 +197,10 @@ def _cut(cell: str) -> str:
     return repr(cell if len(cell) <= 60 else f"{cell[:57]}...")
 
 
-def _check_rising(angles: tuple[float, ...], lines: list[int]) -> None:
-    for line, before, after in zip(lines[1:], angles, angles[1:], strict=False):
+def _check_rising(name: str, values: tuple[float, ...], lines: list[int]) -> None:
+    what = "angles" if COLUMNS[name] == "angle" else f"{name}s"
+    for line, before, after in zip(lines[1:], values, values[1:], strict=False):
         if after <= before:
             raise ModelError(
-                "", f"line {line}, column crank_angle: the angles must rise from row to row"
+                "", f"line {line}, column {name}: the {what} must rise from row to row"
             )

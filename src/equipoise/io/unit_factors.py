@@ -91,6 +91,9 @@ FACTORS = {
     "N s/m": "1",
     "N s/mm": "1000",
     "kN s/m": "1000",
+    # damping per length
+    "N s/m^2": "1",
+    "kN s/m^2": "1000",
     # power
     "W": "1",
     "mW": "0.001",

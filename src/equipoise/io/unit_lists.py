@@ -21,6 +21,7 @@ Dimension = Literal[
     "time",
     "stiffness",
     "damping",
+    "damping per length",
     "power",
 ]
 
@@ -80,6 +81,9 @@ KINDS: dict[Dimension, Kind] = {
     "time": _kind("a time", "s, ms, min, h", "s", "2 s"),
     "stiffness": _kind("a stiffness", "N/m, N/mm, kN/m, kgf/mm, lbf/in", "N/m", "20 kN/m"),
     "damping": _kind("a damping coefficient", "N s/m, N s/mm, kN s/m", "N s/m", "300 N s/m"),
+    "damping per length": _kind(
+        "a damping coefficient per length", "N s/m^2, kN s/m^2", "N s/m^2", "300 N s/m^2"
+    ),
     "power": _kind("a power", "W, mW, kW", "W", "40 W"),
 }
 

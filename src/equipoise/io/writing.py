@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
 from equipoise.io import SCHEMA_VERSION
 from equipoise.io.points import written
 from equipoise.io.units import Dimension, format_exact
+from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import (
     FRAME,
     STANDARD_GRAVITY,
@@ -24,16 +25,20 @@ from equipoise.mechanism.model import (
 _PRESSURE_ANGLE = next(field.default for field in fields(Gear) if field.name == "pressure_angle")
 
 
-def document_of(machine: Machine, tables: Sequence[str | None]) -> dict[str, Any]:
+def document_of(machine: Machine, tables: Mapping[str, str]) -> dict[str, Any]:
     """Return the content of the model file as plain values; defaults are left out.
 
     Parameters
     ----------
     machine : what is to be written.
-    tables : for each load, the name of the CSV file of its table.
+    tables : name of the CSV file for each key that names one, such as ``loads[1].table``.
     """
     drive = machine.drive
-    loads = [_load(load, name) for load, name in zip(machine.loads, tables, strict=True)]
+    loads = [
+        _load(load, tables.get(f"loads[{number}].table"))
+        for number, load in enumerate(machine.loads, 1)
+    ]
+    planting = machine.planting
     return {
         "schema": SCHEMA_VERSION,
         "title": machine.title,
@@ -56,6 +61,7 @@ def document_of(machine: Machine, tables: Sequence[str | None]) -> dict[str, Any
         **_unless(not machine.gears, gears=[_gear(gear) for gear in machine.gears]),
         **_unless(not loads, loads=loads),
         **({} if machine.position is None else {"position": _position(machine.position)}),
+        **({} if planting is None else {"planting": _planting(planting, tables)}),
     }
 
 
@@ -200,3 +206,40 @@ def _position(position: Position) -> dict[str, Any]:
         **_unless(not position.points, points=_points(position.points)),
         **_unless(not angles, angles=angles),
     }
+
+
+def _planting(planting: Planting, tables: Mapping[str, str]) -> dict[str, Any]:
+    given = {key: getattr(planting, key) for key in PLANTING}
+    table: dict[str, Any] = {"tip": planting.tip}
+    table |= {
+        key: format_exact(value, PLANTING[key]) for key, value in given.items() if value is not None
+    }
+    table |= _unless(planting.units_per_turn == 1, units_per_turn=planting.units_per_turn)
+    table |= _unless(planting.travel == "forward", travel=planting.travel)
+    table |= _unless(planting.finger_from is None, finger_from=planting.finger_from)
+    if planting.tray is not None:
+        table["tray"] = [written(end) for end in planting.tray]
+    if planting.soil is not None:
+        table["soil"] = _soil(planting.soil, tables.get("planting.soil.table"))
+    return table
+
+
+PLANTING: dict[str, Dimension] = {
+    "forward_speed": "speed",
+    "hill_spacing": "length",
+    "depth": "length",
+    "surface": "length",
+    "release": "angle",
+    "acceleration_limit": "acceleration",
+    "soil_acceleration_limit": "acceleration",
+}
+
+
+def _soil(soil: Soil, table: str | None) -> dict[str, Any]:
+    dimensions: dict[str, Dimension] = {
+        "resistance": "force",
+        "per_depth": "stiffness",
+        "per_speed": "damping",
+        "per_depth_and_speed": "damping per length",
+    }
+    return {**_quantities(soil, dimensions), **_unless(table is None, table=table)}

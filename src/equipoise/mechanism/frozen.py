@@ -14,8 +14,9 @@ class Frozen:
     """Base of the frozen dataclasses of a model.
 
     shapes : field -> what it has to be, with a question mark where it may be None: ``text``,
-        ``number``, ``pair`` (of numbers), ``counts`` (two whole numbers), ``row`` and ``rows`` of
-        numbers, ``list``; ``pairs``, ``numbers``, ``texts`` and ``values`` are mappings of such.
+        ``number``, ``pair`` (of numbers), ``segment`` (two pairs), ``count`` (a whole number),
+        ``counts`` (two of them), ``row`` and ``rows`` of numbers, ``list``; ``pairs``,
+        ``numbers``, ``texts`` and ``values`` are mappings of such.
     """
 
     shapes: ClassVar[dict[str, str]]
@@ -105,6 +106,8 @@ SHAPES: dict[str, tuple[Callable[[Any], Any], str]] = {
     "text": (_text, "text"),
     "number": (_number, "a number"),
     "pair": (_pair, "two numbers"),
+    "segment": (_two(_pair), "two points of two numbers each"),
+    "count": (_count, f"a whole number of at most {MOST_TEETH}"),
     "counts": (_two(_count), f"two whole numbers of at most {MOST_TEETH}"),
     "row": (_row, "numbers"),
     "rows": (lambda value: tuple(map(_row, value)), "rows of numbers"),

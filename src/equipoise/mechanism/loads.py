@@ -1,7 +1,8 @@
-"""Loads from outside against crank angle, and what holds them."""
+"""Loads from outside, those against crank angle and the soil's, and what holds them."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import pi
 from typing import Any
 
@@ -11,6 +12,8 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Load, LoadTable
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Demand
+from equipoise.mechanism.soil import soil_force
+from equipoise.mechanism.tip import tip_link
 
 Array = np.ndarray[Any, Any]
 
@@ -21,14 +24,22 @@ ROUNDING = 1e-9
 def load_demands(motion: Motion) -> dict[str, Demand]:
     """What holds the loads, for every link that has one."""
     result: dict[str, Demand] = {}
-    for load in motion.machine.loads:
-        anchor = motion.state[f"p({motion.linkage.anchors[load.link]})"]
-        at = anchor if load.point is None else motion.points[load.point].place
-        force, torque = load_at(load, motion.crank_angle)
+    for link, point, force, torque in _loads(motion):
+        anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
+        at = anchor if point is None else motion.points[point].place
         f, m = kernels.load_demand(anchor, at, force, torque)
-        before = result.get(load.link, (0.0, 0.0))
-        result[load.link] = (before[0] + f, before[1] + m)
+        before = result.get(link, (0.0, 0.0))
+        result[link] = (before[0] + f, before[1] + m)
     return result
+
+
+def _loads(motion: Motion) -> Iterator[tuple[str, str | None, Array, Any]]:
+    """Link, point, force and torque of each load."""
+    machine = motion.machine
+    for load in machine.loads:
+        yield load.link, load.point, *load_at(load, motion.crank_angle)
+    if machine.planting is not None and machine.planting.soil is not None:
+        yield tip_link(machine), machine.planting.tip, soil_force(motion), 0.0
 
 
 def _interpolated(table: LoadTable, column: tuple[float, ...], crank_angle: Array) -> Array:

@@ -9,11 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
+from itertools import chain
 from math import hypot, radians
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.checks import FRAME, HUGE, problems, unknown
+from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.frozen import Frozen
 
 __all__ = [
@@ -232,6 +234,7 @@ class Machine(Frozen):
     assembly : name of a dyad's inner joint -> side on which it is assembled.
     gravity : (x, y) in m/s2.
     position : rough position, needed only where dyads do not suffice.
+    planting : what a planting finger does in the field, where it is one.
     """
 
     shapes: ClassVar[dict[str, str]] = {
@@ -255,10 +258,11 @@ class Machine(Frozen):
     gravity: Vector = STANDARD_GRAVITY
     position: Position | None = None
     description: str = ""
+    planting: Planting | None = None
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in problems(self):
+        for problem in chain(problems(self), wrong_planting(self)):
             raise problem
 
     def with_link(self, name: str, **changes: Any) -> Machine:
@@ -272,6 +276,13 @@ class Machine(Frozen):
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
         return self._same_motion(changed, set(changes) <= {"speed", "acceleration"})
+
+    def with_planting(self, **changes: Any) -> Machine:
+        """Return the machine with values of its planting changed, or given for the first time."""
+        planting = (
+            Planting(**changes) if self.planting is None else replace(self.planting, **changes)
+        )
+        return self._same_motion(replace(self, planting=planting), True)
 
     def _same_motion(self, changed: Machine, same: bool) -> Machine:
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""

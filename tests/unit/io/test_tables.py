@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from equipoise.errors import ModelError
 from equipoise.io import load
-from equipoise.io.tables import format_table, parse_table, read_table
+from equipoise.io.tables import format_load, parse_load, read_load
 from equipoise.mechanism.model import LoadTable
 from unit.io.samples import FOUR_BAR
 
@@ -19,14 +19,14 @@ FORCES = "crank_angle [deg],force_x [N],force_y [N]\n0,1,2\n90,3,-4.5\n"
 
 
 def test_forces_and_torques() -> None:
-    assert parse_table(FORCES) == LoadTable((0.0, pi / 2), ((1.0, 3.0), (2.0, -4.5)))
-    torque = parse_table("torque [N mm], crank_angle [turn]\r\n\r\n1000,0\r\n2e3,.5\r\n")
+    assert parse_load(FORCES) == LoadTable((0.0, pi / 2), ((1.0, 3.0), (2.0, -4.5)))
+    torque = parse_load("torque [N mm], crank_angle [turn]\r\n\r\n1000,0\r\n2e3,.5\r\n")
     assert torque == LoadTable((0.0, pi), ((1.0, 2.0),))
 
 
 def test_the_order_of_columns_does_not_matter() -> None:
     swapped = "force_y [N],crank_angle [deg],force_x [N]\n2,0,1\n-4.5,90,3\n"
-    assert parse_table(swapped) == parse_table(FORCES)
+    assert parse_load(swapped) == parse_load(FORCES)
 
 
 @pytest.mark.parametrize(
@@ -52,13 +52,13 @@ def test_the_order_of_columns_does_not_matter() -> None:
 )
 def test_bad_tables(text: str, said: str) -> None:
     with pytest.raises(ModelError) as caught:
-        parse_table(text)
+        parse_load(text)
     assert said in str(caught.value)
 
 
 def complaint(text: str) -> str:
     try:
-        parse_table(text)
+        parse_load(text)
     except ModelError as error:
         return str(error)
     return "read"
@@ -77,12 +77,12 @@ def test_any_text_is_refused_with_a_sentence(text: str) -> None:
 def test_tables_survive(angles: list[float], value: float) -> None:
     angles = sorted(angle for angle in angles if angle > 1e-20) or [0.0]
     table = LoadTable(tuple(angles), ((value,) * len(angles), (-value,) * len(angles)))
-    assert parse_table(format_table(table)) == table
+    assert parse_load(format_load(table)) == table
 
 
 def test_whole_degrees_are_written_as_degrees() -> None:
-    assert format_table(parse_table(FORCES)).startswith("crank_angle [deg],force_x [N],force_y [N]")
-    assert "\n90,3.0,-4.5\n" in format_table(parse_table(FORCES))
+    assert format_load(parse_load(FORCES)).startswith("crank_angle [deg],force_x [N],force_y [N]")
+    assert "\n90,3.0,-4.5\n" in format_load(parse_load(FORCES))
 
 
 def test_errors_name_model_and_table(tmp_path: Path) -> None:
@@ -99,5 +99,5 @@ def test_errors_name_model_and_table(tmp_path: Path) -> None:
         load(path)
     assert str(caught.value).startswith(f"{path}: loads[1].table: ")
     table.write_text("\ufeff" + FORCES, encoding="utf-8")
-    assert load(path).loads[0].table == parse_table(FORCES, "f.csv")
-    assert read_table("f.csv", tmp_path).file == "f.csv"
+    assert load(path).loads[0].table == parse_load(FORCES, "f.csv")
+    assert read_load("f.csv", tmp_path).file == "f.csv"

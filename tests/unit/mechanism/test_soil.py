@@ -1,0 +1,190 @@
+"""The soil's force on the tip: its size term by term, its direction, and where it is counted."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import MotionError
+from equipoise.mechanism.field import Planting, Soil, SoilTable
+from equipoise.mechanism.soil import resistance, soil_force
+from equipoise.mechanism.tip import surface_of
+from unit.mechanism.build import four_bar
+
+EXAMPLES = ("kim-chung-a", "kim-chung-b")
+"""With a crank that turns counterclockwise, and clockwise."""
+TABLE = SoilTable((0.01, 0.02, 0.03), (4.0, 10.0, 8.0))
+TERMS: dict[str, tuple[Soil, Any]] = {
+    # soil, and the size of its force at depth d and speed v
+    "resistance": (Soil(resistance=7.0), lambda d, v: 7 + 0 * d),
+    "per_depth": (Soil(per_depth=300.0), lambda d, v: 300 * d),
+    "per_speed": (Soil(per_speed=5.0), lambda d, v: 5 * v),
+    "per_depth_and_speed": (Soil(per_depth_and_speed=90.0), lambda d, v: 90 * d * v),
+    "table": (Soil(table=TABLE), lambda d, v: by_hand(d)),
+    "all": (
+        Soil(1.0, 20.0, 3.0, 40.0, TABLE),
+        lambda d, v: 1 + 20 * d + 3 * v + 40 * d * v + by_hand(d),
+    ),
+}
+
+
+def by_hand(depth: Any) -> Any:
+    """TABLE: 4 N down to 10 mm, 10 N at 20 mm, 8 N from 30 mm on."""
+    rising = 4 + (depth - 0.01) * 600
+    falling = 10 - (depth - 0.02) * 200
+    return np.clip(np.minimum(rising, falling), np.where(depth < 0.02, 4, 8), None)
+
+
+def planted(name: str, soil: Soil, **more: Any) -> eq.Machine:
+    return eq.load(name).with_planting(soil=soil, **more)
+
+
+def below(motion: eq.Motion) -> Any:
+    """Depth of the tip, m."""
+    return surface_of(motion.machine) - motion.points["P"].y
+
+
+def over_ground(motion: eq.Motion) -> Any:
+    planting = motion.machine.planting
+    assert planting is not None
+    return motion.points["P"].velocity + planting.forward(motion.speed)
+
+
+@pytest.mark.parametrize("term", TERMS)
+@pytest.mark.parametrize("name", EXAMPLES)
+@pytest.mark.parametrize("travel", ["forward", "backward"])
+def test_size_and_direction(term: str, name: str, travel: str) -> None:
+    soil, size = TERMS[term]
+    motion = eq.move(planted(name, soil, travel=travel), 720)
+    force, depth, velocity = soil_force(motion), below(motion), over_ground(motion)
+    inside = depth > 0
+    assert 100 < np.count_nonzero(inside) < 400
+    assert not np.any(force[~inside])
+    along = force[inside] / velocity[inside]
+    assert np.all(along.real < 0)
+    np.testing.assert_allclose(along.imag, 0, atol=1e-12 * np.max(np.abs(along)))
+    wanted = size(depth[inside], np.abs(velocity[inside]))
+    np.testing.assert_allclose(np.abs(force[inside]), wanted, rtol=1e-12)
+
+
+def test_a_table_is_linear_between_its_rows_and_constant_beyond() -> None:
+    depth = np.array([0.0, 0.005, 0.01, 0.015, 0.02, 0.025, 0.03, 0.5])
+    found = resistance(Soil(table=TABLE), depth, np.zeros(8))
+    np.testing.assert_allclose(found, [4, 4, 4, 7, 10, 9, 8, 8], rtol=1e-14)
+
+
+def test_a_table_of_one_row_is_a_constant() -> None:
+    found = resistance(Soil(table=SoilTable((0.02,), (6.0,))), np.array([0.0, 0.02, 1.0]), 0.0)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(found, [6, 6, 6])
+
+
+def test_a_tip_at_rest_over_ground_is_not_pushed() -> None:
+    """At speed 0 with hills to be spaced, neither crank nor machine moves."""
+    hills = eq.load("kim-chung-a").with_planting(
+        forward_speed=None, hill_spacing=0.15, soil=Soil(resistance=7.0)
+    )
+    assert not np.any(soil_force(eq.move(hills, 90, speed=0.0)))
+    assert np.any(soil_force(eq.move(planted("kim-chung-a", Soil(7.0)), 90, speed=0.0)))
+
+
+def test_no_soil_no_force() -> None:
+    for machine in (eq.load("kim-chung-a"), eq.load("yamashita-1")):
+        found = soil_force(eq.move(machine, 90))
+        assert found.shape == (90,)
+        assert not np.any(found)
+
+
+def test_hills_tie_the_travel_to_the_crank() -> None:
+    """Twice the speed doubles every velocity: the force per speed too, the constant not."""
+    for soil, factor in ((Soil(resistance=7.0), 1), (Soil(per_speed=5.0), 2)):
+        machine = planted("kim-chung-b", soil, forward_speed=None, hill_spacing=0.16)
+        slow, fast = (soil_force(eq.move(machine, 360, speed=speed)) for speed in (-10.0, -20.0))
+        np.testing.assert_allclose(fast, factor * slow, rtol=1e-13)
+
+
+def test_reversing_the_crank_reverses_the_force_with_the_travel() -> None:
+    machine = planted("kim-chung-a", Soil(1.0, 20.0, 3.0, 40.0, TABLE))
+    back = machine.with_planting(travel="backward")
+    ahead, reverse = (
+        soil_force(eq.move(machine, 360)),
+        soil_force(eq.move(back, 360, speed=-8 * np.pi)),
+    )
+    np.testing.assert_allclose(reverse, -ahead, atol=1e-12 * np.max(np.abs(ahead)))
+
+
+# -- at given crank angles -------------------------------------------------------------------------
+
+
+def test_given_crank_angles_get_the_force_of_the_cycle() -> None:
+    machine = planted("kim-chung-a", TERMS["all"][0])
+    whole = soil_force(eq.move(machine, 360))
+    some = [250, 200, 10, 240]
+    found = soil_force(eq.move(machine, np.radians([*some, 250 + 720, 200 - 360])))
+    np.testing.assert_allclose(found, whole[[*some, 250, 200]], atol=1e-10)
+
+
+def test_a_crank_that_swings_needs_a_surface() -> None:
+    """Without a whole turn nothing tells the lowest point, from which a depth counts."""
+    values = Planting(tip="C", forward_speed=0.6, surface=0.89, soil=Soil(resistance=7.0))
+    swinging = four_bar(1.0, 0.9, 0.5, 0.9, planting=values)
+    angles = np.array([0.5, 0.8, 1.1, 1.4])
+    motion = eq.analyze(swinging, angles).forces.motion
+    np.testing.assert_array_equal(soil_force(motion) != 0, motion.points["C"].y < 0.89)
+    assert 0 < np.count_nonzero(soil_force(motion)) < 4
+    deep = replace(swinging, planting=replace(values, surface=None, depth=0.1))
+    with pytest.raises(MotionError, match="crank"):
+        soil_force(eq.move(deep, angles))
+
+
+# -- in an analysis --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_soil_is_a_load(name: str) -> None:
+    """It makes the cause "load" of every output, and only that."""
+    machine = planted(name, TERMS["all"][0])
+    wet = eq.analyze(machine, 180).forces
+    dry = eq.analyze(machine.with_planting(soil=None), 180).forces
+    scale = np.max(np.abs(wet.drive_torque))
+    for output in ("drive_torque", "frame_force", "joints.B"):
+        with_soil, without = wet.split.by_cause(output), dry.split.by_cause(output)
+        assert not np.any(without["load"])
+        assert np.any(with_soil["load"])
+        for cause in ("translation", "rotation", "weight"):
+            np.testing.assert_allclose(with_soil[cause], without[cause], rtol=1e-13)
+    extra = wet.drive_torque - dry.drive_torque
+    np.testing.assert_allclose(
+        wet.split.by_cause("drive_torque")["load"], extra, atol=1e-13 * scale
+    )
+    coupler = wet.split.by_link("drive_torque")["coupler"]
+    other = dry.split.by_link("drive_torque")["coupler"]
+    np.testing.assert_allclose(coupler - other, extra, atol=1e-13 * scale)
+
+
+def test_soil_adds_to_other_loads_on_the_link() -> None:
+    machine = planted("kim-chung-a", Soil(resistance=7.0))
+    loaded = replace(machine, loads=(eq.Load("coupler", "C", force=(3.0, -4.0)),))
+    only = loaded.with_planting(soil=None)
+    none = machine.with_planting(soil=None)
+    both, soil, load, bare = (
+        eq.analyze(m, 90).forces.frame_force.value for m in (loaded, machine, only, none)
+    )
+    np.testing.assert_allclose(both - bare, soil - bare + load - bare, atol=1e-11)
+
+
+def test_forces_at_another_speed_have_the_soil_of_that_speed() -> None:
+    for changes in ({}, {"forward_speed": None, "hill_spacing": 0.15}):
+        machine = planted("kim-chung-a", TERMS["all"][0], **changes)
+        found = eq.analyze(machine, 90).forces
+        for speed in (12.0, -30.0):
+            fresh = eq.analyze(machine, 90, speed=speed).forces
+            np.testing.assert_array_equal(
+                soil_force(found.at(speed).motion), soil_force(fresh.motion)
+            )
+            np.testing.assert_allclose(
+                found.at(speed).drive_torque, fresh.drive_torque, rtol=1e-13, atol=1e-13
+            )
