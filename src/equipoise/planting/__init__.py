@@ -1,0 +1,1 @@
+"""Planting: the path of the tip in the ground, its figures, and the geometry that meets targets."""

@@ -1,0 +1,104 @@
+"""Figures of the stay in the soil, and speeds that keep within limits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.instants import lowest_within
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.moments import finger_base
+from equipoise.planting.vectors import Array, Figures, ground_drive, in_time, wrapped
+
+PANELS = 24
+SAMPLES_OF_TURN = 720
+GAUSS = np.polynomial.legendre.leggauss(12)
+"""Nodes and weights of the rule for lengths, in each of so many panels."""
+
+
+def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -> Figures:
+    """What the tip does between entry and exit.  Ground figures are NaN for a machine at rest."""
+    travel = np.abs(leave - entry)
+    time = travel / np.abs(curve.speed[:, 0])
+    if breaks is None:
+        breaks = entry[:, None] + (leave - entry)[:, None] * np.linspace(0, 1, PANELS + 1)
+    ends = curve.at(np.stack([entry, leave], axis=1)).place.real
+    advance = ends[:, 1] - ends[:, 0] + curve.forward[:, 0] * time
+    drives = np.where(curve.forward[:, 0] != 0, 1.0, np.nan)
+    sharpest, at = _largest_in_soil(curve, entry, leave)
+    return {
+        "soil.depth": curve.surface - curve.lowest[0],
+        "soil.crank_travel": travel,
+        "soil.time": time,
+        "soil.path_length_machine": _length(curve, breaks, 0.0),
+        "soil.path_length_ground": _length(curve, breaks, ground_drive(curve)) * drives,
+        "soil.ground_advance": advance * drives,
+        "soil.ground_distance": np.abs(advance) * drives,
+        "soil.hole_length": _hole_length(curve, entry, leave) * drives,
+        "soil.max_acceleration.value": sharpest,
+        "soil.max_acceleration.crank_angle": wrapped(curve, at),
+    }
+
+
+def _length(curve: TipCurve, breaks: Array, drive: Any) -> Array:
+    """Length (P,) of the path over panels of crank angle, by Gauss's rule in each."""
+    nodes, weights = GAUSS
+    middle, half = (breaks[:, 1:] + breaks[:, :-1]) / 2, np.diff(breaks, axis=1) / 2
+    theta = middle[..., None] + half[..., None] * nodes
+    rate = np.abs(curve.at(theta.reshape(len(breaks), -1)).place_1 + drive)
+    length: Array = np.sum((rate.reshape(theta.shape) @ weights) * np.abs(half), axis=1)
+    return length
+
+
+def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
+    """Way over ground between the outermost places at which the finger cuts the surface."""
+    base = finger_base(curve)
+    if base is None:
+        return np.full(curve.count, np.nan)
+    level, start = curve.surface[:, None], entry[:, None]
+
+    def cut(theta: Array, side: int) -> Any:
+        """Place over ground of the cut, times `side`; infinite where the finger is all below."""
+        tip = curve.at(theta)
+        back = curve.point_of(tip.state, base)[0]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.clip((level - tip.place.imag) / (back.imag - tip.place.imag), 0, 1)
+        x = tip.place.real + share * (back.real - tip.place.real)
+        x = x + (theta - start) * ground_drive(curve)
+        return np.where((back.imag >= level) & np.isfinite(share), side * x, np.inf)
+
+    left = lowest_within(lambda theta: cut(theta, 1), entry, leave)[0]
+    right = lowest_within(lambda theta: cut(theta, -1), entry, leave)[0]
+    return -right - left
+
+
+def _largest_in_soil(curve: TipCurve, entry: Array, leave: Array) -> tuple[Array, Array]:
+    value, at = lowest_within(lambda theta: -np.abs(in_time(curve, theta, 2)), entry, leave)
+    return -value, at
+
+
+def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
+    """Highest speeds of the drive (rad/s, without acceleration) that keep within the limits.
+
+    The forward speed is the one at which hills stay as far apart as they are.
+    """
+    planting = curve.planting
+
+    def less(theta: Array) -> Any:
+        return -np.abs(curve.at(theta).place_2)
+
+    result: Figures = {}
+    ends = np.zeros(curve.count), np.full(curve.count, curve.period)
+    for name, limit, (low, high) in (
+        ("acceleration", planting.acceleration_limit, ends),
+        ("soil_acceleration", planting.soil_acceleration_limit, (entry, leave)),
+    ):
+        if limit is not None:
+            bend = -lowest_within(less, low, high, samples=SAMPLES_OF_TURN * curve.turns)[0]
+            result[f"limits.{name}.limit"] = np.full(curve.count, limit)
+            speed = np.sqrt(limit / bend)
+            result[f"limits.{name}.highest_speed"] = speed
+            way = np.abs(ground_drive(curve)[:, 0])
+            result[f"limits.{name}.highest_forward_speed"] = way * speed
+    return result

@@ -1,0 +1,169 @@
+"""All that is read off a planting machine, as one result."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from math import isfinite, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.field import Planting
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Named
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.clearance import Clearance, soil_clearances, tray_clearances
+from equipoise.planting.figures import figures
+from equipoise.planting.ground import GroundPath, Loop
+from equipoise.planting.moments import finger_base
+from equipoise.planting.torque import SoilForces, soil_forces
+from equipoise.planting.vectors import wrapped
+from equipoise.planting.visits import Visit, tray_crossings, visits
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class PlantingFigures:
+    """Figures of a planting machine, by dotted name in SI units: ``figures["curve.height"]``.
+
+    figures : by name; those that the machine does not have are missing.
+    visits : every stay in the soil, the deepest first: entry and exit are those of the first.
+    loops, cusps : of the path over ground.
+    tray_crossings : crank angles (rad) at which the tip passes the tray's edge.
+    soil_clearance, tray_clearance : link -> how close it comes.
+    notes : what a reader has to know, in sentences.
+    """
+
+    curve: TipCurve
+    figures: Mapping[str, float]
+    visits: tuple[Visit, ...]
+    loops: tuple[Loop, ...]
+    cusps: tuple[float, ...]
+    tray_crossings: tuple[float, ...]
+    soil_clearance: Mapping[str, Clearance]
+    tray_clearance: Mapping[str, Clearance]
+    notes: tuple[str, ...]
+
+    def __getitem__(self, name: str) -> float:
+        return self.figures[name]
+
+    @property
+    def machine(self) -> Machine:
+        return self.curve.machines[0]
+
+    @property
+    def planting(self) -> Planting:
+        return self.curve.planting
+
+    @cached_property
+    def forces(self) -> SoilForces | None:
+        """Forces in the soil and in the air; None where no soil or not every mass is given."""
+        return soil_forces(self.machine)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units: nested dicts, lists and numbers."""
+        result: dict[str, Any] = {
+            "title": self.machine.title,
+            "tip": self.planting.tip,
+            "finger_from": finger_base(self.curve),
+        }
+        for name, value in self.figures.items():
+            _nest(result, name, value)
+        result["visits"] = [asdict(visit) for visit in self.visits]
+        result["loops"] = [asdict(loop) for loop in self.loops]
+        result["cusps"] = list(self.cusps)
+        result["tray_crossings"] = list(self.tray_crossings)
+        result["clearance"] = {
+            "soil": {link: asdict(found) for link, found in self.soil_clearance.items()},
+            "tray": {link: asdict(found) for link, found in self.tray_clearance.items()},
+        }
+        if self.forces is not None:
+            result["forces"] = {
+                name: {"in_air": asdict(air), "in_soil": asdict(soil)}
+                for name, (air, soil) in self.forces.compared().items()
+            }
+        result["notes"] = list(self.notes)
+        return result
+
+
+def _nest(result: dict[str, Any], name: str, value: float) -> None:
+    *path, last = name.split(".")
+    for key in path:
+        result = result.setdefault(key, {})
+    result[last] = value
+
+
+def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
+    """Read the planting figures off a machine.
+
+    Parameters
+    ----------
+    machine : with a `planting`.
+    speed : of the crank, rad/s; that of the machine where not given.
+
+    Raises
+    ------
+    ModelError : there is no `planting`, or the tip never reaches the soil or never leaves it.
+    MobilityError, MotionError : the linkage cannot turn.
+    """
+    if speed is not None:
+        machine = machine.with_drive(speed=speed)
+    curve = TipCurve([machine])
+    if machine.drive.speed == 0:
+        raise ModelError("drive.speed", "got 0; give the speed at which the crank turns")
+    path, stays = GroundPath(curve), visits(curve)
+    main = stays[0]
+    breaks = path.sense * path.breaks(path.sense * main.entry, path.sense * main.exit)
+    found = figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
+    crossed = tray_crossings(curve)
+    values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
+    return PlantingFigures(
+        curve=curve,
+        figures=Named("figure", ((n, value) for n, value in values.items() if isfinite(value))),
+        visits=tuple(_wrapped(curve, stay) for stay in stays),
+        loops=path.loops(),
+        cusps=path.cusps(),
+        tray_crossings=crossed,
+        soil_clearance=soil_clearances(curve),
+        tray_clearance=tray_clearances(curve),
+        notes=tuple(_notes(curve, stays, crossed)),
+    )
+
+
+def _wrapped(curve: TipCurve, visit: Visit) -> Visit:
+    entry, leave = wrapped(curve, np.array([visit.entry, visit.exit]))
+    return Visit(float(entry), float(leave), visit.deepest, visit.depth)
+
+
+def _of_drive(curve: TipCurve) -> dict[str, float]:
+    speed, forward = float(curve.speed[0, 0]), float(curve.forward[0, 0])
+    way = abs(forward) * 2 * pi / abs(speed)
+    return {
+        "speed": speed,
+        "forward_speed": forward,
+        "hill_spacing": way / curve.planting.units_per_turn,
+        "planting_frequency": abs(speed) / (2 * pi) * curve.planting.units_per_turn,
+    }
+
+
+def _notes(curve: TipCurve, stays: tuple[Visit, ...], crossed: tuple[float, ...]) -> Iterator[str]:
+    planting = curve.planting
+    if curve.forward[0, 0] == 0:
+        yield (
+            "forward_speed is 0: there is no path over ground, and figures relative to the ground "
+            "are left out"
+        )
+    if len(stays) > 1:
+        yield (
+            f"the tip is in the soil {len(stays)} times a cycle; entry, exit and lowest point are "
+            "those of the deepest stay"
+        )
+    if planting.tray is not None and not crossed:
+        yield "the tip never passes the tray's edge, so that it picks up nothing"
+    base = finger_base(curve)
+    if planting.finger_from is None and base is not None:
+        yield f"the finger is taken from {base} to {planting.tip}; finger_from can name another"
