@@ -1,0 +1,146 @@
+"""Designs judged by the goals that they have to meet, many at once."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.mechanism.family import Family
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine, unknown
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.designs import Designs
+from equipoise.planting.figures import figures
+from equipoise.planting.goals import Goal
+from equipoise.planting.moments import soil_crossings
+
+Array = np.ndarray[Any, Any]
+
+GRID = 180
+"""Crank angles between which instants of designs are looked for."""
+OPEN = 1e-4
+"""Squared sine of the smallest transmission angle (0.6 deg) below which a design counts as open."""
+COST_OF_OPEN, COST_OF_NONE = 1e9, 1e8
+"""Cost of a design that cannot turn, and of one that lacks a figure."""
+LIMITS = 1e3
+"""Weight of limits beside targets in the global search."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Designs judged, P of them.
+
+    off : (P, T) targets, in steps.  slack : (P, L) limits, in steps, negative outside.
+    size : (P,) what is to become small, in steps.  worst : (P,) see `OPEN`.
+    """
+
+    off: Array
+    slack: Array
+    size: Array
+    worst: Array
+
+    def part(self, rows: slice) -> Outcome:
+        """Some of the designs."""
+        return Outcome(self.off[rows], self.slack[rows], self.size[rows], self.worst[rows])
+
+    @property
+    def kept(self) -> Array:
+        """Whether a design can turn and keeps every limit (P,)."""
+        kept: Array = (self.worst > OPEN) & np.all(self.slack >= 0, axis=1)
+        return kept & np.isfinite(self.cost)
+
+    @cached_property
+    def cost(self) -> Array:
+        """One number (P,) for the global search."""
+        outside = np.maximum(-self.slack, 0.0)
+        cost = np.sum(self.off**2, axis=1) + self.size
+        cost = cost + LIMITS * np.sum(outside + outside**2, axis=1)
+        cost = np.where(np.isfinite(cost), cost, COST_OF_NONE)
+        opened: Array = np.where(self.worst > OPEN, cost, COST_OF_OPEN * (1 - self.worst))
+        return opened
+
+
+class Problem:
+    """Designs of a machine and the goals that they have to meet.
+
+    judged : number of designs so far.
+    """
+
+    def __init__(self, designs: Designs, goals: Sequence[Goal]) -> None:
+        self.designs, self.goals = designs, tuple(goals)
+        self.judged = 0
+        self.groups = {goal.group for goal in goals}
+        if not self.goals:
+            raise UsageError("goals: there is none; give at least one")
+        known = _figures([designs.machine])
+        for goal in goals:
+            if goal.figure not in known:
+                raise UsageError(f"goals: {unknown(goal.figure, known, 'figure')}")
+        self.scales = [goal.scale(float(known[goal.figure][0])) for goal in goals]
+
+    @property
+    def makes(self) -> bool:
+        """Whether a figure is to become small or large."""
+        return any(goal.make for goal in self.goals)
+
+    def judge(self, values: Array) -> Outcome:
+        """Judge designs (P, n)."""
+        self.judged += len(values)
+        machines, worst = self._built(values)
+        good = worst > OPEN
+        found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
+        if np.any(good):
+            some = [m for m, g in zip(machines, good, strict=True) if g and m is not None]
+            computed = _figures(some, self.groups)
+            for name, column in found.items():
+                column[good] = computed[name]
+        off, slack, size = [], [], np.zeros(len(values))
+        for goal, scale in zip(self.goals, self.scales, strict=True):
+            column = found[goal.figure]
+            if goal.target is not None:
+                off.append(goal.off(column) / scale)
+            slack += [part / scale for part in goal.slack(column)]
+            size = size + goal.size(column) / scale
+        return Outcome(_columns(off, len(values)), _columns(slack, len(values)), size, worst)
+
+    def _built(self, values: Array) -> tuple[list[Machine | None], Array]:
+        """Machines, and the smallest number (P,) of any of their dyads round the turn."""
+        machines: list[Machine | None] = []
+        for row in values:
+            try:
+                machine = self.designs.build(row)
+                assemble(machine)
+                machines.append(machine)
+            except EquipoiseError:  # lengths of nothing, pins that coincide
+                machines.append(None)
+        worst = np.full(len(values), -1.0)
+        built = [k for k, machine in enumerate(machines) if machine is not None]
+        if built:
+            family = Family([assemble(m) for m in machines if m is not None])
+            theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (len(built), GRID + 1))
+            with np.errstate(all="ignore"):
+                numbers = family.numbers(family.solve(theta))
+            worst[built] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
+        return machines, worst
+
+
+def _figures(machines: list[Machine], wanted: Collection[str] | None = None) -> dict[str, Array]:
+    """Figures of designs by name, (P,); NaN where a design does not have one."""
+    with np.errstate(all="ignore"):
+        curve = TipCurve(machines, GRID)
+        entry, leave = soil_crossings(curve)
+        return figures(curve, entry, leave, wanted=wanted)
+
+
+def figure_names(machine: Machine) -> list[str]:
+    """Names of the figures of which a search can make goals."""
+    return list(_figures([machine]))
+
+
+def _columns(columns: list[Array], count: int) -> Array:
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0))

@@ -1,0 +1,196 @@
+"""The search of geometry: it finds what is known, improves what is asked, and keeps limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.planting.designs import Designs
+from equipoise.planting.goals import Goal
+from equipoise.planting.search import Fit, fit_planting
+
+FIGURES_OF_A = (
+    "curve.height",
+    "curve.width",
+    "lowest.crank_angle",
+    "entry.crank_angle",
+    "exit.crank_angle",
+    "soil.path_length_ground",
+    "soil.ground_distance",
+    "max_speed.value",
+    "max_acceleration.value",
+    "ratio.coupler.min",
+    "ratio.rocker.min",
+)
+"""Of the paper's Table 2: enough to tell the seven numbers of a four-bar and its tip."""
+
+
+@pytest.fixture(scope="module")
+def figures_of_a() -> eq.PlantingFigures:
+    return eq.plant(eq.load("kim-chung-a"))
+
+
+def test_mechanism_a_is_recovered_from_its_figures(figures_of_a: eq.PlantingFigures) -> None:
+    """Started from mechanism B, which is another machine and turns the other way."""
+    goals = [Goal(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
+    fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=1)
+    wanted, found = eq.load("kim-chung-a"), fit.machine
+    assert all(fit.met.values())
+    assert found.drive.speed == pytest.approx(wanted.drive.speed)
+    assert found.assembly == wanted.assembly
+    places = [(found.frame[p], wanted.frame[p]) for p in wanted.frame]
+    for link in wanted.links:
+        there, here = wanted.links[link].points, found.links[link].points
+        places += [(here[p], there[p]) for p in there]
+    for got, want in places:
+        assert got == pytest.approx(want, abs=1e-8)  # hundredths of a micrometre
+
+
+@pytest.fixture(scope="module")
+def calmer(figures_of_a: eq.PlantingFigures) -> tuple[Fit, list[Goal]]:
+    """A with a smaller largest acceleration, while what planting needs stays within limits."""
+    a = figures_of_a
+    goals = [
+        Goal("max_acceleration.value", make="smallest"),
+        Goal("curve.height", at_least=0.98 * a["curve.height"]),
+        Goal("soil.hole_length", at_most=1.02 * a["soil.hole_length"]),
+        Goal("lowest.attitude", at_least=a["lowest.attitude"] - 0.1, at_most=-2.2),
+        Goal("max_speed.value", at_most=a["max_speed.value"]),
+        Goal("transmission.min", at_least=a["transmission.min"]),
+    ]
+    machine = eq.load("kim-chung-a")
+    return fit_planting(machine, goals, seed=2, generations=50, population=45), goals
+
+
+def test_a_stated_figure_becomes_better(calmer: tuple[Fit, list[Goal]]) -> None:
+    fit, _ = calmer
+    assert fit.before is not None
+    name = "max_acceleration.value"
+    assert fit.after[name] < 0.8 * fit.before[name]
+
+
+def test_no_other_figure_becomes_worse_than_its_limit(calmer: tuple[Fit, list[Goal]]) -> None:
+    fit, goals = calmer
+    for goal in goals:
+        value = fit.after[goal.figure]
+        assert goal.at_least is None or value >= goal.at_least
+        assert goal.at_most is None or value <= goal.at_most
+
+
+def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Goal]]) -> None:
+    """Read from a file again, it has the figures that were told."""
+    fit, _ = calmer
+    again = eq.plant(eq.loads(eq.dumps(fit.machine)))
+    assert again["max_acceleration.value"] == fit.after["max_acceleration.value"]
+    assert eq.assemble(fit.machine).cycle.turns == 1
+    assert fit.machine.assembly == eq.load("kim-chung-a").assembly
+
+
+def test_the_same_seed_gives_the_same_result() -> None:
+    machine = eq.load("kim-chung-c")
+    goals = [Goal("curve.width", target=0.1), Goal("soil.depth", at_least=0.01)]
+    few = {"generations": 4, "population": 12}
+    one, two, other = (fit_planting(machine, goals, seed=seed, **few) for seed in (3, 3, 4))
+    assert one.machine == two.machine
+    assert one.judged == two.judged
+    assert one.machine != other.machine
+
+
+def test_progress_is_told() -> None:
+    told: list[tuple[int, int, float]] = []
+    goals = [Goal("curve.width", target=0.1, tolerance=1e-9)]
+    fit_planting(
+        eq.load("kim-chung-c"),
+        goals,
+        vary={"tip.x": (-0.5, 0.5)},
+        generations=6,
+        population=8,
+        progress=lambda *values: told.append(values),
+    )
+    assert [generation for generation, _, _ in told] == list(range(1, len(told) + 1))
+    assert {most for _, most, _ in told} == {6}
+    costs = [cost for _, _, cost in told]
+    assert costs == sorted(costs, reverse=True)
+
+
+def test_a_machine_that_cannot_be_met_still_gives_the_nearest() -> None:
+    """A curve of ten metres is out of reach; the result says so."""
+    goals = [Goal("curve.height", target=10.0)]
+    fit = fit_planting(eq.load("kim-chung-a"), goals, generations=15, population=20)
+    assert fit.met == {"curve.height": False}
+    assert fit.after["curve.height"] > 0.5
+
+
+def test_only_what_may_vary_varies() -> None:
+    vary = {"crank": (0.03, 0.04), "tip.y": (-0.2, 0.0)}
+    goals = [Goal("curve.height", target=0.26)]
+    fit = fit_planting(eq.load("kim-chung-a"), goals, vary, generations=20, population=20)
+    start, found = eq.load("kim-chung-a"), fit.machine
+    assert fit.met == {"curve.height": True}
+    assert found.frame == start.frame
+    assert found.links["rocker"] == start.links["rocker"]
+    assert found.links["coupler"].points["C"] == start.links["coupler"].points["C"]
+    assert found.links["coupler"].points["P"][0] == start.links["coupler"].points["P"][0]
+    assert 0.03 <= found.links["crank"].points["B"][0] <= 0.04
+    assert set(fit.values) == set(vary)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"seed": -1}, "a seed of 0 or more"),
+        ({"generations": 0}, "1 generation or more"),
+        ({"population": 4}, "a population of 5 or more"),
+        ({"vary": {"crnk": (0.1, 0.2)}}, "did you mean 'crank'"),
+        ({"vary": {"crank": (0.2, 0.1)}}, "the first limit must be below the second"),
+        ({"vary": {"crank": (-0.2, 0.1)}}, "a length must stay above 0"),
+        ({"goals": []}, "give at least one"),
+        ({"goals": [Goal("curve.heigth", target=1.0)]}, "did you mean 'curve.height'"),
+    ],
+)
+def test_wrong_arguments(change: dict[str, object], said: str) -> None:
+    arguments = {"goals": [Goal("curve.height", target=0.25)], "generations": 1, "population": 5}
+    with pytest.raises(UsageError, match=said):
+        fit_planting(eq.load("kim-chung-a"), **(arguments | change))  # type: ignore[arg-type]
+
+
+def test_gears_are_refused() -> None:
+    machine = eq.load("planetary-planting-arm").with_planting(
+        tip="P", forward_speed=0.3, depth=0.03
+    )
+    with pytest.raises(UsageError, match="this one has gears"):
+        fit_planting(machine, [Goal("curve.height", target=0.25)])
+
+
+def test_no_design_that_plants() -> None:
+    """Lengths between which no crank can turn."""
+    vary = {"crank": (0.2, 0.21)}
+    goals = [Goal("curve.height", target=0.2)]
+    with pytest.raises(UsageError, match="no design was found"):
+        fit_planting(eq.load("kim-chung-a"), goals, vary, generations=2, population=6)
+
+
+def test_designs_put_values_where_they_are_named() -> None:
+    machine = eq.load("kim-chung-a")
+    designs = Designs(machine, sense="clockwise")
+    names = [variable.name for variable in designs.variables]
+    assert names == ["frame", "crank", "coupler", "rocker", "ground_angle", "tip.x", "tip.y"]
+    built = designs.build([0.09, 0.03, 0.08, 0.07, 0.4, -0.2, 0.05])
+    assert complex(*built.frame["D"]) == pytest.approx(0.09 * np.exp(0.4j))
+    assert built.frame["A"] == machine.frame["A"]
+    assert built.links["crank"].points["B"] == (0.03, 0.0)
+    assert built.links["coupler"].points["C"] == (0.08, 0.0)
+    assert built.links["coupler"].points["P"] == (-0.2, 0.05)
+    assert built.links["rocker"].points["C"] == (0.07, 0.0)
+    assert built.drive.speed == -machine.drive.speed
+    start = designs.build(designs.start)
+    assert start.frame["D"] == pytest.approx(machine.frame["D"], abs=1e-15)
+
+
+def test_coordinates_of_any_point_can_vary() -> None:
+    designs = Designs(eq.load("kim-chung-a"), {"coupler.C.y": (-0.1, 0.1), "frame.D.x": (0, 0.1)})
+    built = designs.build([0.02, 0.03])
+    assert built.links["coupler"].points["C"] == (0.075, 0.02)
+    assert built.frame["D"] == pytest.approx((0.03, -0.075))
