@@ -1,0 +1,1 @@
+"""Pictures, drawn with Matplotlib: the only rooms that know it."""
