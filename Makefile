@@ -20,6 +20,7 @@ demo: $(VENV)/.installed
 	@echo "Next:"
 	@echo "  $(BIN)/equipoise examples                         other machines"
 	@echo "  $(BIN)/equipoise analyze yamashita-1 --csv out.csv    every signal against crank angle"
+	@echo "  $(BIN)/equipoise plant transplanter               the path of a planting finger, and its figures"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test
@@ -34,6 +35,7 @@ lint: $(VENV)/.installed-test
 bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"
 	$(BIN)/python benchmarks/analysis.py
+	$(BIN)/python benchmarks/planting.py
 	$(BIN)/python benchmarks/startup.py
 
 clean:

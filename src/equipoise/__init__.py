@@ -19,23 +19,30 @@ _HOMES = {
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
     "Figures": "signals",
+    "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
     "Gear": "mechanism.model",
+    "Goal": "planting.goals",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
     "Load": "mechanism.model",
     "LoadTable": "mechanism.model",
     "Machine": "mechanism.model",
     "Motion": "mechanism.motion",
+    "Planting": "mechanism.field",
+    "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
     "Regressor": "mechanism.parameters",
     "Slider": "mechanism.model",
+    "Soil": "mechanism.field",
+    "SoilTable": "mechanism.field",
     "analyze": "pipeline",
     "assemble": "mechanism.linkage",
     "base_parameters": "mechanism.parameters",
     "dumps": "io.models",
     "examples": "io.models",
+    "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
     "harmonics": "signals",
@@ -43,6 +50,7 @@ _HOMES = {
     "load": "io.models",
     "loads": "io.models",
     "move": "mechanism.motion",
+    "plant": "planting.summary",
     "regressor": "mechanism.parameters",
     "save": "io.models",
 }
@@ -60,6 +68,9 @@ if TYPE_CHECKING:
     from equipoise.io.models import save as save
     from equipoise.mechanism.dynamics import Forces as Forces
     from equipoise.mechanism.dynamics import forces as forces
+    from equipoise.mechanism.field import Planting as Planting
+    from equipoise.mechanism.field import Soil as Soil
+    from equipoise.mechanism.field import SoilTable as SoilTable
     from equipoise.mechanism.fourbar import FourBar as FourBar
     from equipoise.mechanism.fourbar import four_bar as four_bar
     from equipoise.mechanism.linkage import Linkage as Linkage
@@ -103,6 +114,11 @@ if TYPE_CHECKING:
         regressor as regressor,
     )
     from equipoise.pipeline import analyze as analyze
+    from equipoise.planting.goals import Goal as Goal
+    from equipoise.planting.search import Fit as Fit
+    from equipoise.planting.search import fit_planting as fit_planting
+    from equipoise.planting.summary import PlantingFigures as PlantingFigures
+    from equipoise.planting.summary import plant as plant
     from equipoise.results import Analysis as Analysis
     from equipoise.signals import Figures as Figures
     from equipoise.signals import harmonics as harmonics

@@ -29,6 +29,7 @@ EXAMPLES = (
     "scotch-yoke",
     "slider-crank-engine",
     "stephenson-six-bar",
+    "transplanter",
     "watt-six-bar",
     "yamashita-1",
     "yamashita-2",

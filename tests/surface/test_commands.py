@@ -28,7 +28,7 @@ from surface.running import (
 )
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("analyze", "check", "examples", "new", "schema")
+COMMANDS = ("analyze", "check", "examples", "new", "plant", "schema")
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
 MASSES = re.compile(r"^(mass|center_of_mass|inertia) = .*\n", re.MULTILINE)
@@ -76,6 +76,10 @@ OPTIONS = {
     "check": ["FILE"],
     "examples": [],
     "new": ["FILE"],
+    "plant": [
+        *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
+        *["--plot", "--format", "--fit", "--out", "--seed"],
+    ],
     "schema": [],
 }
 
@@ -84,7 +88,7 @@ OPTIONS = {
 def test_help_of_a_command_tells_each_option(name: str) -> None:
     text = succeeded(equipoise(name, "--help"))
     assert text.startswith(f"Usage: equipoise {name}")
-    shown = re.findall(r"^[│|] \*? *(FILE|--[a-z]+)", text, re.MULTILINE)
+    shown = re.findall(r"^[│|] \*? *(FILE|--[a-z-]+)", text, re.MULTILINE)
     assert shown == OPTIONS[name]
 
 

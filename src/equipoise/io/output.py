@@ -1,4 +1,4 @@
-"""Result files: an analysis as JSON text or CSV."""
+"""Result files: JSON text, CSV, pictures."""
 
 from __future__ import annotations
 
@@ -6,18 +6,27 @@ import csv
 import io
 import json
 import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.io.files import FileError, printable, write_text
+from equipoise.io.files import FileError, make_folder, printable, write_bytes
 from equipoise.results import Analysis, columns, to_dict, unit_of
+
+Array = np.ndarray[Any, Any]
 
 
 def to_json(analysis: Analysis, split: bool = False) -> str:
     """The machine-readable output as one JSON object, in SI units; `split` as in `to_dict`."""
-    return json.dumps(to_dict(analysis, split), default=_plain, allow_nan=False)
+    return json_text(to_dict(analysis, split))
+
+
+def json_text(values: dict[str, Any]) -> str:
+    """Nested values with NumPy arrays as one JSON object."""
+    return json.dumps(values, default=_plain, allow_nan=False)
 
 
 def _plain(value: Any) -> Any:
@@ -29,10 +38,15 @@ def _plain(value: Any) -> Any:
 def to_csv(analysis: Analysis) -> str:
     """Every array against crank angle, one row a crank angle; units stand in the header."""
     named = [("crank_angle", analysis.crank_angle), *columns(analysis)]
+    return csv_text([(name, unit_of(name), values) for name, values in named])
+
+
+def csv_text(table: Sequence[tuple[str, str, Array]]) -> str:
+    """Columns, as name, unit and values (N,), as the text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f"{name} [{unit_of(name)}]" for name, _ in named])
-    writer.writerows(np.column_stack([values for _, values in named]).tolist())
+    writer.writerow([f"{name} [{unit}]" for name, unit, _ in table])
+    writer.writerows(np.column_stack([values for _, _, values in table]).tolist())
     return text.getvalue()
 
 
@@ -47,6 +61,23 @@ def write(path: str | os.PathLike[str], text: str, *, replace: bool = True) -> N
     if not replace and os.path.lexists(path):
         raise UsageError(f"{shown}: is there already; choose another name")
     try:
-        write_text(path, text)
+        write_bytes(path, text.encode("utf-8"))
     except FileError as problem:
         raise UsageError(f"{shown}: {problem}") from problem
+
+
+def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+    """Write files into a folder, which is made where it is not there; each whole or not at all.
+
+    Raises
+    ------
+    UsageError : they cannot be written.
+    """
+    path = Path(folder)
+    try:
+        make_folder(path)
+        for name, data in files.items():
+            path = Path(folder) / name
+            write_bytes(path, data)
+    except FileError as problem:
+        raise UsageError(f"{printable(path)}: {problem}") from problem

@@ -1,50 +1,18 @@
-"""What the commands print: tables in the units of the drawing office."""
+"""What `equipoise analyze` prints: tables in the units of the drawing office."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from math import degrees, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from tabulate import tabulate
 
-from equipoise.mechanism.advice import remarks
 from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
-from equipoise.mechanism.linkage import assemble
 from equipoise.signals import Figures, figures
+from equipoise.terminal.tables import PER_RPM, angle, number, span, table
 
 if TYPE_CHECKING:
     from equipoise.mechanism.fourbar import FourBar
-    from equipoise.mechanism.linkage import Linkage
-    from equipoise.mechanism.model import Machine
     from equipoise.results import Analysis
-Array = np.ndarray[Any, Any]
-
-PER_RPM = pi / 30
-
-
-def number(value: float, scale: float = 0.0) -> str:
-    """Four significant digits; 0 where the value is rounding error beside `scale`."""
-    if abs(value) <= 1e-10 * abs(scale) or value == 0:
-        return "0"
-    if not 1e-3 <= abs(value) < 1e6:
-        return f"{value:.3e}"
-    digits = max(0, 3 - int(np.floor(np.log10(abs(value)))))
-    return f"{value:.{digits}f}"
-
-
-def angle(radians: float) -> str:
-    return f"{degrees(radians):.1f}"
-
-
-def span(values: Array, scale: float = 0.0) -> str:
-    """Smallest to largest value."""
-    low, high = float(np.min(values)), float(np.max(values))
-    scale = max(abs(low), abs(high), scale)
-    if high - low <= 1e-10 * scale:
-        return number(high, scale)
-    return f"{number(low, scale)} to {number(high, scale)}"
 
 
 def largest(found: Figures, scale: float = 0.0) -> str:
@@ -61,42 +29,6 @@ def _at(found: Figures, value: float, crank_angle: float, scale: float) -> str:
     if found.peak_to_peak <= 1e-10 * max(found.peak, scale):
         return number(value, scale)
     return f"{number(value, scale)} at {angle(crank_angle)}"
-
-
-def print_check(machine: Machine) -> None:
-    """How the linkage is built up, and what to look at again."""
-    linkage = assemble(machine)
-    cycle = linkage.cycle
-    print(machine.title)
-    drive = machine.drive
-    print(
-        f"{len(machine.links)} moving links, one free motion; driven: {drive.link} at "
-        f"{number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
-    )
-    for row in _build_up(linkage):
-        print(f"  {row}")
-    turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    print(f"the crank turns fully; the motion repeats after {turns}")
-    for remark in remarks(linkage):
-        print(f"note: {remark}")
-    print("ready to be analysed")
-
-
-HOW = {
-    "dyad": "dyad",
-    "geared": "geared",
-    "loops": "by Newton's method on the loop equations",
-}
-
-
-def _build_up(linkage: Linkage) -> Iterable[str]:
-    for group in linkage.groups:
-        links = " and ".join(group.links)
-        joints = ", ".join(
-            f"{r.name} ({r.kind} on {r.by})" if r.kind != "slider" else f"{r.name} (slider)"
-            for r in group.reactions
-        )
-        yield f"{links}: {HOW[group.kind]}; joints {joints}"
 
 
 def print_analysis(analysis: Analysis) -> None:
@@ -122,16 +54,6 @@ def print_analysis(analysis: Analysis) -> None:
     print(_forces(analysis))
     print(_causes(analysis))
     print(_joints(analysis))
-
-
-Row = tuple[str, ...]
-
-
-def _table(title: str, header: Row, rows: Iterable[Row], words: int = 1) -> str:
-    """A titled table whose first columns are words and whose others are numbers."""
-    align = ["left"] * words + ["right"] * (len(header) - words)
-    body = tabulate(list(rows), header, tablefmt="simple", disable_numparse=True, colalign=align)
-    return f"\n{title}\n\n{body}"
 
 
 def _four_bar(found: FourBar) -> str:
@@ -171,7 +93,7 @@ def _links(analysis: Analysis) -> str:
         for name, link in analysis.motion.links.items()
     ]
     header = ("", "angle deg", "velocity rad/s", "acceleration rad/s2")
-    return _table("Links; angular velocity and acceleration", header, rows)
+    return table("Links; angular velocity and acceleration", header, rows)
 
 
 def _points(analysis: Analysis) -> str:
@@ -185,7 +107,7 @@ def _points(analysis: Analysis) -> str:
         vectors = (point.velocity, point.acceleration_vector)
         rows.append((name, *places, *(largest(figures(theta, np.abs(v))) for v in vectors)))
     title = "Moving points; largest velocity and acceleration, at crank angle deg"
-    return _table(title, ("", "x mm", "y mm", "velocity m/s", "acceleration m/s2"), rows)
+    return table(title, ("", "x mm", "y mm", "velocity m/s", "acceleration m/s2"), rows)
 
 
 CAUSES = {
@@ -217,7 +139,7 @@ def _forces(analysis: Analysis) -> str:
         means = (number(found.mean, scale), number(found.rms, scale))
         extremes = (largest(found, scale), smallest(found, scale))
         rows.append((f"{label} {unit}", *means, *extremes, number(found.peak_to_peak, scale)))
-    return _table(title, ("", "mean", "RMS", "largest", "smallest", "range"), rows)
+    return table(title, ("", "mean", "RMS", "largest", "smallest", "range"), rows)
 
 
 def _causes(analysis: Analysis) -> str:
@@ -225,13 +147,13 @@ def _causes(analysis: Analysis) -> str:
     split = analysis.forces.split.by_cause("drive_torque")
     rows = []
     for cause, label in CAUSES.items():
-        if cause == "load" and not analysis.machine.loads:
+        if cause == "load" and not analysis.forces.loads:
             continue
         found = figures(analysis.crank_angle, split[cause])
         values = (found.mean, found.rms, found.max, found.min)
         rows.append((label, *(number(value, scale) for value in values)))
     header = ("", "mean", "RMS", "largest", "smallest")
-    return _table("Drive torque by cause, N m", header, rows)
+    return table("Drive torque by cause, N m", header, rows)
 
 
 def _joints(analysis: Analysis) -> str:
@@ -246,4 +168,4 @@ def _joints(analysis: Analysis) -> str:
         values = (number(found.mean), number(found.rms), largest(found), couple)
         rows.append((name, joint.on, joint.by, *values))
     header = ("", "on", "by", "mean", "RMS", "largest", "moment N m")
-    return _table("Force in each joint, N; largest at crank angle deg", header, rows, words=3)
+    return table("Force in each joint, N; largest at crank angle deg", header, rows, words=3)

@@ -1,0 +1,103 @@
+"""The command `analyze`."""
+
+from __future__ import annotations
+
+import re
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+from equipoise.cli.app import FILE, SIGNED, app
+from equipoise.cli.options import check_target, naming, quantity
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+
+
+@app.command
+def analyze(
+    file: Annotated[str, FILE],
+    /,
+    *,
+    angles: Annotated[str, SIGNED] = "360",
+    speed: Annotated[str | None, SIGNED] = None,
+    acceleration: Annotated[str | None, SIGNED] = None,
+    about: Annotated[str | None, SIGNED] = None,
+    json: bool = False,
+    split: bool = False,
+    csv: str | None = None,
+) -> None:
+    """Motion, shaking force and moment, drive torque and every joint force over a turn.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    angles
+        Number of crank angles a turn, or the angles: "0 deg, 45 deg, 90 deg".
+    speed
+        Speed of the crank instead of the file's, such as "250 rpm".
+    acceleration
+        Acceleration of the crank instead of the file's, such as "10 rad/s^2".
+    about
+        Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
+    json
+        Print one JSON object in SI units, and nothing else.
+    split
+        With --json: add every force by cause and by link.
+    csv
+        Write every signal against crank angle to this file.
+    """
+    from equipoise import pipeline
+    from equipoise.io.models import load
+
+    machine = load(file)
+    if split and not json:
+        raise UsageError("--split belongs to --json; give both")
+    if csv is not None:
+        check_target("--csv", csv, file, machine)
+    arguments = (
+        _angles(angles),
+        None if speed is None else quantity("--speed", speed, "angular speed"),
+        None
+        if acceleration is None
+        else quantity("--acceleration", acceleration, "angular acceleration"),
+        None if about is None else _place(machine, about),
+    )
+    with naming(file):
+        analysis = pipeline.analyze(machine, *arguments)
+    if csv is not None:
+        from equipoise.io.output import to_csv, write
+
+        write(csv, to_csv(analysis))
+        print(f"wrote {csv}", file=sys.stderr)
+    if json:
+        from equipoise.io.output import to_json
+
+        print(to_json(analysis, split))
+    else:
+        from equipoise.terminal.analysis import print_analysis
+
+        print_analysis(analysis)
+
+
+def _angles(text: str) -> int | list[float]:
+    from equipoise.io.units import parse
+
+    if re.fullmatch("[+-]?[0-9]{1,20}", text):
+        return int(text)
+    try:
+        return [parse(part.strip(), "angle") for part in text.split(",")]
+    except UsageError as error:
+        raise UsageError(
+            f'--angles: {error}; give a number, or angles such as "0 deg, 45 deg"'
+        ) from error
+
+
+def _place(machine: Machine, text: str) -> str | tuple[float, float]:
+    if "," not in text or text in machine.frame:
+        return text
+    parts = [quantity("--about", part.strip(), "length") for part in text.split(",")]
+    if len(parts) != 2:
+        raise UsageError(f'--about: got {text!r}; give a point, or x and y: "10 mm, 20 mm"')
+    return parts[0], parts[1]

@@ -1,0 +1,45 @@
+"""What several commands do with their options."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+
+
+@contextmanager
+def naming(file: str) -> Iterator[None]:
+    """Put the file's name in front of what turns out wrong with its machine."""
+    try:
+        yield
+    except (ModelError, MobilityError, MotionError) as error:
+        from equipoise.io.files import printable
+
+        raise EquipoiseError(f"{printable(file)}: {error}") from error
+
+
+def quantity(option: str, text: str, dimension: str) -> float:
+    from equipoise.io.units import parse
+
+    try:
+        return parse(text, dimension)  # type: ignore[arg-type]
+    except UsageError as error:
+        raise UsageError(f"{option}: {error}") from error
+
+
+def check_target(option: str, path: str, file: str, machine: Machine) -> None:
+    """Results must not take the place of what they come from."""
+    if not path:
+        raise UsageError(f"{option}: got an empty name; give the name of a file")
+    tables = (load.table.file for load in machine.loads if load.table is not None)
+    sources = [file, *(os.path.join(os.path.dirname(file), table) for table in tables)]
+    if os.path.exists(path) and any(
+        os.path.exists(source) and os.path.samefile(source, path) for source in sources
+    ):
+        raise UsageError(f"{option}: {path} is what is to be analysed; give another name")

@@ -1,0 +1,167 @@
+"""The command `plant`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from equipoise.cli.app import FILE, SIGNED, app
+from equipoise.cli.options import check_target, naming, quantity
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+    from equipoise.planting.search import Fit
+    from equipoise.planting.summary import PlantingFigures
+
+Kind = Literal["svg", "png", "pdf"]
+
+
+@app.command
+def plant(
+    file: Annotated[str, FILE],
+    /,
+    *,
+    speed: Annotated[str | None, SIGNED] = None,
+    units: str = "",
+    crank_zero: Annotated[str, SIGNED] = "0 deg",
+    json: bool = False,
+    csv: str | None = None,
+    angles: Annotated[int, SIGNED] = 360,
+    plot: str | None = None,
+    format: Kind = "svg",
+    fit: str | None = None,
+    out: str | None = None,
+    seed: int | None = None,
+) -> None:
+    """The path of a planting finger relative to machine and ground, and every figure of it.
+
+    Parameters
+    ----------
+    file
+        Path of a model file with a table [planting], or the name of a bundled example.
+    speed
+        Speed of the crank instead of the file's, such as "300 rpm".
+    units
+        Units of the printed tables where they are not to be cm, m/s and m/s^2: "mm, km/h, gn".
+    crank_zero
+        Direction from which printed crank angles count, such as "90 deg"; else the x axis.
+    json
+        Print one JSON object in SI units, and nothing else.
+    csv
+        Write tip and centre of mass relative to machine and ground to this file.
+    angles
+        With --csv: number of crank angles a turn.
+    plot
+        Draw path, velocities, accelerations and ratios into this folder.
+    format
+        With --plot: kind of the pictures.
+    fit
+        Look for the geometry that meets the targets and limits in this TOML file.
+    out
+        With --fit: write the new model file here; else beside you, called FILE-fit.toml.
+    seed
+        With --fit: seed of the random numbers instead of the target file's.
+    """
+    from equipoise.io.models import load
+    from equipoise.planting.summary import plant as read_off
+    from equipoise.terminal.units import Units
+
+    machine = load(file)
+    shown_in = Units.read(units)
+    zero = quantity("--crank-zero", crank_zero, "angle")
+    if speed is not None:
+        machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
+    if csv is not None:
+        check_target("--csv", csv, file, machine)
+    if fit is None and (out is not None or seed is not None):
+        raise UsageError("--out and --seed belong to --fit; give --fit too")
+    fitted = None if fit is None else _fit(machine, file, fit, out, seed)
+    with naming(file):
+        figures = read_off(machine) if fitted is None else fitted.after
+        if csv is not None:
+            _write_csv(figures, csv, angles)
+    if plot is not None:
+        _draw(figures, plot, format)
+    if json:
+        from equipoise.io.output import json_text
+
+        print(json_text((figures if fitted is None else fitted).to_dict()))
+    elif fitted is not None:
+        from equipoise.terminal.fit import print_fit
+
+        print_fit(fitted, shown_in)
+    else:
+        from equipoise.terminal.planting import print_planting
+
+        print_planting(figures, shown_in, zero)
+
+
+def _write_csv(figures: PlantingFigures, path: str, angles: int) -> None:
+    from equipoise.io.output import csv_text, write
+    from equipoise.planting.table import table
+
+    write(path, csv_text(table(figures, angles)))
+    print(f"wrote {path}", file=sys.stderr)
+
+
+def _draw(figures: PlantingFigures, folder: str, kind: Kind) -> None:
+    from equipoise.io.output import write_all
+    from equipoise.plotting.planting import drawings
+    from equipoise.plotting.style import render
+
+    if not folder:
+        raise UsageError("--plot: got an empty name; give the name of a folder")
+    pictures = {
+        f"{name}.{kind}": render(figure, kind) for name, figure in drawings(figures).items()
+    }
+    write_all(folder, pictures)
+    print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)
+
+
+def _fit(machine: Machine, file: str, targets: str, out: str | None, seed: int | None) -> Fit:
+    """Search, and write the design that was found as a new model file."""
+    from equipoise.cli.progress import told
+    from equipoise.io.files import printable
+    from equipoise.io.models import save
+    from equipoise.io.targets import read_targets
+    from equipoise.planting.judge import figure_names
+    from equipoise.planting.search import fit_planting
+
+    new = out if out is not None else f"{Path(file).stem}-fit.toml"
+    if not new:
+        raise UsageError("--out: got an empty name; give the name of a file")
+    if os.path.lexists(new):
+        raise UsageError(f"{printable(new)}: is there already; choose another name by --out")
+    if not os.path.isdir(os.path.dirname(new) or "."):  # told before the search, not after it
+        raise UsageError(f"{printable(new)}: there is no such folder; make it, or choose another")
+    with naming(file):
+        known = figure_names(machine)
+    given = read_targets(targets, known)
+    with naming(file), told() as progress:
+        try:
+            fitted = fit_planting(
+                machine,
+                given.goals,
+                given.vary,
+                given.sense,
+                seed=given.seed if seed is None else seed,
+                generations=given.generations,
+                population=given.population,
+                progress=progress,
+            )
+        except UsageError as error:
+            raise UsageError(f"{printable(targets)}: {error}") from error
+    save(_told_of(fitted, targets), new)
+    print(f"wrote {printable(new)}", file=sys.stderr)
+    return fitted
+
+
+def _told_of(fitted: Fit, targets: str) -> Machine:
+    """The machine that was found, with where it comes from in its description."""
+    origin = f"Geometry found by equipoise plant --fit {Path(targets).name}, seed {fitted.seed}."
+    machine = fitted.machine
+    return replace(machine, description=f"{machine.description} {origin}".strip())

@@ -1,0 +1,40 @@
+"""Progress of a search on standard error: a bar in a terminal, a few lines in a log."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+Told = Callable[[int, int, float], None]
+LINES = 10
+"""Lines in a log."""
+
+
+@contextmanager
+def told() -> Iterator[Told]:
+    """Yield what a search calls with its generation, the most there can be, and the best cost."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield _line
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn("generation {task.completed:.0f} of at most {task.total:.0f}"),
+        BarColumn(),
+        TextColumn("cost {task.fields[cost]:.4g}"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None, cost=float("nan"))
+
+        def show(generation: int, most: int, cost: float) -> None:
+            bar.update(task, completed=generation, total=max(most, generation), cost=cost)
+
+        yield show
+
+
+def _line(generation: int, most: int, cost: float) -> None:
+    if generation == 1 or generation % max(1, most // LINES) == 0:
+        print(f"generation {generation} of at most {most}, cost {cost:.4g}", file=sys.stderr)

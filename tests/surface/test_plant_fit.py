@@ -1,0 +1,98 @@
+"""`equipoise plant --fit` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import equipoise as eq
+from surface.running import equipoise, refused, succeeded
+
+TARGET = """
+schema = 1
+[search]
+generations = 20
+population = 20
+[vary]
+crank = ["30 mm", "40 mm"]
+tip.y = ["-200 mm", "0 mm"]
+[[goals]]
+figure = "curve.height"
+target = "26 cm"
+"""
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "target.toml").write_text(TARGET, encoding="utf-8")
+    return tmp_path
+
+
+def test_a_new_model_file_and_a_table(folder: Path) -> None:
+    result = equipoise("plant", "kim-chung-a", "--fit", "target.toml")
+    text = succeeded(result)
+    assert "curve.height cm  26.00" in text
+    assert "yes" in text
+    assert "crank cm " in text
+    assert result.err.splitlines()[-1] == "wrote kim-chung-a-fit.toml"
+    assert "generation 1 of at most 20" in result.err
+    found = eq.load("kim-chung-a-fit.toml")
+    assert eq.plant(found)["curve.height"] == pytest.approx(0.26, abs=1e-8)
+    assert "plant --fit target.toml, seed 1" in found.description
+    assert [path.name for path in folder.iterdir()] == ["target.toml", "kim-chung-a-fit.toml"] or [
+        path.name for path in folder.iterdir()
+    ] == ["kim-chung-a-fit.toml", "target.toml"]
+
+
+def test_json(folder: Path) -> None:
+    result = equipoise("plant", "kim-chung-a", "--fit", "target.toml", "--json", "--seed", 5)
+    content = json.loads(succeeded(result))
+    assert content["seed"] == 5
+    assert content["goals"][0]["met"] is True
+    assert content["before"]["curve"]["height"] == pytest.approx(0.25157, abs=1e-5)
+    assert content["after"]["curve"]["height"] == pytest.approx(0.26, abs=1e-8)
+    assert set(content["values"]) == {"crank", "tip.y"}
+
+
+def test_where_it_is_written(folder: Path) -> None:
+    succeeded(equipoise("plant", "kim-chung-a", "--fit", "target.toml", "--out", "new.toml"))
+    assert eq.plant(eq.load("new.toml"))["curve.height"] == pytest.approx(0.26, abs=1e-8)
+
+
+def test_a_file_that_is_there_stays(folder: Path) -> None:
+    (folder / "kim-chung-a-fit.toml").write_text("mine", encoding="utf-8")
+    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    assert said == "kim-chung-a-fit.toml: is there already; choose another name by --out"
+    assert (folder / "kim-chung-a-fit.toml").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["kim-chung-a", "--fit", "none.toml"], "none.toml: there is no such file"),
+        (["kim-chung-a", "--fit", ""], "there is no such file"),
+        (["yamashita-1", "--fit", "target.toml"], "yamashita-1: planting: missing"),
+        (["kim-chung-a", "--out", "new.toml"], "--out and --seed belong to --fit"),
+        (["kim-chung-a", "--seed", "3"], "--out and --seed belong to --fit"),
+        (["kim-chung-a", "--fit", "target.toml", "--seed", "-3"], "a seed of 0 or more"),
+        (["kim-chung-a", "--fit", "target.toml", "--out", ""], "--out: got an empty name"),
+        (["kim-chung-a", "--fit", "target.toml", "--out", "no/new.toml"], "no/new.toml"),
+    ],
+)
+def test_refused(folder: Path, words: list[str], said: str) -> None:
+    result = equipoise("plant", *words)
+    assert result.status == 2
+    assert said in result.err
+    assert "Traceback" not in result.err
+    assert [path.name for path in folder.iterdir()] == ["target.toml"]
+
+
+def test_a_wrong_goal_names_the_target_file(folder: Path) -> None:
+    text = TARGET.replace("crank =", "crnk =")
+    (folder / "target.toml").write_text(text, encoding="utf-8")
+    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    assert said.startswith("target.toml: vary.crnk: ")
+    assert "did you mean 'crank'" in said
