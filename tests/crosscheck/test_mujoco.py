@@ -8,6 +8,7 @@ import pytest
 from equipoise.mechanism.model import FRAME
 from support import mujoco_engine
 from support.analyses import (
+    PLANTED,
     RANDOM,
     Subject,
     agree,
@@ -15,6 +16,7 @@ from support.analyses import (
     example_subject,
     force_size,
     moment_size,
+    planted_subject,
     random_subject,
     vector,
 )
@@ -67,6 +69,13 @@ def carried(subject: Subject) -> None:
 @pytest.mark.parametrize(("kind", "seed"), RANDOM)
 def test_random_machine(kind: str, seed: int) -> None:
     subject = random_subject(kind, seed)
+    same_totals(subject, mujoco_engine.totals)
+    carried(subject)
+
+
+@pytest.mark.parametrize(("kind", "seed"), PLANTED)
+def test_random_machine_in_soil(kind: str, seed: int) -> None:
+    subject = planted_subject(kind, seed)
     same_totals(subject, mujoco_engine.totals)
     carried(subject)
 

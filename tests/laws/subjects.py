@@ -15,10 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 import equipoise as eq
-from support.loads import force_and_torque
+from equipoise.mechanism.field import Soil, SoilTable
+from support.loads import force_and_torque, has_soil, soil_force, tip_of
 from support.machines import KINDS, make
 
 Array = NDArray[Any]
+IN_SOIL = "kim-chung-b in soil"
 CAUSES = ("translation", "rotation", "weight", "load")
 SEEDS = (0, 1, 2)
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
@@ -27,15 +29,27 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 
 @cache
 def names() -> tuple[str, ...]:
-    """Names of all subjects: examples, and kinds of random machines with a seed."""
-    return (*sorted(eq.examples()), *(f"{kind}:{seed}" for kind in KINDS for seed in SEEDS))
+    """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
+    random = (f"{kind}:{seed}" for kind in KINDS for seed in SEEDS)
+    return (*sorted(eq.examples()), IN_SOIL, *random)
 
 
 @cache
 def machine_of(name: str) -> eq.Machine:
     """Return the machine of a subject."""
+    if name == IN_SOIL:
+        return in_soil()
     kind, _, seed = name.partition(":")
     return make(kind, int(seed)).machine if seed else eq.load(name)
+
+
+def in_soil() -> eq.Machine:
+    """Return a planter with every value that the example with soil lacks."""
+    return eq.load("kim-chung-b").with_planting(
+        travel="backward", forward_speed=None, hill_spacing=0.08, units_per_turn=2,
+        depth=None, surface=-0.12, release=3.9, tray=((0.1, 0.02), (0.15, 0.05)),
+        soil=Soil(1.0, 20.0, 3.0, 400.0, SoilTable((0.01, 0.02), (4.0, 10.0))),
+    )  # fmt: skip
 
 
 @cache
@@ -72,19 +86,29 @@ def gravity_power(found: eq.Forces) -> Array:
 
 
 def load_power(found: eq.Forces) -> Array:
-    """Power of the loads, one row a load."""
+    """Power of the loads, one row a load.
+
+    The soil's is what it does relative to the machine; the rest drives the machine over ground.
+    """
     motion, rows = found.motion, [np.zeros(len(found.motion.crank_angle))]
-    for load, force, torque in acting(found):
-        at = 0.0 if load.point is None else motion.points[load.point].velocity
-        rows.append(along(at, force) + torque * motion.links[load.link].angular_velocity)
+    for link, point, force, torque in acting(found):
+        at = 0.0 if point is None else motion.points[point].velocity
+        rows.append(along(at, force) + torque * motion.links[link].angular_velocity)
     return np.array(rows)
 
 
-def acting(found: eq.Forces) -> Iterator[tuple[eq.Load, Array, Array]]:
-    """Loads with their force (complex, N) and torque (N m), evaluated anew."""
-    for load in found.motion.machine.loads:
-        force, torque = force_and_torque(load, found.motion.crank_angle)
-        yield load, force[:, 0] + 1j * force[:, 1], torque
+def acting(found: eq.Forces) -> Iterator[tuple[str, str | None, Array, Array]]:
+    """Link and point of each load, its force (complex, N) and torque (N m), evaluated anew."""
+    motion, machine = found.motion, found.motion.machine
+    for load in machine.loads:
+        force, torque = force_and_torque(load, motion.crank_angle)
+        yield load.link, load.point, force[:, 0] + 1j * force[:, 1], torque
+    if has_soil(machine):
+        link, point, _ = tip_of(machine)
+        tip = motion.points[point]
+        place, velocity = (np.stack([z.real, z.imag], -1) for z in (tip.place, tip.velocity))
+        force = soil_force(machine, place, velocity, motion.speed)
+        yield link, point, force[:, 0] + 1j * force[:, 1], np.zeros(len(force))
 
 
 def along(a: Any, b: Any) -> Any:
@@ -143,5 +167,9 @@ def same_outputs(got: eq.Forces, want: eq.Forces, tolerance: float) -> None:
 
 
 def without_loads(machine: eq.Machine) -> eq.Machine:
-    """Take all loads away."""
-    return replace(machine, loads=())
+    """Take all loads away, the soil among them."""
+    return replace(without_soil(machine), loads=())
+
+
+def without_soil(machine: eq.Machine) -> eq.Machine:
+    return machine.with_planting(soil=None) if has_soil(machine) else machine

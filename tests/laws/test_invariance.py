@@ -15,6 +15,7 @@ from equipoise.mechanism.model import FRAME
 from laws import transforms
 from laws.subjects import (
     ANGLES,
+    IN_SOIL,
     forces,
     forces_of,
     is_force,
@@ -24,6 +25,7 @@ from laws.subjects import (
     same,
     same_outputs,
     sizes,
+    without_soil,
 )
 from laws.transforms import Units
 
@@ -34,14 +36,11 @@ every_subject = pytest.mark.parametrize("name", names())
 def scaled(found: eq.Forces, force: complex = 1, moment: float = 1, flip: bool = False) -> Any:
     """Outputs as another description must give them."""
     for name, value in outputs(found):
-        if flip and np.iscomplexobj(value):
-            yield name, np.conj(value)
-        elif flip and not name.endswith("/radial"):
-            yield name, -value
-        elif np.iscomplexobj(value):
-            yield name, value * force
+        if np.iscomplexobj(value):
+            yield name, (np.conj(value) if flip else value) * force
         else:
-            yield name, value * (abs(force) if is_force(name) else moment)
+            sign = -1 if flip and not name.endswith("/radial") else 1
+            yield name, sign * value * (abs(force) if is_force(name) else moment)
 
 
 def agree(got: eq.Forces, want: dict[str, Any], tolerance: float = TOLERANCE) -> None:
@@ -71,20 +70,23 @@ def speed(name: str) -> float:
 @every_subject
 @pytest.mark.parametrize("angle", [0.4, -2.3])
 def test_turning_the_frame_with_gravity(name: str, angle: float) -> None:
+    """Without soil, which stays level whichever way the machine is turned."""
+    found = forces(without_soil(machine_of(name)))
     moved = forces(transforms.turned(machine_of(name), angle), ANGLES + angle)
     turn = np.exp(1j * angle)
-    agree(moved, dict(scaled(forces_of(name), turn)))
-    for link, motion in forces_of(name).motion.links.items():
+    agree(moved, dict(scaled(found, turn)))
+    for link, motion in found.motion.links.items():
         apart = moved.motion.links[link].angle - motion.angle - angle
         same(np.exp(1j * apart), np.ones(len(ANGLES)), TOLERANCE)
 
 
 @every_subject
 def test_mirror_image(name: str) -> None:
-    moved = forces(transforms.mirrored(machine_of(name)), -ANGLES)
-    agree(moved, dict(scaled(forces_of(name), flip=True)))
+    moved = forces(transforms.mirrored(machine_of(name)), np.pi - ANGLES)
+    agree(moved, dict(scaled(forces_of(name), -1, flip=True)))
     for point, motion in forces_of(name).motion.points.items():
-        same(moved.motion.points[point].velocity, np.conj(motion.velocity), TOLERANCE, speed(name))
+        want = -np.conj(motion.velocity)
+        same(moved.motion.points[point].velocity, want, TOLERANCE, speed(name))
     same(moved.power, forces_of(name).power, TOLERANCE, float(np.max(np.abs(moved.power))))
 
 
@@ -111,13 +113,31 @@ def test_other_axes_of_the_links(name: str) -> None:
 
 @every_subject
 def test_reversing_the_speed(name: str) -> None:
-    """At each crank angle inertia knows only the speed's square; the power changes sign."""
-    found = forces_of(name)
+    """At each crank angle inertia knows only the speed's square; the power changes sign.
+
+    Without soil, which pushes against the motion, so that its force changes sign; see below.
+    """
+    found = forces(without_soil(machine_of(name)))
     reverse = found.at(-found.motion.speed)
     agree(reverse, dict(scaled(found)))
     np.testing.assert_allclose(reverse.power, -found.power)
     for point, motion in found.motion.points.items():
         np.testing.assert_array_equal(reverse.motion.points[point].velocity, -motion.velocity)
+
+
+@pytest.mark.parametrize("name", [IN_SOIL, "transplanter"])
+def test_driving_backwards_reverses_the_soil(name: str) -> None:
+    """With crank and machine reversed the tip runs back over the same ground.
+
+    Only the travel has to be turned as well: `forward_speed` and `hill_spacing` tell its size.
+    """
+    machine = machine_of(name)
+    assert machine.planting is not None
+    back = machine.with_planting(travel=FLIP[machine.planting.travel])
+    ahead, dry = dict(outputs(forces_of(name))), dict(outputs(forces(without_soil(machine))))
+    want = {key: 2 * dry[key] - value for key, value in ahead.items()}
+    assert any(np.any(value != ahead[key]) for key, value in want.items())
+    agree(forces(back, speed=-machine.drive.speed), want)
 
 
 # -- names and order -------------------------------------------------------------------------------

@@ -77,8 +77,8 @@ def load_resultant(found: eq.Forces) -> tuple[Any, Any]:
     """Force and moment about the pole of all loads."""
     motion = found.motion
     total, turning = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
-    for load, force, torque in acting(found):
-        arm = 0.0 if load.point is None else motion.points[load.point].place - found.about
+    for _, point, force, torque in acting(found):
+        arm = 0.0 if point is None else motion.points[point].place - found.about
         total, turning = total + force, turning + torque + along(1j * arm, force)
     return total, turning
 

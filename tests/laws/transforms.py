@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from math import pi
 from typing import TypeVar
 
 import numpy as np
 
 import equipoise as eq
+from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import FRAME, Vector
 
 Value = TypeVar("Value")
@@ -25,15 +27,33 @@ def vector(change: Map, place: Vector) -> Vector:
 
 
 def shifted(machine: eq.Machine, shift: complex) -> eq.Machine:
-    """Move the frame's points, and the rough position with them."""
-    position = machine.position
+    """Move the frame's points, and the rough position, the soil and the tray with them."""
+    position, planting = machine.position, machine.planting
     if position is not None:
         position = replace(position, points=mapped(position.points, lambda z: z + shift))
-    return replace(machine, frame=mapped(machine.frame, lambda z: z + shift), position=position)
+    if planting is not None:
+        level = planting.surface
+        planting = replace(
+            planting,
+            surface=None if level is None else level + shift.imag,
+            tray=tray(planting, lambda z: z + shift),
+        )
+    frame = mapped(machine.frame, lambda z: z + shift)
+    return replace(machine, frame=frame, position=position, planting=planting)
+
+
+def tray(planting: Planting, change: Map) -> tuple[Vector, Vector] | None:
+    if planting.tray is None:
+        return None
+    one, other = planting.tray
+    return vector(change, one), vector(change, other)
 
 
 def turned(machine: eq.Machine, angle: float) -> eq.Machine:
-    """Turn the frame and everything given in its axes; crank angles grow by the same angle."""
+    """Turn the frame and everything given in its axes; crank angles grow by the same angle.
+
+    What is told of planting goes: the soil stays level and is driven over along x.
+    """
     turn = complex(np.exp(1j * angle))
     # the start angle of a gear holds at crank angle 0, which is another position now
     start = eq.move(machine, np.array([-angle]))
@@ -50,6 +70,7 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
         ),
         loads=tuple(turned_load(load, angle) for load in machine.loads),
         position=None if machine.position is None else turned_position(machine.position, angle),
+        planting=None,
     )
 
 
@@ -85,6 +106,23 @@ def table(given: eq.LoadTable, change: Map, later: float = 0.0) -> eq.LoadTable:
 
 
 def mirrored(machine: eq.Machine) -> eq.Machine:
+    """The image in the y axis, soil below; a crank angle and its image make half a turn."""
+    image = turned(mirrored_in_x(replace(machine, planting=None)), pi)
+    return replace(image, planting=mirrored_planting(machine.planting))
+
+
+def mirrored_planting(planting: Planting | None) -> Planting | None:
+    if planting is None:
+        return None
+    return replace(
+        planting,
+        travel={"forward": "backward", "backward": "forward"}[planting.travel],
+        release=None if planting.release is None else pi - planting.release,
+        tray=tray(planting, lambda z: -z.conjugate()),
+    )
+
+
+def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis; crank angles change their sign."""
     flip = {"left": "right", "right": "left"}
     position = machine.position
@@ -173,7 +211,44 @@ def in_units(machine: eq.Machine, units: Units) -> eq.Machine:
         loads=tuple(load_in_units(load, units) for load in machine.loads),
         gravity=vector(lambda z: z * length / units.time**2, machine.gravity),
         position=position,
+        planting=planting_in_units(machine.planting, units),
     )  # fmt: skip
+
+
+def planting_in_units(planting: Planting | None, units: Units) -> Planting | None:
+    if planting is None:
+        return None
+    length, time = units.length, units.time
+    factors = {
+        "forward_speed": length / time,
+        "acceleration_limit": length / time**2,
+        "soil_acceleration_limit": length / time**2,
+        **dict.fromkeys(("hill_spacing", "depth", "surface"), length),
+    }
+    given = {key: getattr(planting, key) for key in factors}
+    return replace(
+        planting,
+        tray=tray(planting, lambda z: z * length),
+        soil=None if planting.soil is None else soil_in_units(planting.soil, units),
+        **{key: value * factors[key] for key, value in given.items() if value is not None},
+    )
+
+
+def soil_in_units(soil: Soil, units: Units) -> Soil:
+    given, slowness = soil.table, units.time / units.length
+    if given is not None:
+        given = replace(
+            given,
+            depth=tuple(d * units.length for d in given.depth),
+            resistance=tuple(r * units.force for r in given.resistance),
+        )
+    return Soil(
+        soil.resistance * units.force,
+        soil.per_depth * units.force / units.length,
+        soil.per_speed * units.force * slowness,
+        soil.per_depth_and_speed * units.force / units.length * slowness,
+        given,
+    )
 
 
 def link_in_units(link: eq.Link, units: Units) -> eq.Link:
@@ -244,9 +319,13 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
     def keys(given: Mapping[str, Value]) -> dict[str, Value]:
         return {names(key): value for key, value in given.items()}
 
-    position = machine.position
+    position, planting = machine.position, machine.planting
     if position is not None:
         position = replace(position, points=keys(position.points), angles=keys(position.angles))
+    if planting is not None:
+        finger = planting.finger_from
+        finger = None if finger is None else names(finger)
+        planting = replace(planting, tip=names(planting.tip), finger_from=finger)
     return replace(
         machine,
         drive=replace(machine.drive, link=body(machine.drive.link)),
@@ -271,6 +350,7 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
             for load in machine.loads
         ),
         position=position,
+        planting=planting,
     )  # fmt: skip
 
 

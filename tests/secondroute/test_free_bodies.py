@@ -10,6 +10,7 @@ import pytest
 from equipoise.mechanism.model import FRAME
 from support import free_bodies
 from support.analyses import (
+    PLANTED,
     RANDOM,
     Subject,
     agree,
@@ -17,6 +18,7 @@ from support.analyses import (
     example_subject,
     force_size,
     moment_size,
+    planted_subject,
     random_subject,
     vector,
 )
@@ -94,6 +96,13 @@ def acting_on_the_later(subject: Subject) -> None:
 @pytest.mark.parametrize(("kind", "seed"), RANDOM)
 def test_random_machine(kind: str, seed: int) -> None:
     subject = random_subject(kind, seed)
+    same_forces(subject)
+    acting_on_the_later(subject)
+
+
+@pytest.mark.parametrize(("kind", "seed"), PLANTED)
+def test_random_machine_in_soil(kind: str, seed: int) -> None:
+    subject = planted_subject(kind, seed)
     same_forces(subject)
     acting_on_the_later(subject)
 

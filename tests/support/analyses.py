@@ -11,6 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
+from equipoise.mechanism.field import Soil, SoilTable
 from equipoise.mechanism.model import Machine
 from support.machines import KINDS, Case, make
 from support.poses import Array, Poses, from_motion
@@ -19,6 +20,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles of every comparison, off the round numbers at which loads may begin or end."""
 
 RANDOM = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in range(10)]
+PLANTED = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in range(2)]
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,32 @@ def random_subject(kind: str, seed: int) -> Subject:
 
 
 @cache
+def planted_subject(kind: str, seed: int) -> Subject:
+    """Analyse a random machine that drives over ground with one of its points in the soil."""
+    case = make(kind, seed)
+    return analysed(planted(case.machine, np.random.default_rng(seed)), case)
+
+
+def planted(machine: Machine, rng: np.random.Generator) -> Machine:
+    """Drive a point through soil that resists in every way, in some part of its path."""
+    moving = {label for link in machine.links.values() for label in link.points} - {*machine.frame}
+    tip = str(rng.choice(sorted(moving)))
+    path = eq.move(machine, 360).points[tip]
+    height, size = path.y, float(np.ptp(path.x) + np.ptp(path.y))
+    # A point that moves along x has no height to speak of: all of its path is below the surface.
+    depth = 0.4 * float(np.ptp(height)) + 0.01 * size
+    level = {"depth": depth} if rng.random() < 0.5 else {"surface": float(np.min(height)) + depth}
+    pace = size * abs(machine.drive.speed)
+    forward = {"forward_speed": 0.3 * pace}
+    if rng.random() < 0.5:
+        forward = {"hill_spacing": 0.5 * size, "units_per_turn": 2}
+    table = SoilTable((0.1 * size, 0.2 * size), (20.0, 70.0))
+    soil = Soil(10.0, 100.0 / size, 20.0 / pace, 50.0 / (size * pace), table)
+    way = str(rng.choice(["forward", "backward"]))
+    return machine.with_planting(tip=tip, travel=way, soil=soil, **level, **forward)
+
+
+@cache
 def example_subject(name: str) -> Subject:
     """Analyse a bundled example."""
     return analysed(eq.load(name))
@@ -87,7 +115,7 @@ def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0
 
 
 def force_size(machine: Machine, poses: Poses) -> float:
-    """Return the size of the forces in a machine, N: of inertia, weight and loads together."""
+    """Return the size of the forces in a machine, N: of inertia, weight and loads (not soil)."""
     size = 0.0
     for name, link in machine.links.items():
         change = poses.change(name, link.center_of_mass or (0.0, 0.0))

@@ -1,12 +1,15 @@
-"""Loads of a machine, evaluated anew: a force at a point and a torque, against crank angle."""
+"""Loads of a machine, the soil's on a planting tip among them, evaluated anew."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
-from equipoise.mechanism.model import Load, LoadTable, Machine
+import equipoise as eq
+from equipoise.mechanism.field import Planting
+from equipoise.mechanism.model import Load, LoadTable, Machine, Vector
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi
@@ -44,6 +47,66 @@ def tabulated(table: LoadTable, crank_angle: Array) -> list[Array]:
     return [np.interp(since, turn, np.append(column, column[0])) for column in table.values]
 
 
+def has_soil(machine: Machine) -> bool:
+    """Tell whether soil acts on the machine."""
+    return machine.planting is not None and machine.planting.soil is not None
+
+
+def tip_of(machine: Machine) -> tuple[str, str, Vector]:
+    """Return link, point and place on the link of the tip; a shared point is the first link's."""
+    assert machine.planting is not None
+    tip = machine.planting.tip
+    return next((name, tip, k.points[tip]) for name, k in machine.links.items() if tip in k.points)
+
+
+def surface_height(machine: Machine) -> float:
+    """Return the height of the soil's surface, from a dense scan for the tip's lowest point."""
+    planting = machine.planting
+    assert planting is not None
+    if planting.surface is not None:
+        return planting.surface
+    tip = planting.tip
+
+    def height(crank_angle: float) -> float:
+        return float(eq.move(machine, np.array([crank_angle])).points[tip].y[0])
+
+    cycle = eq.move(machine, 3600)
+    angles, heights = cycle.crank_angle, cycle.points[tip].y
+    low = (heights <= np.roll(heights, 1)) & (heights <= np.roll(heights, -1))
+    step = angles[1] - angles[0]
+    lowest = min(
+        minimize_scalar(height, bounds=(at - step, at + step), method="bounded").fun
+        for at in angles[low]
+    )
+    assert planting.depth is not None
+    return lowest + planting.depth
+
+
+def travel(planting: Planting, speed: float) -> Array:
+    """Return the machine's velocity over ground (2,) at a speed of its crank."""
+    size = planting.forward_speed
+    if size is None:
+        assert planting.hill_spacing is not None
+        size = planting.hill_spacing * planting.units_per_turn * abs(speed) / TURN
+    return np.array([{"forward": size, "backward": -size}[planting.travel], 0.0])
+
+
+def soil_force(machine: Machine, place: Array, velocity: Array, speed: float) -> Array:
+    """Return the soil's force on the tip, from the tip's place and velocity; all (N, 2)."""
+    planting = machine.planting
+    assert planting is not None
+    assert planting.soil is not None
+    soil, over_ground = planting.soil, velocity + travel(planting, speed)
+    depth, fast = surface_height(machine) - place[:, 1], np.hypot(*over_ground.T)
+    size = soil.resistance + soil.per_speed * fast
+    size = size + (soil.per_depth + soil.per_depth_and_speed * fast) * depth
+    if soil.table is not None:
+        size = size + np.interp(depth, soil.table.depth, soil.table.resistance)
+    # a tip at rest over ground is not pushed
+    part = np.where((depth > 0) & (fast > 0), size / np.where(fast > 0, fast, 1.0), 0.0)
+    return -part[:, None] * over_ground
+
+
 def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:
     """Yield link, point of attack, force and torque of every load."""
     for load in machine.loads:
@@ -52,6 +115,10 @@ def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array
         if load.point is not None:
             local = machine.links[load.link].points[load.point]
         yield load.link, poses.place(load.link, local), force, torque
+    if has_soil(machine):
+        link, _, local = tip_of(machine)
+        at, velocity = poses.place(link, local), poses.speed(link, local)
+        yield link, at, soil_force(machine, at, velocity, machine.drive.speed), 0.0 * at[:, 0]
 
 
 def work_per_crank_angle(machine: Machine, poses: Poses) -> Array:
