@@ -37,7 +37,10 @@ def check_target(option: str, path: str, file: str, machine: Machine) -> None:
     """Results must not take the place of what they come from."""
     if not path:
         raise UsageError(f"{option}: got an empty name; give the name of a file")
-    tables = (load.table.file for load in machine.loads if load.table is not None)
+    tables = [load.table.file for load in machine.loads if load.table is not None]
+    soil = None if machine.planting is None else machine.planting.soil
+    if soil is not None and soil.table is not None:
+        tables.append(soil.table.file)
     sources = [file, *(os.path.join(os.path.dirname(file), table) for table in tables)]
     if os.path.exists(path) and any(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources

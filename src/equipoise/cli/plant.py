@@ -27,15 +27,15 @@ def plant(
     *,
     speed: Annotated[str | None, SIGNED] = None,
     units: str = "",
-    crank_zero: Annotated[str, SIGNED] = "0 deg",
+    crank_zero: Annotated[str | None, SIGNED] = None,
     json: bool = False,
     csv: str | None = None,
-    angles: Annotated[int, SIGNED] = 360,
+    angles: Annotated[int | None, SIGNED] = None,
     plot: str | None = None,
-    format: Kind = "svg",
+    format: Kind | None = None,
     fit: str | None = None,
     out: str | None = None,
-    seed: int | None = None,
+    seed: Annotated[int | None, SIGNED] = None,
 ) -> None:
     """The path of a planting finger relative to machine and ground, and every figure of it.
 
@@ -54,11 +54,11 @@ def plant(
     csv
         Write tip and centre of mass relative to machine and ground to this file.
     angles
-        With --csv: number of crank angles a turn.
+        With --csv: number of crank angles a turn, 360 if not given.
     plot
         Draw path, velocities, accelerations and ratios into this folder.
     format
-        With --plot: kind of the pictures.
+        With --plot: kind of the pictures, svg if not given.
     fit
         Look for the geometry that meets the targets and limits in this TOML file.
     out
@@ -70,22 +70,27 @@ def plant(
     from equipoise.planting.summary import plant as read_off
     from equipoise.terminal.units import Units
 
+    _check_belonging("--csv", csv, angles=angles)
+    _check_belonging("--plot", plot, format=format)
+    _check_belonging("--fit", fit, out=out, seed=seed)
+    if fit is not None and crank_zero is not None:
+        raise UsageError("--crank-zero has no place in what --fit prints; leave it out")
+    if seed is not None and seed < 0:
+        raise UsageError(f"--seed: got {seed}; give 0 or more")
     machine = load(file)
     shown_in = Units.read(units)
-    zero = quantity("--crank-zero", crank_zero, "angle")
+    zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     if speed is not None:
         machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
     if csv is not None:
         check_target("--csv", csv, file, machine)
-    if fit is None and (out is not None or seed is not None):
-        raise UsageError("--out and --seed belong to --fit; give --fit too")
     fitted = None if fit is None else _fit(machine, file, fit, out, seed)
     with naming(file):
         figures = read_off(machine) if fitted is None else fitted.after
         if csv is not None:
-            _write_csv(figures, csv, angles)
+            _write_csv(figures, csv, 360 if angles is None else angles)
     if plot is not None:
-        _draw(figures, plot, format)
+        _draw(figures, plot, format or "svg")
     if json:
         from equipoise.io.output import json_text
 
@@ -98,6 +103,13 @@ def plant(
         from equipoise.terminal.planting import print_planting
 
         print_planting(figures, shown_in, zero)
+
+
+def _check_belonging(owner: str, given: object, **options: object) -> None:
+    """An option that would do nothing is told, not passed over."""
+    for name, value in options.items():
+        if value is not None and given is None:
+            raise UsageError(f"--{name} belongs to {owner}; give both")
 
 
 def _write_csv(figures: PlantingFigures, path: str, angles: int) -> None:

@@ -26,6 +26,8 @@ HUGE, TINY = 1e30, 1e-30
 """Limits of what is taken for a quantity in SI units."""
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500}
+MOST_SHOWN = 20
+"""Names in an error."""
 LONGEST_NAME = 200
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 
@@ -43,7 +45,8 @@ def unknown(given: str, known: Iterable[str], kind: str) -> str:
 
 
 def _listed(names: list[str]) -> str:
-    return ", ".join(repr(name) for name in names) or "none"
+    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
+    return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
 
 
 def problems(machine: Machine) -> Iterator[ModelError]:

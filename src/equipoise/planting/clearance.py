@@ -2,64 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import lowest_within
+from equipoise.mechanism.instants import Signal, lowest_within
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.visits import tray_crossings
-
-Array = np.ndarray[Any, Any]
-
-
-@dataclass(frozen=True)
-class Clearance:
-    """Smallest distance, m, and the crank angle (rad) of it; below 0 under the surface."""
-
-    value: float
-    crank_angle: float
+from equipoise.planting.moments import pick_up
+from equipoise.planting.vectors import Array, Figures, wrapped
 
 
-def soil_clearances(curve: TipCurve) -> dict[str, Clearance]:
-    """Height of each link's lowest point above the surface; the tip is meant to go below."""
-    level = float(curve.surface[0])
-    found = {}
-    for link, points in _outlines(curve).items():
+def clearances(curve: TipCurve, entry: Array) -> Figures:
+    """Smallest distance of each link from the soil and from the tray's edge.
 
-        def height(theta: Array, link: str = link, points: list[str] = points) -> Any:
-            return np.min(_places(curve, link, points, theta).imag, axis=0) - level
+    A link is the lines between its points, the tip left out, which is meant to go into the soil
+    and to pass the edge.  The tip's own distance from the edge is 0 where it passes it.
 
-        found[link] = _smallest(curve, height)
-    return found
-
-
-def tray_clearances(curve: TipCurve) -> dict[str, Clearance]:
-    """Distance of each link, and of the tip, from the tray's edge.
-
-    A link is the lines between its points, the tip left out, which is meant to pass the edge.
+    entry : (P,) crank angles at which the tip enters the soil.
     """
+    result: Figures = {}
+    outlines = _outlines(curve)
+    for link, points in outlines.items():
+        result |= _smallest(curve, f"clearance.soil.{link}", _above_soil(curve, link, points))
     if curve.planting.tray is None:
-        return {}
+        return result
     start, stop = (complex(*point) for point in curve.planting.tray)
-    found = {}
-    for link, points in _outlines(curve).items():
-
-        def apart(theta: Array, link: str = link, points: list[str] = points) -> Any:
-            places = _places(curve, link, points, theta)
-            lines = combinations(places, 2) if len(points) > 1 else [(places[0], places[0])]
-            return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
-
-        found[link] = _smallest(curve, apart)
-    tip, crossed = f"tip {curve.planting.tip}", tray_crossings(curve)
-    if crossed:
-        found[tip] = Clearance(0.0, crossed[0])
-    else:
-        found[tip] = _smallest(curve, lambda x: _to_line(curve.at(x).place, start, stop))
-    return found
+    for link, points in outlines.items():
+        apart = _from_line(curve, link, points, start, stop)
+        result |= _smallest(curve, f"clearance.tray.{link}", apart)
+    tip = f"clearance.tray.tip {curve.planting.tip}"
+    result |= _smallest(curve, tip, lambda theta: _to_line(curve.at(theta).place, start, stop))
+    passes = pick_up(curve, entry)
+    met = np.isfinite(passes)
+    result[f"{tip}.value"] = np.where(met, 0.0, result[f"{tip}.value"])
+    angle = np.where(met, wrapped(curve, passes), result[f"{tip}.crank_angle"])
+    result[f"{tip}.crank_angle"] = angle
+    return result
 
 
 def _outlines(curve: TipCurve) -> dict[str, list[str]]:
@@ -72,15 +52,37 @@ def _outlines(curve: TipCurve) -> dict[str, list[str]]:
     return {name: points for name, points in outlines.items() if points}
 
 
+def _above_soil(curve: TipCurve, link: str, points: list[str]) -> Signal:
+    """Height of a link's lowest point above the surface."""
+
+    def height(theta: Array) -> Any:
+        return np.min(_places(curve, link, points, theta).imag, axis=0) - curve.surface[:, None]
+
+    return height
+
+
+def _from_line(
+    curve: TipCurve, link: str, points: list[str], start: complex, stop: complex
+) -> Signal:
+    """Distance of a link from a line that stands still."""
+
+    def apart(theta: Array) -> Any:
+        places = _places(curve, link, points, theta)
+        lines = combinations(places, 2) if len(points) > 1 else [(places[0], places[0])]
+        return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
+
+    return apart
+
+
 def _places(curve: TipCurve, link: str, points: list[str], theta: Array) -> Array:
     state = curve.family.solve(theta)
     return np.array([curve.point_of(state, point, link)[0] for point in points])
 
 
-def _smallest(curve: TipCurve, signal: Any) -> Clearance:
-    ends = np.zeros(1), np.full(1, curve.period)
+def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
+    ends = np.zeros(curve.count), np.full(curve.count, curve.period)
     value, at = lowest_within(signal, *ends, samples=len(curve.theta) + 1)
-    return Clearance(float(value[0]), float(np.mod(at[0], curve.period)))
+    return {f"{name}.value": value, f"{name}.crank_angle": wrapped(curve, at)}
 
 
 def distance(a: Array, b: Array, c: complex, d: complex) -> Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Link, Machine, Vector, unknown
+from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of, unknown
 from equipoise.mechanism.tip import planting_of, tip_link
 
 Array = np.ndarray[Any, Any]
@@ -23,7 +23,7 @@ SHORTEST, LONGEST = 0.4, 2.5
 DIGITS = 12
 """Decimals of a metre to which moved points are rounded."""
 REACH = 1.5
-"""Limits of a coordinate of the tip where none are given, over its distance from the origin."""
+"""Limits of a coordinate where none are given, over the size of the link."""
 
 
 @dataclass(frozen=True)
@@ -189,8 +189,9 @@ def _ground_angle(machine: Machine, pivot: str) -> Iterator[Variable]:
 
 
 def _coordinates(machine: Machine, body: str, point: str, name: str) -> Iterator[Variable]:
-    place = machine.points_of(body)[point]
-    reach = REACH * abs(complex(*place))
+    points = machine.points_of(body)
+    place = points[point]
+    reach = REACH * max(size_of(points), abs(complex(*place)))
     for axis, value in zip("xy", place, strict=True):
 
         def put(bodies: Bodies, value: float, axis: str = axis) -> None:

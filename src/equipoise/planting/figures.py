@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection
 
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.clearance import clearances
 from equipoise.planting.curve import (
     extreme,
     ground_bend,
@@ -61,6 +62,7 @@ def figures(
         "transmission": lambda: transmission(curve),
         "soil": lambda: in_soil(curve, entry, leave, breaks),
         "limits": lambda: limits(curve, entry, leave),
+        "clearance": lambda: clearances(curve, entry),
     }
     for name, when in instants.items():
         groups[name] = lambda name=name, when=when: instant(curve, name, when())  # type: ignore[misc]

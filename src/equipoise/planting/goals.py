@@ -59,6 +59,11 @@ class Goal:
         """Whether the figure is an angle that is the same after a turn."""
         return self.figure.rpartition(".")[2] in TURNING
 
+    @property
+    def asks(self) -> bool:
+        """Whether there is a target or a limit, which can be met or not."""
+        return (self.target, self.at_least, self.at_most) != (None, None, None)
+
     def scale(self, start: float) -> float:
         """One step away; `start` is the figure of the machine to start from."""
         if self.tolerance is not None:

@@ -90,7 +90,7 @@ class GroundPath:
         places where it is slow.
         """
         period = self.curve.period
-        around = self.slow + period * np.floor((start - self.slow) / period)[..., None]
+        around = self.slow + period * np.floor((start - self.slow) / period)
         slow = np.concatenate([around + period * k for k in range(3)], axis=None)
         step = period / len(self.curve.theta) * 8
         near = _crowded(slow, step)

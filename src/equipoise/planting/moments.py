@@ -11,9 +11,6 @@ from equipoise.mechanism.instants import roots
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.vectors import Array, Figures, direction, in_time, wrapped
 
-PASSES = 6
-"""Crossings of the line through the tray's edge that are looked at, going back from the entry."""
-
 
 def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
     """Crank angles (P,) at which the tip enters the soil before its lowest point, and leaves after.
@@ -57,7 +54,8 @@ def pick_up(curve: TipCurve, entry: Array) -> Array:
     nodes = entry[:, None] - np.sign(curve.speed) * back
     sides = np.signbit(beside(nodes))
     passed = sides[:, 1:] != sides[:, :-1]
-    first = np.argsort(~passed, axis=1, kind="stable")[:, :PASSES]
+    most = max(1, int(np.max(np.sum(passed, axis=1))))
+    first = np.argsort(~passed, axis=1, kind="stable")[:, :most]
     ends = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
     crossing = roots(beside, *ends)
     along = kernels.dot(stop - start, curve.at(crossing).place - start) / abs(stop - start) ** 2

@@ -23,5 +23,7 @@ def dimension_of(figure: str) -> str | None:
     *path, last = figure.split(".")
     if path and path[0] == "ratio" and last in ("min", "max"):
         return None
+    if path and path[0] == "clearance" and last == "value":
+        return "length"
     component = last in ("size", "value", "min") or (last in ("x", "y") and len(path) > 1)
     return _DIMENSIONS.get(path[-1] if path and component else last)

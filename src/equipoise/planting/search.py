@@ -34,8 +34,9 @@ MET = 1e-12
 """Sum of squared steps at which the polish need not try a further design."""
 POLISHED = 5
 """Best designs of the global search that are polished."""
-BOX = 0.02
-"""Half the width of the box in which a smallest figure is polished, over the range of a number."""
+POLISHING, BOX = 100, 0.02
+"""Generations in which a smallest figure is polished; half the width of its box, over the range of
+a number."""
 DIFFERENCE = 1e-5
 """Step of central differences, over the range of a number."""
 INSIDE = 1e-7
@@ -65,7 +66,10 @@ class Fit:
     @property
     def met(self) -> dict[str, bool]:
         """Goal -> whether its target is met within its tolerance and its limits are kept."""
-        return {goal.figure: goal.met(self.after[goal.figure]) for goal in self.goals}
+        met: dict[str, bool] = {}
+        for goal in self.goals:
+            met[goal.figure] = met.get(goal.figure, True) and goal.met(self.after[goal.figure])
+        return met
 
     def to_dict(self) -> dict[str, Any]:
         """Goals, values and figures before and after, in SI units."""
@@ -181,7 +185,8 @@ class _Evolution:
         low, high = self.problem.designs.bounds
         reach = BOX * (high - low)
         box = np.maximum(low, start - reach), np.minimum(high, start + reach)
-        return self.round(*box, start, population, self.generations)[:1]
+        self.generations = self.done + POLISHING
+        return self.round(*box, start, population, POLISHING)[:1]
 
     def round(
         self, low: Array, high: Array, start: Array | None, population: int, generations: int

@@ -52,7 +52,11 @@ def _length(curve: TipCurve, breaks: Array, drive: Any) -> Array:
 
 
 def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
-    """Way over ground between the outermost places at which the finger cuts the surface."""
+    """Way over ground between the outermost places at which the finger cuts the surface.
+
+    Instants at which the whole finger is below the surface do not count; a finger that comes or
+    goes with its base first opens no hole that could be told: NaN.
+    """
     base = finger_base(curve)
     if base is None:
         return np.full(curve.count, np.nan)
@@ -70,7 +74,9 @@ def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
 
     left = lowest_within(lambda theta: cut(theta, 1), entry, leave)[0]
     right = lowest_within(lambda theta: cut(theta, -1), entry, leave)[0]
-    return -right - left
+    ends = np.stack([entry, leave], axis=1)
+    upright = np.all(curve.point_of(curve.at(ends).state, base)[0].imag >= level, axis=1)
+    return np.where(upright, -right - left, np.nan)
 
 
 def _largest_in_soil(curve: TipCurve, entry: Array, leave: Array) -> tuple[Array, Array]:

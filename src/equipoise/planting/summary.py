@@ -15,13 +15,13 @@ from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Named
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.clearance import Clearance, soil_clearances, tray_clearances
 from equipoise.planting.figures import figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.moments import finger_base
 from equipoise.planting.torque import SoilForces, soil_forces
 from equipoise.planting.vectors import wrapped
 from equipoise.planting.visits import Visit, tray_crossings, visits
+from equipoise.signals import Figures
 
 Array = np.ndarray[Any, Any]
 
@@ -34,7 +34,6 @@ class PlantingFigures:
     visits : every stay in the soil, the deepest first: entry and exit are those of the first.
     loops, cusps : of the path over ground.
     tray_crossings : crank angles (rad) at which the tip passes the tray's edge.
-    soil_clearance, tray_clearance : link -> how close it comes.
     notes : what a reader has to know, in sentences.
     """
 
@@ -44,8 +43,6 @@ class PlantingFigures:
     loops: tuple[Loop, ...]
     cusps: tuple[float, ...]
     tray_crossings: tuple[float, ...]
-    soil_clearance: Mapping[str, Clearance]
-    tray_clearance: Mapping[str, Clearance]
     notes: tuple[str, ...]
 
     def __getitem__(self, name: str) -> float:
@@ -77,22 +74,25 @@ class PlantingFigures:
         result["loops"] = [asdict(loop) for loop in self.loops]
         result["cusps"] = list(self.cusps)
         result["tray_crossings"] = list(self.tray_crossings)
-        result["clearance"] = {
-            "soil": {link: asdict(found) for link, found in self.soil_clearance.items()},
-            "tray": {link: asdict(found) for link, found in self.tray_clearance.items()},
-        }
         if self.forces is not None:
             result["forces"] = {
-                name: {"in_air": asdict(air), "in_soil": asdict(soil)}
+                name: {"in_air": _of(air), "in_soil": _of(soil)}
                 for name, (air, soil) in self.forces.compared().items()
             }
         result["notes"] = list(self.notes)
         return result
 
 
+OF_LINKS = ("ratio.", "clearance.soil.", "clearance.tray.")
+"""Begins of names in which a link follows, which may be called anything, with dots too."""
+
+
 def _nest(result: dict[str, Any], name: str, value: float) -> None:
-    *path, last = name.split(".")
-    for key in path:
+    """Put a figure where its name says; ``curve.height`` becomes ``{"curve": {"height": ...}}``."""
+    begin = next((begin for begin in OF_LINKS if name.startswith(begin)), "")
+    path, _, last = name.removeprefix(begin).rpartition(".")
+    keys = [*begin.split(".")[:-1], path] if begin else name.split(".")[:-1]
+    for key in keys:
         result = result.setdefault(key, {})
     result[last] = value
 
@@ -121,17 +121,20 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     found = figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
     crossed = tray_crossings(curve)
     values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
+    known = Named("figure", ((n, value) for n, value in values.items() if isfinite(value)))
     return PlantingFigures(
         curve=curve,
-        figures=Named("figure", ((n, value) for n, value in values.items() if isfinite(value))),
+        figures=known,
         visits=tuple(_wrapped(curve, stay) for stay in stays),
         loops=path.loops(),
         cusps=path.cusps(),
         tray_crossings=crossed,
-        soil_clearance=soil_clearances(curve),
-        tray_clearance=tray_clearances(curve),
-        notes=tuple(_notes(curve, stays, crossed)),
+        notes=tuple(_notes(curve, stays, crossed, known)),
     )
+
+
+def _of(figures: Figures) -> dict[str, float]:
+    return {**asdict(figures), "peak_to_peak": figures.peak_to_peak}
 
 
 def _wrapped(curve: TipCurve, visit: Visit) -> Visit:
@@ -150,12 +153,17 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
     }
 
 
-def _notes(curve: TipCurve, stays: tuple[Visit, ...], crossed: tuple[float, ...]) -> Iterator[str]:
+def _notes(
+    curve: TipCurve,
+    stays: tuple[Visit, ...],
+    crossed: tuple[float, ...],
+    known: Mapping[str, float],
+) -> Iterator[str]:
     planting = curve.planting
     if curve.forward[0, 0] == 0:
         yield (
-            "forward_speed is 0: there is no path over ground, and figures relative to the ground "
-            "are left out"
+            "forward_speed is 0: there is no path over ground, and the figures of that path are "
+            "left out"
         )
     if len(stays) > 1:
         yield (
@@ -165,5 +173,7 @@ def _notes(curve: TipCurve, stays: tuple[Visit, ...], crossed: tuple[float, ...]
     if planting.tray is not None and not crossed:
         yield "the tip never passes the tray's edge, so that it picks up nothing"
     base = finger_base(curve)
+    if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
+        yield f"{base} is below the surface at entry or exit, so that no length of a hole is told"
     if planting.finger_from is None and base is not None:
         yield f"the finger is taken from {base} to {planting.tip}; finger_from can name another"

@@ -61,7 +61,7 @@ def _goals(fit: Fit, units: Units) -> str:
                 _wanted(goal, units),
                 _shown(before, goal.figure, units),
                 _shown(fit.after[goal.figure], goal.figure, units),
-                "yes" if fit.met[goal.figure] else "no",
+                {True: "yes", False: "no"}[fit.met[goal.figure]] if goal.asks else "",
             )
         )
     return table("Goals", ("", "wanted", "before", "after", "met"), rows, words=2)

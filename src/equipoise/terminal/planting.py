@@ -24,14 +24,14 @@ OF_AN_INSTANT: tuple[tuple[str, str], ...] = (
     ("velocity x", "velocity.x"),
     ("velocity y", "velocity.y"),
     ("velocity", "velocity.size"),
-    ("its direction", "velocity.direction"),
+    ("direction of velocity", "velocity.direction"),
     ("acceleration x", "acceleration.x"),
     ("acceleration y", "acceleration.y"),
     ("acceleration", "acceleration.size"),
-    ("its direction", "acceleration.direction"),
+    ("direction of acceleration", "acceleration.direction"),
     ("over ground: velocity x", "ground_velocity.x"),
     ("over ground: velocity", "ground_velocity.size"),
-    ("its direction", "ground_velocity.direction"),
+    ("over ground: direction", "ground_velocity.direction"),
     ("attitude of the finger", "attitude"),
 )
 
@@ -144,7 +144,8 @@ def _instants(page: Page) -> str:
         if page.get(f"entry.{key}") is None:
             continue
         size = key.partition(".")[0]
-        scales = [page.get(f"{name}.{size}.size") or 0.0 for name in names]
+        height = page.figures["curve.height"] if key in ("x", "y") else 0.0
+        scales = [page.get(f"{name}.{size}.size") or height for name in names]
         values = [
             page.shown(f"{name}.{key}", scale) for name, scale in zip(names, scales, strict=True)
         ]
@@ -240,23 +241,22 @@ def _loops(page: Page) -> str:
 
 
 def _clearances(page: Page) -> str:
-    soil, tray = page.figures.soil_clearance, page.figures.tray_clearance
+    figures = page.figures
+    bodies = [*figures.machine.links, f"tip {figures.planting.tip}"]
+    grounds = ("soil", "tray") if figures.planting.tray is not None else ("soil",)
     rows = []
-    for link in {**soil, **tray}:
-        row = [link]
-        for found in (soil, tray):
-            here = found.get(link)
-            row += (
-                ["", ""]
-                if here is None
-                else [
-                    page.units.shown(here.value, "length", page.figures["curve.height"]),
-                    page.crank_angle(here.crank_angle),
-                ]
-            )
-        rows.append(tuple(row[: 5 if tray else 3]))
+    for body in bodies:
+        row = [body]
+        for ground in grounds:
+            name = f"clearance.{ground}.{body}"
+            row += [
+                page.shown(f"{name}.value", page.figures["curve.height"]),
+                page.crank_angle(page.get(f"{name}.crank_angle")),
+            ]
+        if any(row[1:]):
+            rows.append(tuple(row))
     at = f"at {page.units.name('angle')}"
-    header = ("", "above the soil", at, "from the tray", at)[: 5 if tray else 3]
+    header = ("", "above the soil", at, "from the tray", at)[: 1 + 2 * len(grounds)]
     title = f"Smallest clearance of links, the tip left out, {page.units.name('length')}"
     return table(title, header, rows)
 
