@@ -1,0 +1,293 @@
+"""`equipoise plant` as a user runs it: tables, JSON, CSV, and one sentence where it cannot."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.mechanism.field import Soil
+from equipoise.planting.summary import plant
+from surface.running import equipoise, example_text, process, succeeded
+from unit.planting.build import planetary, spinner, twice
+
+EXAMPLES = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
+SURFACE = 'surface = "-117 mm"'
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in an empty folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
+    """Mechanism A as a file, with one piece of text replaced."""
+    text = example_text("kim-chung-a")
+    assert old in text
+    Path(name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    return Path(name)
+
+
+def cells(text: str, label: str) -> list[str]:
+    """The numbers of the first row with this label."""
+    (row, *_) = (line for line in text.splitlines() if line.startswith(f"{label}  "))
+    return row.removeprefix(label).split()
+
+
+def read(*words: str | Path) -> dict[str, Any]:
+    """What `equipoise plant ... --json` prints, which is one line and nothing else."""
+    result = equipoise("plant", *words, "--json")
+    assert result.err == ""
+    assert result.out.count("\n") == 1
+    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
+
+
+def no_constant(text: str) -> None:
+    raise AssertionError(f"{text} is not JSON")
+
+
+# -- tables ----------------------------------------------------------------------------------------
+
+
+def test_tables_of_mechanism_a() -> None:
+    result = equipoise("plant", "kim-chung-a")
+    text = succeeded(result)
+    assert result.err == ""
+    lines = text.splitlines()
+    assert lines[0] == "Planting mechanism A (Kim, Chung)"
+    assert lines[1] == (
+        "crank driven at 240.0 rpm, counterclockwise; machine drives forward at 0.6000 m/s"
+    )
+    assert lines[2] == "tip P on coupler, finger from B; surface of the soil at y = -11.69 cm"
+    assert cells(text, "crank angle deg") == ["195.24", "236.77", "268.65", "47.01"]
+    assert cells(text, "velocity m/s") == ["2.707", "0.3069", "3.829", "0.8748"]
+    assert cells(text, "height of the curve cm") == ["25.16"]
+    assert cells(text, "width of the curve cm") == ["7.483"]
+    assert cells(text, "crank travel deg") == ["73.41"]
+    assert cells(text, "length of the path over ground cm") == ["10.57"]
+    assert cells(text, "ground distance from entry to exit cm") == ["4.883"]
+    assert cells(text, "largest velocity m/s") == ["4.473", "283.14", "90.79"]
+    assert cells(text, "smallest velocity m/s") == ["0.2575", "238.27", "32.79"]
+    assert cells(text, "coupler")[:2] == ["-0.9215", "278.16"]
+    assert cells(text, "rocker")[:2] == ["-0.8808", "267.07"]
+    assert lines[-1] == "note: the finger is taken from B to P; finger_from can name another"
+    assert not re.search("nan|inf|None", text)
+
+
+ROWS = {
+    # label, figure, and SI units in one unit of the table
+    "height of the curve cm": ("curve.height", 0.01),
+    "smallest radius of the curve cm": ("curve.smallest_radius.value", 0.01),
+    "smallest radius over ground cm": ("ground.smallest_radius.value", 0.01),
+    "distance of hills cm": ("hill_spacing", 0.01),
+    "depth cm": ("soil.depth", 0.01),
+    "time ms": ("soil.time", 0.001),
+    "length of the path relative to the machine cm": ("soil.path_length_machine", 0.01),
+    "length of the hole at the surface cm": ("soil.hole_length", 0.01),
+    "largest acceleration m/s^2": ("soil.max_acceleration.value", 1),
+    "smallest acceleration m/s^2": ("min_acceleration.value", 1),
+}
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_tables_show_the_figures_to_four_digits(name: str) -> None:
+    text = succeeded(equipoise("plant", name))
+    figures = plant(eq.load(name))
+    for label, (figure, unit) in ROWS.items():
+        assert float(cells(text, label)[0]) == pytest.approx(figures[figure] / unit, rel=6e-4), (
+            label
+        )
+    for label, key in (("x cm", "x"), ("y cm", "y")):
+        wanted = [100 * figures[f"{i}.{key}"] for i in ("entry", "lowest", "exit", "highest")]
+        assert list(map(float, cells(text, label))) == pytest.approx(wanted, rel=6e-4)
+    for label, key in (
+        ("attitude of the finger deg", "attitude"),
+        ("crank angle deg", "crank_angle"),
+    ):
+        wanted = [figures[f"{i}.{key}"] for i in ("entry", "lowest", "exit", "highest")]
+        assert list(map(float, cells(text, label))) == pytest.approx(np.degrees(wanted), abs=0.006)
+
+
+def test_crank_angles_from_another_direction() -> None:
+    """phi of mechanism A is 90 deg: its own crank angles are those of the paper."""
+    text = succeeded(equipoise("plant", "kim-chung-a", "--crank-zero", "90 deg"))
+    assert "crank angles count from 90.00 deg" in text.splitlines()
+    assert cells(text, "crank angle deg") == ["105.24", "146.77", "178.65", "317.01"]
+    assert cells(text, "largest acceleration m/s^2") == ["197.5"]
+    assert cells(text, "smallest acceleration m/s^2") == ["44.92", "87.52", "34.82"]
+    assert cells(text, "coupler")[:2] == ["-0.9215", "188.16"]
+    assert "249.83" in text  # first pass of the loop
+    back = succeeded(equipoise("plant", "kim-chung-a", "--crank-zero", "-1.5 turn"))
+    assert cells(back, "crank angle deg") == ["15.24", "56.77", "88.65", "227.01"]
+    assert read("kim-chung-a", "--crank-zero", "90 deg") == read("kim-chung-a")
+
+
+def test_units_of_the_tables() -> None:
+    text = succeeded(equipoise("plant", "kim-chung-a", "--units", "mm, km/h, gn,rad"))
+    assert "machine drives forward at 2.160 km/h" in text
+    assert "y = -116.9 mm" in text
+    assert cells(text, "height of the curve mm") == ["251.6"]
+    assert cells(text, "largest velocity km/h") == ["16.10", "4.9418", "1.5846"]
+    assert cells(text, "smallest acceleration gn") == ["4.580", "3.0983", "0.6076"]
+    assert cells(text, "time ms") == ["50.98"]
+    assert " cm" not in text
+    assert read("kim-chung-a", "--units", "mm") == read("kim-chung-a")
+    turns = succeeded(equipoise("plant", "kim-chung-a", "--units", "turn, rad/s, s"))
+    assert "crank driven at 25.13 rad/s" in turns
+    assert cells(turns, "crank angle turn")[0] == "0.54235"
+    assert cells(turns, "time s") == ["0.05098"]
+
+
+def test_another_speed() -> None:
+    text = succeeded(equipoise("plant", "kim-chung-a", "--speed", "-300 rpm"))
+    assert "crank driven at 300.0 rpm, clockwise" in text
+    figures = plant(eq.load("kim-chung-a"), speed=-math.tau * 5)
+    assert read("kim-chung-a", "--speed", "-5 turn/s") == figures.to_dict()
+
+
+def test_soil_and_limits_have_tables() -> None:
+    values = 'depth = "4 cm"\nacceleration_limit = "150 m/s^2"\nsoil.per_depth = "300 N/m"'
+    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    assert "Limits of the tip's acceleration" in text
+    assert cells(text, "all the way")[:2] == ["150.0", "209.1"]
+    assert "Peaks of drive torque and joint forces" in text
+    figures = plant(eq.load("model.toml"))
+    assert figures.forces is not None
+    air, soil = figures.forces.compared()["drive_torque"]
+    row = cells(text, "drive torque N m")
+    assert [float(row[0]), float(row[2])] == pytest.approx([air.peak, soil.peak], rel=6e-4)
+    assert float(row[4]) == pytest.approx(soil.peak / air.peak, rel=6e-4)
+    plain = succeeded(equipoise("plant", "kim-chung-a"))
+    assert "Limits" not in plain
+    assert "Peaks" not in plain
+
+
+def test_tray_and_release_have_columns() -> None:
+    values = f'{SURFACE}\nrelease = "200 deg"\ntray = [["-300 mm", "12 mm"], ["0 mm", "12 mm"]]'
+    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    header = next(line for line in text.splitlines() if "entry" in line)
+    assert header.split() == ["pick-up", "entry", "lowest", "release", "exit", "highest"]
+    assert cells(text, "crank angle deg")[3] == "200.00"
+    assert cells(text, "y cm")[0] == "1.200"
+    assert "from the tray" in text
+
+
+def test_rounding_is_not_printed() -> None:
+    """A tray at y = 0 is passed at y = 0."""
+    values = f'{SURFACE}\ntray = [["-300 mm", "0 mm"], ["0 mm", "0 mm"]]'
+    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    assert cells(text, "y cm")[0] == "0"
+    assert not re.search(r"[0-9]e-1[0-9]", text)
+
+
+def test_a_machine_at_rest() -> None:
+    text = succeeded(equipoise("plant", model("60 cm/s", "0 m/s")))
+    assert "note: forward_speed is 0: there is no path over ground" in text
+    assert "Loops" not in text
+    assert "ground distance" not in text
+    assert "length of the path over ground" not in text
+    assert "smallest radius over ground" not in text
+    content = read("model.toml")
+    assert content["loops"] == []
+    assert "ground_distance" not in content["soil"]
+
+
+def test_every_stay_is_listed() -> None:
+    eq.save(twice(), "twice.toml")
+    text = succeeded(equipoise("plant", "twice.toml", "--crank-zero", "10 deg"))
+    rows = text.partition("Every stay in the soil; crank angles in deg")[2].splitlines()[4:6]
+    content = read("twice.toml")
+    assert len(content["visits"]) == 2
+    for row, visit in zip(rows, content["visits"], strict=True):
+        wanted = [(math.degrees(visit[k]) - 10) % 360 for k in ("entry", "exit", "deepest")]
+        assert list(map(float, row.split())) == pytest.approx(
+            [*wanted, 100 * visit["depth"]], abs=0.006
+        )
+    assert "note: the tip is in the soil 2 times a cycle" in text
+    assert "Every stay" not in succeeded(equipoise("plant", "kim-chung-a"))
+
+
+def test_a_cusp_is_told() -> None:
+    eq.save(spinner(forward_speed=1.0), "cusp.toml")
+    text = succeeded(equipoise("plant", "cusp.toml"))
+    assert "cusp of the path over ground at crank angle 90.00 deg" in text.splitlines()
+    assert "Loops" not in text
+
+
+def test_a_cycle_of_three_turns() -> None:
+    eq.save(planetary(depth=0.1), "arm.toml")
+    text = succeeded(equipoise("plant", "arm.toml"))
+    figures = plant(eq.load("arm.toml"))
+    assert cells(text, "crank angle deg")[0] == f"{math.degrees(figures['entry.crank_angle']):.2f}"
+    assert figures["entry.crank_angle"] > math.tau
+    assert len(read("arm.toml")["visits"]) == 3
+
+
+# -- JSON and CSV ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_json_is_one_object_with_all_figures(name: str) -> None:
+    assert read(name) == plant(eq.load(name)).to_dict()
+
+
+def test_json_of_a_process_is_all_of_its_output() -> None:
+    result = process("plant", "kim-chung-b", "--json")
+    assert (result.status, result.err) == (0, "")
+    assert json.loads(result.out) == read("kim-chung-b")
+    text = process("plant", "kim-chung-b")
+    assert text.out == equipoise("plant", "kim-chung-b").out
+
+
+@pytest.mark.parametrize("name", ["kim-chung-a", "kim-chung-b"])
+def test_csv(name: str) -> None:
+    """One row a crank angle as time goes on, whichever way the crank turns; SI units."""
+    result = equipoise("plant", name, "--csv", "tip.csv", "--angles", "8")
+    assert succeeded(result).startswith("Planting mechanism")
+    assert result.err == "wrote tip.csv\n"
+    with open("tip.csv", encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert header[:5] == ["crank_angle [rad]", "time [s]", "tip.x [m]", "tip.y [m]",
+                          "tip.ground_x [m]"]  # fmt: skip
+    assert "center_of_mass.acceleration [m/s^2]" in header
+    assert len(set(header)) == len(header) == 24
+    values = np.array(rows, float)
+    assert values.shape == (8, 24)
+    assert np.all(np.diff(values[:, 1]) > 0)
+    sense = 1 if name == "kim-chung-a" else -1
+    motion = eq.move(eq.load(name), sense * np.arange(8) * math.tau / 8).points["P"]
+    columns = dict(zip(header, values.T, strict=True))
+    np.testing.assert_allclose(columns["tip.x [m]"], motion.x, rtol=1e-12)
+    np.testing.assert_allclose(columns["tip.vy [m/s]"], motion.vy, rtol=1e-10)
+    np.testing.assert_allclose(
+        columns["tip.ground_x [m]"], motion.x + 0.6 * columns["time [s]"], rtol=1e-12
+    )
+
+
+def test_csv_and_json_together() -> None:
+    result = equipoise("plant", "kim-chung-a", "--csv", "tip.csv", "--json")
+    assert json.loads(result.out)["title"].startswith("Planting")
+    assert result.err == "wrote tip.csv\n"
+    assert len(Path("tip.csv").read_text(encoding="utf-8").splitlines()) == 361
+
+
+def test_markup_and_masses_are_shown_as_they_stand() -> None:
+    """A name in brackets is no markup, and without masses there is neither force nor its centre."""
+    text = re.sub(r"(?m)^(mass|center_of_mass|inertia) = .*\n", "", example_text("kim-chung-b"))
+    text = text.replace("Planting", "[red]Planting").replace("[links.coupler]", "[links.'[b]']")
+    Path("model.toml").write_text(text, encoding="utf-8")
+    eq.save(eq.load("model.toml").with_planting(soil=Soil(resistance=3.0)), "soil.toml")
+    shown = succeeded(equipoise("plant", "soil.toml", "--csv", "tip.csv"))
+    assert shown.startswith("[red]Planting mechanism B")
+    assert "tip P on [b], finger from B" in shown
+    assert "Peaks" not in shown
+    assert "center_of_mass" not in Path("tip.csv").read_text(encoding="utf-8")
