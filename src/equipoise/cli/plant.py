@@ -84,6 +84,8 @@ def plant(
         machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
     if csv is not None:
         check_target("--csv", csv, file, machine)
+    if plot == "":
+        raise UsageError("--plot: got an empty name; give the name of a folder")
     fitted = None if fit is None else _fit(machine, file, fit, out, seed)
     with naming(file):
         figures = read_off(machine) if fitted is None else fitted.after
@@ -125,8 +127,6 @@ def _draw(figures: PlantingFigures, folder: str, kind: Kind) -> None:
     from equipoise.plotting.planting import drawings
     from equipoise.plotting.style import render
 
-    if not folder:
-        raise UsageError("--plot: got an empty name; give the name of a folder")
     pictures = {
         f"{name}.{kind}": render(figure, kind) for name, figure in drawings(figures).items()
     }
