@@ -41,13 +41,13 @@ def designs() -> list[eq.Machine]:
 
 def together() -> object:
     """All figures of a family of designs, as a search has them."""
-    curve = TipCurve(designs(), 180)
+    curve = TipCurve(designs(), 180, turns=1)
     return figures(curve, *soil_crossings(curve))
 
 
 def one_by_one() -> object:
     """The same, of one design after the other."""
-    curves = [TipCurve([machine], 180) for machine in designs()]
+    curves = [TipCurve([machine], 180, turns=1) for machine in designs()]
     return [figures(curve, *soil_crossings(curve)) for curve in curves]
 
 

@@ -209,8 +209,16 @@ def dips(case: Case | Trochoid) -> bool:
 
 
 @every_case
-def test_every_common_figure(name: str) -> None:
+def test_figures_stays_loops_and_cusps(name: str) -> None:
     want = reference.figures(CASES[name])
+    same_figures(name, want)
+    same_stays(name, want["visits"])
+    same_loops(name, want)
+    assert found(name).cusps == pytest.approx(want["cusps"], abs=WITHIN)
+
+
+def same_figures(name: str, want: dict[str, Any]) -> None:
+    """Compare every figure that both routes have."""
     names = list(common(want))
     assert len(names) >= 80
     for figure in names:
@@ -218,10 +226,9 @@ def test_every_common_figure(name: str) -> None:
         assert apart(figure, found(name)[figure], want) < within, figure
 
 
-@every_case
-def test_every_stay_in_the_soil(name: str) -> None:
-    """The reference lists the deepest stay first, then the others as time goes on."""
-    got, want = found(name).visits, reference.figures(CASES[name])["visits"]
+def same_stays(name: str, want: list[tuple[float, float]]) -> None:
+    """Compare stays; the reference lists the deepest first, then the others as time goes on."""
+    got = found(name).visits
     assert len(got) == len(want)
     assert turned_apart(got[0].entry, want[0][0]) < WITHIN
     for visit in got:
@@ -229,15 +236,8 @@ def test_every_stay_in_the_soil(name: str) -> None:
         assert min(pairs) < WITHIN
 
 
-def test_some_machines_plant_twice() -> None:
-    assert [name for name in RANDOM if len(found(name).visits) == 2] == [
-        f"crank-rocker-{seed}" for seed in range(25) if seed % 6 == 5
-    ]
-
-
-@every_case
-def test_every_loop_and_cusp(name: str) -> None:
-    want = reference.figures(CASES[name])
+def same_loops(name: str, want: dict[str, Any]) -> None:
+    """Compare loops, each with the reference's that passes its crossing at the same times."""
     assert len(found(name).loops) == len(want["loops"])
     pairs = [pair(loop, want["loops"]) for loop in found(name).loops]
     assert sorted(k for k, _ in pairs) == list(range(len(want["loops"])))
@@ -250,7 +250,6 @@ def test_every_loop_and_cusp(name: str) -> None:
         for key in ("height", "width", "area"):
             assert getattr(loop, key) == pytest.approx(other[key], rel=WITHIN)
         assert loop.in_soil == (other["y"] < planter(CASES[name]).surface)
-    assert found(name).cusps == pytest.approx(want["cusps"], abs=WITHIN)
 
 
 def pair(loop: Loop, others: list[dict[str, float]]) -> tuple[int, Loop]:
@@ -258,6 +257,12 @@ def pair(loop: Loop, others: list[dict[str, float]]) -> tuple[int, Loop]:
     gaps = [turned_apart(loop.first, o["first"]) + turned_apart(loop.second, o["second"])
             for o in others]  # fmt: skip
     return int(np.argmin(gaps)), loop
+
+
+def test_some_machines_plant_twice() -> None:
+    assert [name for name in RANDOM if len(found(name).visits) == 2] == [
+        f"crank-rocker-{seed}" for seed in range(25) if seed % 6 == 5
+    ]
 
 
 @pytest.mark.parametrize("name", TROCHOIDS)

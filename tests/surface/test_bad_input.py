@@ -448,7 +448,9 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
     program = WAITING.format(module=module, function=function)
     words = [sys.executable, "-c", program, "analyze", FOUR_BAR, "--csv", "x.csv"]
     pipe = subprocess.PIPE
-    with subprocess.Popen(words, stdout=pipe, stderr=pipe, encoding="utf-8") as child:
+    with subprocess.Popen(
+        words, stdout=pipe, stderr=pipe, encoding="utf-8", preexec_fn=heed_interrupts
+    ) as child:
         assert child.stdout is not None
         assert child.stdout.readline() == "ready\n"
         child.send_signal(signal.SIGINT)
@@ -457,10 +459,17 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
     assert list(folder.iterdir()) == []
 
 
+def heed_interrupts() -> None:
+    """A shell that runs the tests in the background makes them, and their children, ignore SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def test_interruption_of_a_long_analysis(folder: Path) -> None:
     words = command("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv")
     pipe = subprocess.PIPE
-    with subprocess.Popen(words, stdout=pipe, stderr=pipe, encoding="utf-8") as child:
+    with subprocess.Popen(
+        words, stdout=pipe, stderr=pipe, encoding="utf-8", preexec_fn=heed_interrupts
+    ) as child:
         time.sleep(2.5)  # well past the start, far from the end
         assert child.poll() is None
         child.send_signal(signal.SIGINT)

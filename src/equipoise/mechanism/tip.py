@@ -43,20 +43,22 @@ class TipCurve:
     """The tip's path relative to the machine, of P machines of the same build.
 
     grid_size : crank angles in a turn that are sampled.
+    turns : of the crank in a cycle, if they are known; then nothing is checked.
 
     Raises
     ------
     ModelError : a machine has no `[planting]`.
-    MotionError : a single machine whose crank cannot turn fully; of several, none is checked.
+    MotionError : the crank of the first machine cannot turn fully.
     """
 
-    def __init__(self, machines: Sequence[Machine], grid_size: int = GRID) -> None:
+    def __init__(
+        self, machines: Sequence[Machine], grid_size: int = GRID, turns: int | None = None
+    ) -> None:
         self.machines = tuple(machines)
         self.planting = planting_of(self.machines[0])
         self.link = tip_link(self.machines[0])
         self.family = Family([assemble(machine) for machine in self.machines])
-        alone = len(self.machines) == 1 or self.family.steps is None
-        self.turns = self.family.first.cycle.turns if alone else 1
+        self.turns = self.family.first.cycle.turns if turns is None else turns
         self.theta = np.arange(grid_size * self.turns) * (2 * pi / grid_size)
 
     @property

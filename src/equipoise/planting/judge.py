@@ -96,7 +96,7 @@ class Problem:
         found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
         if np.any(good):
             some = [m for m, g in zip(machines, good, strict=True) if g and m is not None]
-            computed = _figures(some, self.groups)
+            computed = _figures(some, self.groups, turns=1)  # dyads alone are back after one
             for name, column in found.items():
                 column[good] = computed[name]
         off, slack, size = [], [], np.zeros(len(values))
@@ -129,10 +129,12 @@ class Problem:
         return machines, worst
 
 
-def _figures(machines: list[Machine], wanted: Collection[str] | None = None) -> dict[str, Array]:
+def _figures(
+    machines: list[Machine], wanted: Collection[str] | None = None, turns: int | None = None
+) -> dict[str, Array]:
     """Figures of designs by name, (P,); NaN where a design does not have one."""
     with np.errstate(all="ignore"):
-        curve = TipCurve(machines, GRID)
+        curve = TipCurve(machines, GRID, turns)
         entry, leave = soil_crossings(curve)
         return figures(curve, entry, leave, wanted=wanted)
 

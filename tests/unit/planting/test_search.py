@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.mechanism.linkage import Linkage
 from equipoise.planting.designs import Designs
 from equipoise.planting.goals import Goal
+from equipoise.planting.judge import Problem
 from equipoise.planting.search import Fit, fit_planting
 
 FIGURES_OF_A = (
@@ -194,3 +198,34 @@ def test_coordinates_of_any_point_can_vary() -> None:
     built = designs.build([0.02, 0.03])
     assert built.links["coupler"].points["C"] == (0.075, 0.02)
     assert built.frame["D"] == pytest.approx((0.03, -0.075))
+
+
+def test_designs_are_judged_without_following_their_cycle(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also a single one: what cannot turn by a hair is a poor design, not an error."""
+    problem = Problem(Designs(eq.load("kim-chung-a")), [Goal("curve.height", target=0.25)])
+
+    def followed(linkage: Linkage) -> None:
+        raise AssertionError
+
+    monkeypatch.setattr(Linkage, "cycle", property(followed))
+    outcome = problem.judge(problem.designs.start[None])
+    assert outcome.cost[0] < 1.0
+    assert outcome.worst[0] > 0.1
+
+
+def test_a_tip_at_the_origin_of_its_link_can_vary() -> None:
+    machine = eq.load("kim-chung-a")
+    points = {
+        name: np.subtract(place, (-0.1628, -0.1017))
+        for name, place in machine.links["coupler"].points.items()
+    }
+    link = eq.Link(points={name: tuple(place) for name, place in points.items()})
+    moved = replace(machine, links={**machine.links, "coupler": link})
+    fit = fit_planting(moved, [Goal("curve.height", target=0.26)], generations=20, population=20)
+    assert fit.met == {"curve.height": True}
+
+
+def test_two_goals_of_one_figure() -> None:
+    goals = [Goal("curve.height", at_least=0.26), Goal("curve.height", at_most=0.2)]
+    fit = fit_planting(eq.load("kim-chung-a"), goals, generations=2, population=8)
+    assert fit.met == {"curve.height": False}
