@@ -339,9 +339,9 @@ ARGUMENTS = {
     "option with colours": (["--\x1b[31m"], "Unknown option: --\\x1b[31m"),
     "one more": (["kim-chung-a"], "kim-chung-a"),
     "json with a word": (["--json=perhaps"], "--json"),
-    "csv into a missing folder": (["--csv", "no/x.csv"], "no/x.csv: the file cannot be written"),
-    "csv onto a folder": (["--csv", "."], ".: this is a directory"),
-    "csv below a file": (["--csv", "file/x.csv"], "not a directory"),
+    "csv into a missing folder": (["--csv", "no/x.csv"], "no/x.csv: there is no such folder"),
+    "csv onto a folder": (["--csv", "."], ". is a directory; give the name of a file"),
+    "csv below a file": (["--csv", "file/x.csv"], "there is no such folder"),
     "csv without a name": (["--csv", ""], "got an empty name"),
     "csv with a name too long": (["--csv", "x" * 300], "name too long"),
 }  # fmt: skip
@@ -449,7 +449,11 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
     words = [sys.executable, "-c", program, "analyze", FOUR_BAR, "--csv", "x.csv"]
     pipe = subprocess.PIPE
     with subprocess.Popen(
-        words, stdout=pipe, stderr=pipe, encoding="utf-8", preexec_fn=heed_interrupts
+        words,
+        stdout=pipe,
+        stderr=pipe,
+        encoding="utf-8",
+        preexec_fn=heed_interrupts,  # noqa: PLW1509
     ) as child:
         assert child.stdout is not None
         assert child.stdout.readline() == "ready\n"
@@ -460,7 +464,7 @@ def test_interruption_leaves_nothing_half_written(module: str, function: str, fo
 
 
 def heed_interrupts() -> None:
-    """A shell that runs the tests in the background makes them, and their children, ignore SIGINT."""
+    """A shell that runs the tests in the background makes them and their children ignore it."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -468,7 +472,11 @@ def test_interruption_of_a_long_analysis(folder: Path) -> None:
     words = command("analyze", "watt-six-bar", "--angles", "400000", "--csv", "x.csv")
     pipe = subprocess.PIPE
     with subprocess.Popen(
-        words, stdout=pipe, stderr=pipe, encoding="utf-8", preexec_fn=heed_interrupts
+        words,
+        stdout=pipe,
+        stderr=pipe,
+        encoding="utf-8",
+        preexec_fn=heed_interrupts,  # noqa: PLW1509
     ) as child:
         time.sleep(2.5)  # well past the start, far from the end
         assert child.poll() is None

@@ -26,7 +26,7 @@ def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
 
 REFUSED = {
     # words after the file, what is said
-    "no planting": (["yamashita-1"], 'yamashita-1: planting: missing; give at least tip = "P", fo'),
+    "no planting": (["yamashita-1"], 'yamashita-1: planting: missing; add a table [planting]'),
     "no file": (["nothing.toml"], "nothing.toml: there is no such file; give a path, or the name"),
     "speed 0": (["kim-chung-a", "--speed", "0 rpm"], "drive.speed: got 0; give the speed at which"),
     "speed": (["kim-chung-a", "--speed", "300"], "--speed: got '300'; the unit is missing"),
@@ -36,7 +36,7 @@ REFUSED = {
     "crank zero": (["kim-chung-a", "--crank-zero", "90"], "--crank-zero: got '90'; the unit is mi"),
     "angles": (["kim-chung-a", "--csv", "x.csv", "--angles", "0"], "--angles: got 0; give 1 to"),
     "many angles": (["kim-chung-a", "--csv", "x.csv", "--angles", "400001"], "got 400001; give 1"),
-    "no folder": (["kim-chung-a", "--csv", "no/x.csv"], "no/x.csv: the file cannot be written"),
+    "no folder": (["kim-chung-a", "--csv", "no/x.csv"], "no/x.csv: there is no such folder"),
     "empty csv": (["kim-chung-a", "--csv", ""], "--csv: got an empty name; give the name"),
 }  # fmt: skip
 

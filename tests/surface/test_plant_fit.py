@@ -96,3 +96,57 @@ def test_a_wrong_goal_names_the_target_file(folder: Path) -> None:
     said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
     assert said.startswith("target.toml: vary.crnk: ")
     assert "did you mean 'crank'" in said
+
+
+GOAL = "schema = 1\n[search]\ngenerations = 4\npopulation = 6\n[[goals]]\nfigure = "
+
+
+def asked(folder: Path, goal: str) -> str:
+    (folder / "target.toml").write_text(GOAL + goal, encoding="utf-8")
+    return succeeded(equipoise("plant", "transplanter", "--fit", "target.toml"))
+
+
+def test_the_smallest_population_and_a_figure_to_be_made_large(folder: Path) -> None:
+    text = asked(folder, '"curve.height"\nmake = "largest"\n')
+    assert "curve.height cm  largest" in text
+    assert " yes" not in text
+
+
+def test_a_target_of_0_has_a_tolerance(folder: Path) -> None:
+    more = '"lowest.ground_velocity.x"\ntarget = "0 m/s"\n'
+    assert " yes" in asked(folder, more)
+
+
+def test_what_gets_lost_is_told(folder: Path) -> None:
+    """A search that is not told of the tray misses it."""
+    text = asked(folder, '"curve.height"\ntarget = "40 cm"\n')
+    assert "pick_up.attitude deg                -158.15  " in text
+    found = eq.plant(eq.load("transplanter-fit.toml"))
+    for note in found.notes:
+        assert f"note: {note}" in text
+    assert found.machine.title.endswith(", fitted")
+
+
+def test_tables_beside_the_new_file_are_not_replaced(folder: Path) -> None:
+    machine = eq.load("kim-chung-a").with_planting(
+        soil=eq.Soil(table=eq.SoilTable((0.0, 0.04), (5.0, 9.0)))
+    )
+    eq.save(machine, "mine.toml")
+    (folder / "mine-fit.soil.csv").write_text("mine", encoding="utf-8")
+    said = refused(equipoise("plant", "mine.toml", "--fit", "target.toml"))
+    assert said == "mine-fit.soil.csv: is there already; choose another name by --out"
+    assert (folder / "mine-fit.soil.csv").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("path", ["target.toml", "new.toml"])
+def test_results_keep_out_of_each_others_way(folder: Path, path: str) -> None:
+    words = ["--fit", "target.toml", "--out", "new.toml", "--csv", path]
+    said = refused(equipoise("plant", "kim-chung-a", *words))
+    assert said == f"--csv: {path} has another part in this command; give another name"
+
+
+def test_an_empty_vary(folder: Path) -> None:
+    lines = [line for line in TARGET.splitlines() if not line.startswith(("crank", "tip"))]
+    (folder / "target.toml").write_text("\n".join(lines), encoding="utf-8")
+    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    assert said.startswith("target.toml: vary: names nothing")

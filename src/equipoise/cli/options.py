@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
@@ -33,10 +33,21 @@ def quantity(option: str, text: str, dimension: str) -> float:
         raise UsageError(f"{option}: {error}") from error
 
 
-def check_target(option: str, path: str, file: str, machine: Machine) -> None:
-    """Results must not take the place of what they come from."""
+def check_target(
+    option: str, path: str, file: str, machine: Machine, others: Sequence[str] = ()
+) -> None:
+    """Results must not take the place of what they come from, and must have a place to go.
+
+    others : further files that are read or written.
+    """
     if not path:
         raise UsageError(f"{option}: got an empty name; give the name of a file")
+    if os.path.isdir(path):
+        raise UsageError(f"{option}: {path} is a directory; give the name of a file")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise UsageError(f"{option}: {path}: there is no such folder; make it, or choose another")
+    if os.path.abspath(path) in map(os.path.abspath, others):
+        raise UsageError(f"{option}: {path} has another part in this command; give another name")
     tables = [load.table.file for load in machine.loads if load.table is not None]
     soil = None if machine.planting is None else machine.planting.soil
     if soil is not None and soil.table is not None:

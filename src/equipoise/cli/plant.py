@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +31,7 @@ def plant(
     crank_zero: Annotated[str | None, SIGNED] = None,
     json: bool = False,
     csv: str | None = None,
-    angles: Annotated[int | None, SIGNED] = None,
+    angles: Annotated[str | None, SIGNED] = None,
     plot: str | None = None,
     format: Kind | None = None,
     fit: str | None = None,
@@ -82,15 +83,17 @@ def plant(
     zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     if speed is not None:
         machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
+    new = None if fit is None else _new_file(machine, file, out)
     if csv is not None:
-        check_target("--csv", csv, file, machine)
-    if plot == "":
-        raise UsageError("--plot: got an empty name; give the name of a folder")
-    fitted = None if fit is None else _fit(machine, file, fit, out, seed)
+        check_target("--csv", csv, file, machine, [name for name in (fit, new) if name])
+    if plot is not None and (not plot or os.path.isfile(plot)):
+        raise UsageError(f"--plot: got {plot!r}; give the name of a folder")
+    rows = _count(angles)
+    fitted = None if fit is None or new is None else _fit(machine, file, fit, new, seed)
     with naming(file):
         figures = read_off(machine) if fitted is None else fitted.after
         if csv is not None:
-            _write_csv(figures, csv, 360 if angles is None else angles)
+            _write_csv(figures, csv, rows)
     if plot is not None:
         _draw(figures, plot, format or "svg")
     if json:
@@ -134,22 +137,39 @@ def _draw(figures: PlantingFigures, folder: str, kind: Kind) -> None:
     print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)
 
 
-def _fit(machine: Machine, file: str, targets: str, out: str | None, seed: int | None) -> Fit:
-    """Search, and write the design that was found as a new model file."""
-    from equipoise.cli.progress import told
+def _count(angles: str | None) -> int:
+    if angles is None:
+        return 360
+    if not re.fullmatch("[+-]?[0-9]{1,9}", angles):
+        raise UsageError(f"--angles: got {angles!r}; give a whole number, such as 360")
+    return int(angles)
+
+
+def _new_file(machine: Machine, file: str, out: str | None) -> str:
+    """Where the design that is found will be written; told before the search, not after it."""
     from equipoise.io.files import printable
-    from equipoise.io.models import save
-    from equipoise.io.targets import read_targets
-    from equipoise.planting.judge import figure_names
-    from equipoise.planting.search import fit_planting
+    from equipoise.io.models import files_of
 
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
     if not new:
         raise UsageError("--out: got an empty name; give the name of a file")
-    if os.path.lexists(new):
-        raise UsageError(f"{printable(new)}: is there already; choose another name by --out")
-    if not os.path.isdir(os.path.dirname(new) or "."):  # told before the search, not after it
+    if not os.path.isdir(os.path.dirname(new) or "."):
         raise UsageError(f"{printable(new)}: there is no such folder; make it, or choose another")
+    for path in files_of(machine, new):
+        if os.path.lexists(path):
+            raise UsageError(f"{printable(path)}: is there already; choose another name by --out")
+    return new
+
+
+def _fit(machine: Machine, file: str, targets: str, new: str, seed: int | None) -> Fit:
+    """Search, and write the design that was found as a new model file."""
+    from equipoise.cli.progress import told
+    from equipoise.io.files import printable
+    from equipoise.io.models import files_of, save
+    from equipoise.io.targets import read_targets
+    from equipoise.planting.judge import figure_names
+    from equipoise.planting.search import fit_planting
+
     with naming(file):
         known = figure_names(machine)
     given = read_targets(targets, known)
@@ -168,12 +188,14 @@ def _fit(machine: Machine, file: str, targets: str, out: str | None, seed: int |
         except UsageError as error:
             raise UsageError(f"{printable(targets)}: {error}") from error
     save(_told_of(fitted, targets), new)
-    print(f"wrote {printable(new)}", file=sys.stderr)
+    written = " and ".join(map(printable, files_of(machine, new)))
+    print(f"wrote {written}", file=sys.stderr)
     return fitted
 
 
 def _told_of(fitted: Fit, targets: str) -> Machine:
-    """The machine that was found, with where it comes from in its description."""
+    """The machine that was found, with where it comes from in title and description."""
     origin = f"Geometry found by equipoise plant --fit {Path(targets).name}, seed {fitted.seed}."
     machine = fitted.machine
-    return replace(machine, description=f"{machine.description} {origin}".strip())
+    description = f"{origin} Started from: {machine.description}".removesuffix("Started from: ")
+    return replace(machine, title=f"{machine.title}, fitted", description=description.strip())

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 
 Told = Callable[[int, int, float], None]
 LINES = 10
@@ -37,4 +37,5 @@ def told() -> Iterator[Told]:
 
 def _line(generation: int, most: int, cost: float) -> None:
     if generation == 1 or generation % max(1, most // LINES) == 0:
-        print(f"generation {generation} of at most {most}, cost {cost:.4g}", file=sys.stderr)
+        with suppress(OSError):  # who does not want to read it gets the result all the same
+            print(f"generation {generation} of at most {most}, cost {cost:.4g}", file=sys.stderr)

@@ -120,12 +120,22 @@ def save(machine: Machine, path: str | os.PathLike[str]) -> None:
 
     path = Path(path)
     tables = _tables(machine)
-    names = {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in tables}
+    names = _names(machine, path)
     text = toml_text(document_of(machine, names))
     for where, table in tables.items():
         write = format_load(table) if isinstance(table, LoadTable) else format_soil(table)
         _write(path.with_name(names[where]), write)
     _write(path, text)
+
+
+def files_of(machine: Machine, path: str | os.PathLike[str]) -> list[Path]:
+    """Every file that `save` would write, the model file first."""
+    path = Path(path)
+    return [path, *(path.with_name(name) for name in _names(machine, path).values())]
+
+
+def _names(machine: Machine, path: Path) -> dict[str, str]:
+    return {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in _tables(machine)}
 
 
 def _tables(machine: Machine) -> dict[str, LoadTable | SoilTable]:

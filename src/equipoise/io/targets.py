@@ -93,7 +93,10 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
 
 def _document(text: str) -> _Document:
     try:
-        return _Document.model_validate(toml_content(text))
+        content = toml_content(text)
+        if "goals" not in content:
+            raise ModelError("goals", "missing; add at least one table [[goals]]")
+        return _Document.model_validate(content)
     except ValidationError as error:
         raise translated(error) from error
 
@@ -113,6 +116,10 @@ def _targets(document: _Document, figures: Collection[str]) -> Targets:
 
 
 def _goal(where: str, goal: _Goal, figures: Collection[str]) -> Goal:
+    if goal.figure.startswith("pick_up.") and goal.figure not in figures:
+        raise ModelError(
+            f"{where}.figure", f"got {goal.figure!r}; the machine has no planting.tray"
+        )
     if goal.figure not in figures:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
     keys = ("target", "at_least", "at_most", "tolerance")

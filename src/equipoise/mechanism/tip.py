@@ -146,7 +146,8 @@ def planting_of(machine: Machine) -> Planting:
     if machine.planting is None:
         raise ModelError(
             "planting",
-            'missing; give at least tip = "P", forward_speed = "0.6 m/s" and depth = "40 mm"',
+            'missing; add a table [planting] with at least tip = "P", forward_speed = "0.6 m/s" '
+            'and depth = "40 mm"',
         )
     return machine.planting
 

@@ -60,6 +60,8 @@ class Designs:
         self.machine, self.sense = machine, sense
         known = {variable.name: variable for variable in _variables(machine)}
         names = list(_usual(known)) if vary is None else list(vary)
+        if not names:
+            raise UsageError("vary: names nothing; name at least one number, or leave it out")
         for name in names:
             if name not in known:
                 raise UsageError(f"vary.{name}: {unknown(name, known, 'number to vary')}")

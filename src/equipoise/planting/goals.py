@@ -46,6 +46,13 @@ class Goal:
             raise UsageError(f"{self.figure}: got make = {self.make!r}; give smallest or largest")
         if None not in (self.at_least, self.at_most) and self.at_least > self.at_most:  # type: ignore[operator]
             raise UsageError(f"{self.figure}: at_least is above at_most")
+        outside = (
+            self.target is not None
+            and not self.turning
+            and any(slack[0] < 0 for slack in self.slack(np.array([self.target])))
+        )
+        if outside:
+            raise UsageError(f"{self.figure}: the target lies outside the limits; change one")
         if self.tolerance is not None and not self.tolerance > 0:
             raise UsageError(f"{self.figure}: the tolerance must be more than 0")
 
@@ -90,11 +97,11 @@ class Goal:
             if limit is not None
         ]
 
-    def met(self, value: float) -> bool:
-        """Whether a figure keeps the limits and is within one tolerance of the target."""
+    def met(self, value: float, step: float) -> bool:
+        """Whether a figure keeps the limits and is within one step of the target."""
         one = np.array([value])
         kept = all(slack[0] >= 0 for slack in self.slack(one))
-        return kept and bool(abs(self.off(one)[0]) <= self.scale(value))
+        return kept and bool(abs(self.off(one)[0]) <= step)
 
     def _near(self, values: Array, limit: float) -> Array:
         """Values, or for turning angles those whole turns away that are nearest to a limit."""

@@ -25,6 +25,8 @@ GRID = 180
 """Crank angles between which instants of designs are looked for."""
 OPEN = 1e-4
 """Squared sine of the smallest transmission angle (0.6 deg) below which a design counts as open."""
+LEAST_LIFT = 0.01
+"""Share of the path's height by which the tip of a design has to rise above the soil."""
 COST_OF_OPEN, COST_OF_NONE = 1e9, 1e8
 """Cost of a design that cannot turn, and of one that lacks a figure."""
 LIMITS = 1e3
@@ -136,7 +138,10 @@ def _figures(
     with np.errstate(all="ignore"):
         curve = TipCurve(machines, GRID, turns)
         entry, leave = soil_crossings(curve)
-        return figures(curve, entry, leave, wanted=wanted)
+        found = figures(curve, entry, leave, wanted=wanted)
+        lift, height = curve.highest[0] - curve.surface, curve.highest[0] - curve.lowest[0]
+        plants = np.isfinite(entry) & (lift > LEAST_LIFT * height)
+        return {name: np.where(plants, values, np.nan) for name, values in found.items()}
 
 
 def figure_names(machine: Machine) -> list[str]:

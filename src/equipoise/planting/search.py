@@ -26,6 +26,7 @@ from equipoise.planting.summary import PlantingFigures, plant
 Array = np.ndarray[Any, Any]
 
 GENERATIONS, POPULATION = 300, 120
+SMALLEST_POPULATION = 5
 CLOSE = 1e-2
 """Sum of squared steps from the targets at which the global search has found the place."""
 PATIENCE, STILL = 40, 1e-4
@@ -51,6 +52,7 @@ class Fit:
     before, after : figures of the machine to start from (None where it has none, because its tip
         never reaches the soil, say) and of the design.
     goals : what was asked for.  designs : what could change.  values : what it has become.
+    steps : for each goal, what counts as one step away from its target.
     judged : number of designs.  seed : of the random numbers.
     """
 
@@ -60,15 +62,21 @@ class Fit:
     goals: tuple[Goal, ...]
     designs: Designs
     values: Mapping[str, float]
+    steps: tuple[float, ...]
     judged: int
     seed: int
 
     @property
     def met(self) -> dict[str, bool]:
-        """Goal -> whether its target is met within its tolerance and its limits are kept."""
+        """Figure -> whether its target is met within its tolerance and its limits are kept.
+
+        A figure that only is to become small or large has no entry.
+        """
         met: dict[str, bool] = {}
-        for goal in self.goals:
-            met[goal.figure] = met.get(goal.figure, True) and goal.met(self.after[goal.figure])
+        for goal, step in zip(self.goals, self.steps, strict=True):
+            if goal.asks:
+                here = goal.met(self.after[goal.figure], step)
+                met[goal.figure] = met.get(goal.figure, True) and here
         return met
 
     def to_dict(self) -> dict[str, Any]:
@@ -77,7 +85,7 @@ class Fit:
             "seed": self.seed,
             "judged": self.judged,
             "values": dict(self.values),
-            "goals": [{**asdict(goal), "met": self.met[goal.figure]} for goal in self.goals],
+            "goals": [{**asdict(goal), "met": self.met.get(goal.figure)} for goal in self.goals],
             "before": None if self.before is None else self.before.to_dict(),
             "after": self.after.to_dict(),
         }
@@ -121,7 +129,7 @@ def fit_planting(
     evolution = _Evolution(problem, seed, generations, progress)
     best = evolution.rounds(population)
     if problem.makes:
-        polished = [evolution.near(best[0], population // 3)]
+        polished = [evolution.near(best[0], max(SMALLEST_POPULATION, population // 3))]
     else:
         polished = list(_polished(problem, best))
     candidates = np.vstack([best, *polished])
@@ -134,6 +142,7 @@ def fit_planting(
         goals=problem.goals,
         designs=problem.designs,
         values={name: float(value) for name, value in zip(names, values, strict=False)},
+        steps=tuple(problem.scales),
         judged=problem.judged,
         seed=seed,
     )
@@ -144,7 +153,7 @@ def _check(machine: Machine, seed: int, generations: int, population: int) -> No
         raise UsageError(
             "the search varies linkages of dyads; this one has gears or a group of loops"
         )
-    if seed < 0 or generations < 1 or population < 5:
+    if seed < 0 or generations < 1 or population < SMALLEST_POPULATION:
         raise UsageError(
             "give a seed of 0 or more, 1 generation or more and a population of 5 or more"
         )

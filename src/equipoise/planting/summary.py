@@ -153,6 +153,18 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
     }
 
 
+def _collisions(known: Mapping[str, float]) -> Iterator[str]:
+    """Links that go where they should not."""
+    for name, value in known.items():
+        body = name.rpartition(".")[0]
+        if not name.endswith(".value"):
+            continue
+        if body.startswith("clearance.soil.") and value < 0:
+            yield f"{body.removeprefix('clearance.soil.')} goes {-1e3 * value:.4g} mm into the soil"
+        if body.startswith("clearance.tray.") and value == 0 and ".tray.tip " not in body:
+            yield f"{body.removeprefix('clearance.tray.')} goes through the tray's edge"
+
+
 def _notes(
     curve: TipCurve,
     stays: tuple[Visit, ...],
@@ -172,6 +184,14 @@ def _notes(
         )
     if planting.tray is not None and not crossed:
         yield "the tip never passes the tray's edge, so that it picks up nothing"
+    if planting.units_per_turn > 1:
+        yield (
+            f"units_per_turn is {planting.units_per_turn}: soil loads, and clearances without the "
+            "tip, are those of the one tip named, not of the other units"
+        )
+    if planting.release is not None and known["release.y"] > known["surface"]:
+        yield "the seedling is let go above the surface of the soil"
+    yield from _collisions(known)
     base = finger_base(curve)
     if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
         yield f"{base} is below the surface at entry or exit, so that no length of a hole is told"

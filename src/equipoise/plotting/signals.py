@@ -64,8 +64,8 @@ QUANTITIES = {
 }
 PARTS = {
     "": ("", ""),
-    "-x": (", part along x (forward)", " x"),
-    "-y": (", part along y (up)", " y"),
+    "-x": (", part along x", " x"),
+    "-y": (", part along y", " y"),
 }
 
 

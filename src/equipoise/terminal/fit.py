@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
+from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.linkage import assemble
 from equipoise.planting.names import dimension_of
 from equipoise.terminal.planting import EXTREMES, PATH, SOIL
 from equipoise.terminal.tables import Row, table
@@ -15,11 +17,9 @@ if TYPE_CHECKING:
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
 
+OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
-    "pick_up.attitude",
-    "entry.attitude",
-    "lowest.attitude",
-    "exit.attitude",
+    *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
     "transmission.min",
 )
 
@@ -31,6 +31,8 @@ def print_fit(fit: Fit, units: Units) -> None:
     print(_goals(fit, units))
     print(_changes(fit, units))
     print(_figures(fit, units))
+    for note in (*fit.after.notes, *remarks(assemble(fit.machine))):
+        print(f"\nnote: {note}")
     missed = [name for name, met in fit.met.items() if not met]
     if missed:
         print(
@@ -42,7 +44,7 @@ def print_fit(fit: Fit, units: Units) -> None:
 def _shown(value: float | None, name: str, units: Units) -> str:
     dimension = cast("Dimension | None", dimension_of(name))
     if value is None:
-        return ""
+        return "none"
     return f"{value:.4f}" if dimension is None else units.shown(value, dimension)
 
 
@@ -61,7 +63,7 @@ def _goals(fit: Fit, units: Units) -> str:
                 _wanted(goal, units),
                 _shown(before, goal.figure, units),
                 _shown(fit.after[goal.figure], goal.figure, units),
-                {True: "yes", False: "no"}[fit.met[goal.figure]] if goal.asks else "",
+                {True: "yes", False: "no", None: ""}[fit.met.get(goal.figure)],
             )
         )
     return table("Goals", ("", "wanted", "before", "after", "met"), rows, words=2)
@@ -95,11 +97,12 @@ def _figures(fit: Fit, units: Units) -> str:
     asked = {goal.figure for goal in fit.goals}
     rows: list[Row] = []
     for name in (*names, *OTHERS):
-        if name in fit.after.figures and name not in asked:
+        known = (f for f in (fit.before, fit.after) if f is not None and name in f.figures)
+        if name not in asked and any(known):
             row = (_label(name, units), _of(fit.before, name, units), _of(fit.after, name, units))
             rows.append(row)
     return table("Other figures", ("", "before", "after"), rows)
 
 
 def _of(figures: PlantingFigures | None, name: str, units: Units) -> str:
-    return "" if figures is None else _shown(figures.figures.get(name), name, units)
+    return "none" if figures is None else _shown(figures.figures.get(name), name, units)

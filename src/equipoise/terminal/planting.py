@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
 INSTANTS = ("pick_up", "entry", "lowest", "release", "exit", "highest")
-"""Columns of the table of instants; the order of a planting stroke."""
+"""Columns of the table of instants; it begins with the first that there is."""
 
 OF_AN_INSTANT: tuple[tuple[str, str], ...] = (
     ("x", "x"),
@@ -138,10 +138,12 @@ def _instants(page: Page) -> str:
     names = [name for name in INSTANTS if page.get(f"{name}.crank_angle") is not None]
     if page.figures.planting.release is None:
         names.remove("release")
+    names = _in_time(page, names)
     angles = [page.crank_angle(page.get(f"{name}.crank_angle")) for name in names]
     rows: list[Row] = [(page.label("crank angle", "crank_angle"), *angles)]
     for text, key in OF_AN_INSTANT:
-        if page.get(f"entry.{key}") is None:
+        still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
+        if still or page.get(f"entry.{key}") is None:
             continue
         size = key.partition(".")[0]
         height = page.figures["curve.height"] if key in ("x", "y") else 0.0
@@ -152,6 +154,19 @@ def _instants(page: Page) -> str:
         rows.append((page.label(text, f"entry.{key}"), *values))
     title = "Instants; relative to the machine where nothing else is said, directions from x"
     return table(title, ("", *(name.replace("_", "-") for name in names)), rows)
+
+
+def _in_time(page: Page, names: list[str]) -> list[str]:
+    """Instants in the order of time, from the first of `INSTANTS` on."""
+    figures = page.figures
+    sense = 1 if figures["speed"] > 0 else -1
+    start = figures[f"{names[0]}.crank_angle"]
+
+    def way(name: str) -> float:
+        turned = sense * (figures[f"{name}.crank_angle"] - start)
+        return round(turned, 9) % figures.curve.period
+
+    return sorted(names, key=way)
 
 
 def _values(title: str, lines: tuple[tuple[str, str], ...], page: Page) -> str:
@@ -293,8 +308,9 @@ def _forces(page: Page) -> str:
         text = "drive torque" if name == "drive_torque" else f"joint {name.removeprefix('joints.')}"
         row = [f"{text} {page.units.name(dimension)}"]
         for found in (air, soil):
-            row += [page.units.shown(found.peak, dimension), page.crank_angle(found.peak_at)]
-        rows.append((*row, number(soil.peak / air.peak) if air.peak else ""))
+            peak = page.units.shown(found.peak, dimension, soil.peak)
+            row += [peak, page.crank_angle(found.peak_at)]
+        rows.append((*row, number(soil.peak / air.peak) if air.peak > 1e-9 * soil.peak else ""))
     at = f"at {page.units.name('angle')}"
     header = ("", "in the air", at, "with soil", at, "ratio")
     return table("Peaks of drive torque and joint forces", header, rows)

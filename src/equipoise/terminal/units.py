@@ -32,10 +32,15 @@ class Units:
     @classmethod
     def read(cls, text: str) -> Units:
         """Units from a list such as ``"mm, km/h"``; the usual ones of what is not in it."""
-        chosen = dict(USUAL)
+        given: dict[Dimension, str] = {}
         for unit in filter(None, (part.strip() for part in text.split(","))):
-            chosen[_dimension(unit)] = unit
-        return cls(chosen)
+            dimension = _dimension(unit)
+            if given.setdefault(dimension, unit) != unit:
+                raise UsageError(
+                    f"--units: got {given[dimension]!r} and {unit!r}, both units of "
+                    f"{dimension}; give one"
+                )
+        return cls(USUAL | given)
 
     def name(self, dimension: Dimension) -> str:
         """The unit, such as ``cm``."""

@@ -208,8 +208,8 @@ def test_a_machine_without_planting_says_what_to_add() -> None:
         with pytest.raises(ModelError) as caught:
             read(FOUR)  # type: ignore[operator]
         assert str(caught.value) == (
-            'planting: missing; give at least tip = "P", forward_speed = "0.6 m/s" and '
-            'depth = "40 mm"'
+            'planting: missing; add a table [planting] with at least tip = "P", '
+            'forward_speed = "0.6 m/s" and depth = "40 mm"'
         )
 
 

@@ -59,10 +59,10 @@ def test_steps() -> None:
 
 
 def test_met() -> None:
-    goal = Goal("curve.height", target=0.25, tolerance=1e-3, at_most=0.2502)
-    assert goal.met(0.2495)
-    assert not goal.met(0.2515)
-    assert not goal.met(0.2505)
+    goal = Goal("curve.height", target=0.25, at_most=0.2502)
+    assert goal.met(0.2495, 1e-3)
+    assert not goal.met(0.2485, 1e-3)
+    assert not goal.met(0.2505, 1e-3)
 
 
 @pytest.mark.parametrize(
@@ -73,6 +73,7 @@ def test_met() -> None:
         ({"make": "best"}, "give smallest or largest"),
         ({"at_least": 2.0, "at_most": 1.0}, "at_least is above at_most"),
         ({"target": 1.0, "tolerance": 0.0}, "must be more than 0"),
+        ({"target": 1.0, "at_most": 0.9}, "the target lies outside the limits"),
     ],
 )
 def test_wrong_goals(given: dict[str, Any], said: str) -> None:

@@ -198,7 +198,7 @@ def test_a_cycle_of_three_turns(speed: float) -> None:
 
 
 def test_a_machine_without_planting() -> None:
-    with pytest.raises(ModelError, match=r"^planting: missing; give at least tip = "):
+    with pytest.raises(ModelError, match=r"^planting: missing; add a table \[planting\]"):
         plant(eq.load("yamashita-1"))
 
 
