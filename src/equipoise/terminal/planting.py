@@ -83,7 +83,9 @@ class Page:
         if value is None:
             return ""
         period = self.figures.curve.period
-        return self.units.shown((value - self.zero) % period, "angle")
+        text = self.units.shown((value - self.zero) % period, "angle")
+        whole = self.units.shown(period, "angle")
+        return self.units.shown(0.0, "angle") if text == whole else text
 
     def label(self, text: str, name: str) -> str:
         return f"{text} {self.units.name(_dimension(name))}"
