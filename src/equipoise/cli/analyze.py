@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import check_target, naming, quantity
+from equipoise.cli.options import check_belonging, check_target, naming, quantity
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -52,8 +52,7 @@ def analyze(
     from equipoise.io.models import load
 
     machine = load(file)
-    if split and not json:
-        raise UsageError("--split belongs to --json; give both")
+    check_belonging("--json", json or None, split=split or None)
     if csv is not None:
         check_target("--csv", csv, file, machine)
     arguments = (

@@ -24,6 +24,13 @@ def naming(file: str) -> Iterator[None]:
         raise EquipoiseError(f"{printable(file)}: {error}") from error
 
 
+def check_belonging(owner: str, given: object, **options: object) -> None:
+    """An option that would do nothing is told, not passed over."""
+    for name, value in options.items():
+        if value is not None and given is None:
+            raise UsageError(f"--{name} belongs to {owner}; give both")
+
+
 def quantity(option: str, text: str, dimension: str) -> float:
     from equipoise.io.units import parse
 
@@ -40,6 +47,8 @@ def check_target(
 
     others : further files that are read or written.
     """
+    from equipoise.io.models import tables_of
+
     if not path:
         raise UsageError(f"{option}: got an empty name; give the name of a file")
     if os.path.isdir(path):
@@ -48,11 +57,8 @@ def check_target(
         raise UsageError(f"{option}: {path}: there is no such folder; make it, or choose another")
     if os.path.abspath(path) in map(os.path.abspath, others):
         raise UsageError(f"{option}: {path} has another part in this command; give another name")
-    tables = [load.table.file for load in machine.loads if load.table is not None]
-    soil = None if machine.planting is None else machine.planting.soil
-    if soil is not None and soil.table is not None:
-        tables.append(soil.table.file)
-    sources = [file, *(os.path.join(os.path.dirname(file), table) for table in tables)]
+    tables = tables_of(machine).values()
+    sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]
     if os.path.exists(path) and any(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources
     ):

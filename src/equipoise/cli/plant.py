@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import check_target, naming, quantity
+from equipoise.cli.options import check_belonging, check_target, naming, quantity
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -71,9 +71,9 @@ def plant(
     from equipoise.planting.summary import plant as read_off
     from equipoise.terminal.units import Units
 
-    _check_belonging("--csv", csv, angles=angles)
-    _check_belonging("--plot", plot, format=format)
-    _check_belonging("--fit", fit, out=out, seed=seed)
+    check_belonging("--csv", csv, angles=angles)
+    check_belonging("--plot", plot, format=format)
+    check_belonging("--fit", fit, out=out, seed=seed)
     if fit is not None and crank_zero is not None:
         raise UsageError("--crank-zero has no place in what --fit prints; leave it out")
     if seed is not None and seed < 0:
@@ -108,13 +108,6 @@ def plant(
         from equipoise.terminal.planting import print_planting
 
         print_planting(figures, shown_in, zero)
-
-
-def _check_belonging(owner: str, given: object, **options: object) -> None:
-    """An option that would do nothing is told, not passed over."""
-    for name, value in options.items():
-        if value is not None and given is None:
-            raise UsageError(f"--{name} belongs to {owner}; give both")
 
 
 def _write_csv(figures: PlantingFigures, path: str, angles: int) -> None:

@@ -96,7 +96,7 @@ def dumps(machine: Machine) -> str:
     """
     from equipoise.io.writing import document_of, toml_text
 
-    tables = _tables(machine)
+    tables = tables_of(machine)
     for where, table in tables.items():
         if not table.file:
             raise ModelError(where, "the table has no file; save the machine instead")
@@ -119,7 +119,7 @@ def save(machine: Machine, path: str | os.PathLike[str]) -> None:
     from equipoise.io.writing import document_of, toml_text
 
     path = Path(path)
-    tables = _tables(machine)
+    tables = tables_of(machine)
     names = _names(machine, path)
     text = toml_text(document_of(machine, names))
     for where, table in tables.items():
@@ -135,10 +135,10 @@ def files_of(machine: Machine, path: str | os.PathLike[str]) -> list[Path]:
 
 
 def _names(machine: Machine, path: Path) -> dict[str, str]:
-    return {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in _tables(machine)}
+    return {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in tables_of(machine)}
 
 
-def _tables(machine: Machine) -> dict[str, LoadTable | SoilTable]:
+def tables_of(machine: Machine) -> dict[str, LoadTable | SoilTable]:
     """Tables of a machine by the key that names them."""
     tables: dict[str, LoadTable | SoilTable] = {
         f"loads[{number}].table": load.table

@@ -31,7 +31,7 @@ class Family:
         self.first = self.linkages[0]
         self._arms: dict[tuple[str, str], Array] = {}
         self._frame = {
-            name: _column(complex(*k.machine.frame[name]) for k in self.linkages)
+            name: column(complex(*k.machine.frame[name]) for k in self.linkages)
             for name in self.first.machine.frame
         }
         self.steps: list[Step] | None = None
@@ -61,7 +61,7 @@ class Family:
             bodies = (k.machine.points_of(link) for k in self.linkages)
             anchor = self.first.anchors[link]
             arms = (complex(*body[point]) - complex(*body[anchor]) for body in bodies)
-            self._arms[link, point] = _column(arms)
+            self._arms[link, point] = column(arms)
         return self._arms[link, point]
 
     def rates(self, state: State, link: str) -> tuple[Array, Array]:
@@ -101,9 +101,10 @@ class Family:
 def _stacked(calls: Sequence[Any]) -> Call:
     """The same call of all machines, with columns (P, 1) for parameters."""
     first = calls[0]
-    columns = (_column(values) for values in zip(*(c.parameters for c in calls), strict=True))
+    columns = (column(values) for values in zip(*(c.parameters for c in calls), strict=True))
     return Call(first.kernel, first.inputs, tuple(columns), first.outputs)
 
 
-def _column(values: Iterable[Any]) -> Array:
+def column(values: Iterable[Any]) -> Array:
+    """One value for each machine, (P, 1)."""
     return np.array(list(values))[:, None]

@@ -19,6 +19,8 @@ CLOSE = 1e-14
 FINE = 1e-9
 """rad: the closest samples of a signal that may have kinks."""
 MOST_ROUNDS = 80
+GAUSS = np.polynomial.legendre.leggauss(12)
+"""Nodes and weights of the rule for integrals, in each panel."""
 RIVALS = 3
 """Highest samples that are followed to their tops: the highest sample need not lie by the
 highest top."""
@@ -131,3 +133,16 @@ def lowest_within(
         between = at + width * offsets
         near = np.clip(between, np.minimum(low, high), np.maximum(low, high))
         width = width / 8
+
+
+def integral(signal: Signal, breaks: Array) -> Array:
+    """Integral (P,) of a signal over crank angle, by Gauss's rule between breaks (P, B), rad.
+
+    The signal should be smooth between them; falling breaks give the opposite sign.
+    """
+    nodes, weights = GAUSS
+    middle, half = (breaks[:, 1:] + breaks[:, :-1]) / 2, np.diff(breaks, axis=1) / 2
+    theta = middle[..., None] + half[..., None] * nodes
+    values = signal(theta.reshape(len(breaks), -1)).reshape(theta.shape)
+    total: Array = np.sum((values @ weights) * half, axis=1)
+    return total

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.family import Family, Triple
+from equipoise.mechanism.family import Family, Triple, column
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.instants import crossings, largest, smallest
 from equipoise.mechanism.linkage import assemble
@@ -71,19 +71,15 @@ class TipCurve:
         """Crank angle of one cycle, rad."""
         return 2 * pi * self.turns
 
-    def column(self, values: Sequence[float]) -> Array:
-        """One number for each machine, (P, 1)."""
-        return np.array(values)[:, None]
-
     @cached_property
     def speed(self) -> Array:
         """Speed of the crank, rad/s, (P, 1)."""
-        return self.column([machine.drive.speed for machine in self.machines])
+        return column(machine.drive.speed for machine in self.machines)
 
     @cached_property
     def forward(self) -> Array:
         """Velocity of the machine along x, m/s, (P, 1)."""
-        return self.column([planting_of(m).forward(m.drive.speed) for m in self.machines])
+        return column(planting_of(m).forward(m.drive.speed) for m in self.machines)
 
     @cached_property
     def grid(self) -> Tip:

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.instants import Signal, lowest_within
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.moments import pick_up
+from equipoise.planting.tray import pick_up
 from equipoise.planting.vectors import Array, Figures, wrapped
 
 

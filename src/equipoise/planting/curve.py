@@ -16,6 +16,7 @@ from equipoise.planting.vectors import (
     ground_drive,
     in_time,
     in_time_slope,
+    while_driving,
     wrapped,
 )
 
@@ -74,9 +75,8 @@ def sharpest_bend(curve: TipCurve, name: str, drive: Any) -> Figures:
 
 def ground_bend(curve: TipCurve) -> Figures:
     """The same of the path over ground; NaN for a machine at rest, which has none."""
-    drives = np.where(curve.forward[:, 0] != 0, 1.0, np.nan)
     found = sharpest_bend(curve, "ground", ground_drive(curve))
-    return {name: value * drives for name, value in found.items()}
+    return {name: value * while_driving(curve) for name, value in found.items()}
 
 
 def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:

@@ -18,8 +18,9 @@ from equipoise.planting.curve import (
     size_of_curve,
     transmission,
 )
-from equipoise.planting.moments import instant, pick_up, release
+from equipoise.planting.moments import instant, release
 from equipoise.planting.stay import in_soil, limits
+from equipoise.planting.tray import pick_up
 from equipoise.planting.vectors import Array, Figures
 
 

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import crossings, lowest_within
+from equipoise.mechanism.instants import crossings, integral, lowest_within
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.vectors import wrapped
 
 Array = np.ndarray[Any, Any]
 
@@ -75,7 +76,7 @@ class GroundPath:
 
     def crank_angle(self, way: float) -> float:
         """Crank angle within one cycle, rad."""
-        return float(np.mod(self.sense * way, self.curve.period))
+        return float(wrapped(self.curve, np.array(self.sense * way)))
 
     def cusps(self) -> tuple[float, ...]:
         """Crank angles at which the tip stands still over ground for an instant."""
@@ -147,11 +148,10 @@ class GroundPath:
 
     def _loop(self, first: float, second: float) -> Loop:
         breaks = self.breaks(first, second)
-        nodes, weights = np.polynomial.legendre.leggauss(12)
-        middle, half = (breaks[1:] + breaks[:-1]) / 2, np.diff(breaks) / 2
-        ways = (middle[:, None] + half[:, None] * nodes).reshape(1, -1)
         origin = self.place(np.array([[first]]))[0, 0]
-        swept = kernels.cross(self.place(ways) - origin, self.rate(ways)).reshape(-1, len(nodes))
+        swept = integral(
+            lambda way: kernels.cross(self.place(way) - origin, self.rate(way)), breaks[None]
+        )
         height, width = (
             self._extent(first, second, lambda place, axis=axis: getattr(place, axis))
             for axis in ("imag", "real")
@@ -163,7 +163,7 @@ class GroundPath:
             y=float(origin.imag),
             height=height,
             width=width,
-            area=abs(float(np.sum((swept @ weights) * half))) / 2,
+            area=abs(float(swept[0])) / 2,
             in_soil=bool(origin.imag < self.curve.surface[0]),
         )
 

@@ -46,10 +46,6 @@ class Outcome:
     size: Array
     worst: Array
 
-    def part(self, rows: slice) -> Outcome:
-        """Some of the designs."""
-        return Outcome(self.off[rows], self.slack[rows], self.size[rows], self.worst[rows])
-
     @property
     def kept(self) -> Array:
         """Whether a design can turn and keeps every limit (P,)."""

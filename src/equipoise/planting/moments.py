@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism import kernels
 from equipoise.mechanism.instants import roots
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.vectors import Array, Figures, direction, in_time, wrapped
@@ -39,32 +38,8 @@ def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
     return between(k_entry) - sense[:, 0] * curve.period, between(k_leave - 1)
 
 
-def pick_up(curve: TipCurve, entry: Array) -> Array:
-    """Crank angle (P,) at which the tip last passes the tray's edge before it enters the soil.
-
-    NaN where it never does.
-    """
-    assert curve.planting.tray is not None
-    start, stop = (complex(*point) for point in curve.planting.tray)
-
-    def beside(theta: Array) -> Any:
-        return kernels.cross(stop - start, curve.at(theta).place - start)
-
-    back = np.linspace(0.0, curve.period, len(curve.theta) + 1)
-    nodes = entry[:, None] - np.sign(curve.speed) * back
-    sides = np.signbit(beside(nodes))
-    passed = sides[:, 1:] != sides[:, :-1]
-    most = max(1, int(np.max(np.sum(passed, axis=1))))
-    first = np.argsort(~passed, axis=1, kind="stable")[:, :most]
-    ends = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
-    crossing = roots(beside, *ends)
-    along = kernels.dot(stop - start, curve.at(crossing).place - start) / abs(stop - start) ** 2
-    meant = np.take_along_axis(passed, first, axis=1) & (np.abs(along - 0.5) <= 0.5)
-    last = np.take_along_axis(crossing, np.argmax(meant, axis=1)[:, None], axis=1)[:, 0]
-    return np.where(np.any(meant, axis=1), last, np.nan)
-
-
 def release(curve: TipCurve) -> Array:
+    """Crank angle (P,) at which the seedling is let go."""
     given = curve.planting.release
     return curve.lowest[1] if given is None else np.full(curve.count, given)
 

@@ -6,15 +6,14 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.instants import lowest_within
+from equipoise.mechanism.instants import integral, lowest_within
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.moments import finger_base
-from equipoise.planting.vectors import Array, Figures, ground_drive, in_time, wrapped
+from equipoise.planting.vectors import Array, Figures, ground_drive, in_time, while_driving, wrapped
 
 PANELS = 24
 SAMPLES_OF_TURN = 720
-GAUSS = np.polynomial.legendre.leggauss(12)
-"""Nodes and weights of the rule for lengths, in each of so many panels."""
+"""Panels of the stay in which lengths are summed up, and samples of a turn."""
 
 
 def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -> Figures:
@@ -25,7 +24,7 @@ def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -
         breaks = entry[:, None] + (leave - entry)[:, None] * np.linspace(0, 1, PANELS + 1)
     ends = curve.at(np.stack([entry, leave], axis=1)).place.real
     advance = ends[:, 1] - ends[:, 0] + curve.forward[:, 0] * time
-    drives = np.where(curve.forward[:, 0] != 0, 1.0, np.nan)
+    drives = while_driving(curve)
     sharpest, at = _largest_in_soil(curve, entry, leave)
     return {
         "soil.depth": curve.surface - curve.lowest[0],
@@ -42,13 +41,8 @@ def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -
 
 
 def _length(curve: TipCurve, breaks: Array, drive: Any) -> Array:
-    """Length (P,) of the path over panels of crank angle, by Gauss's rule in each."""
-    nodes, weights = GAUSS
-    middle, half = (breaks[:, 1:] + breaks[:, :-1]) / 2, np.diff(breaks, axis=1) / 2
-    theta = middle[..., None] + half[..., None] * nodes
-    rate = np.abs(curve.at(theta.reshape(len(breaks), -1)).place_1 + drive)
-    length: Array = np.sum((rate.reshape(theta.shape) @ weights) * np.abs(half), axis=1)
-    return length
+    """Length (P,) of the path, m; `drive` is the machine's way by crank angle, m."""
+    return np.abs(integral(lambda theta: np.abs(curve.at(theta).place_1 + drive), breaks))
 
 
 def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:

@@ -19,8 +19,9 @@ from equipoise.planting.figures import figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.moments import finger_base
 from equipoise.planting.torque import SoilForces, soil_forces
+from equipoise.planting.tray import tray_crossings
 from equipoise.planting.vectors import wrapped
-from equipoise.planting.visits import Visit, tray_crossings, visits
+from equipoise.planting.visits import Visit, visits
 from equipoise.signals import Figures
 
 Array = np.ndarray[Any, Any]

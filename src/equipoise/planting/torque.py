@@ -39,8 +39,8 @@ def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
     if planting is None or planting.soil is None or massless(machine):
         return None
     motion = move(machine, angles)
-    dry = move(machine.with_planting(soil=None), angles)
-    return SoilForces(motion, forces(motion), forces(replace(dry, state=motion.state)))
+    dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))
+    return SoilForces(motion, forces(motion), forces(dry))
 
 
 def _signals(found: Forces) -> dict[str, Array]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.mechanism.family import column
 from equipoise.mechanism.tip import TipCurve
 
 Array = np.ndarray[Any, Any]
@@ -30,12 +31,18 @@ def in_time_slope(curve: TipCurve, theta: Array, order: int) -> Any:
 
 
 def acceleration_of_drive(curve: TipCurve) -> Array:
-    return curve.column([machine.drive.acceleration for machine in curve.machines])
+    """Acceleration of the crank, rad/s2, (P, 1)."""
+    return column(machine.drive.acceleration for machine in curve.machines)
 
 
 def ground_drive(curve: TipCurve) -> Array:
     """Way of the machine along x by crank angle, m, (P, 1)."""
     return curve.forward / curve.speed
+
+
+def while_driving(curve: TipCurve) -> Array:
+    """1 for a machine that drives, NaN for one at rest, which has no figures over ground; (P,)."""
+    return np.where(curve.forward[:, 0] != 0, 1.0, np.nan)
 
 
 def direction(vector: Array) -> Array:

@@ -1,4 +1,4 @@
-"""When the tip is in the soil, and when it passes the tray."""
+"""When the tip is in the soil."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.instants import crossings
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.vectors import wrapped
 
 Array = np.ndarray[Any, Any]
 
@@ -71,7 +71,7 @@ def _deepest(
     inside = inside[inside < high]
     heights = curve.height(inside[None])[0]
     k = int(np.argmin(heights))
-    return float(np.mod(inside[k], curve.period)), float(level - heights[k])
+    return float(wrapped(curve, inside[k])), float(level - heights[k])
 
 
 def _check_reach(curve: TipCurve, level: float) -> None:
@@ -98,27 +98,3 @@ def _check_reach(curve: TipCurve, level: float) -> None:
 
 def _mm(metres: float) -> str:
     return f"{1e3 * metres:.4g} mm"
-
-
-def tray_crossings(curve: TipCurve) -> tuple[float, ...]:
-    """Crank angles within one cycle at which the tip passes the edge of the tray, rising."""
-    if curve.planting.tray is None:
-        return ()
-    start, stop = (complex(*point) for point in curve.planting.tray)
-
-    def beside(theta: Array) -> Any:
-        distance: Array = kernels.cross(stop - start, curve.at(theta).place - start)
-        return distance
-
-    def slope(theta: Array) -> Any:
-        rate: Array = kernels.cross(stop - start, curve.at(theta).place_1)
-        return rate
-
-    ends = np.append(curve.theta, curve.period)
-    nodes = np.unique(np.concatenate([ends, crossings(slope, ends)]))
-    angles = crossings(beside, nodes)
-    if not angles.size:
-        return ()
-    along = kernels.dot(stop - start, curve.at(angles[None]).place[0] - start)
-    on_edge = (along >= 0) & (along <= abs(stop - start) ** 2)
-    return tuple(float(angle) for angle in angles[on_edge])
