@@ -95,3 +95,11 @@ def example_text(name: str) -> str:
 def example(name: str) -> dict[str, Any]:
     """Return the content of a bundled model file."""
     return tomllib.loads(example_text(name))
+
+
+def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
+    """Mechanism A of Kim and Chung as a file here, with one piece of text replaced."""
+    text = example_text("kim-chung-a")
+    assert old in text
+    Path(name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
+    return Path(name)

@@ -15,7 +15,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.planting.summary import plant
-from surface.running import equipoise, example_text, process, succeeded
+from surface.running import equipoise, example_text, model, process, succeeded
 from unit.planting.build import planetary, spinner, twice
 
 EXAMPLES = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -27,14 +27,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Every test runs in an empty folder of its own."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
-    """Mechanism A as a file, with one piece of text replaced."""
-    text = example_text("kim-chung-a")
-    assert old in text
-    Path(name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
-    return Path(name)
 
 
 def cells(text: str, label: str) -> list[str]:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from surface.running import equipoise, example_text, refused, succeeded
+from surface.running import equipoise, model, refused, succeeded
 
 
 @pytest.fixture(autouse=True)
@@ -14,14 +14,6 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Every test runs in an empty folder of its own."""
     monkeypatch.chdir(tmp_path)
     return tmp_path
-
-
-def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
-    """Mechanism A as a file, with one piece of text replaced."""
-    text = example_text("kim-chung-a")
-    assert old in text
-    Path(name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
-    return Path(name)
 
 
 REFUSED = {
