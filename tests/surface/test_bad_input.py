@@ -172,6 +172,41 @@ def test_bad_loads(text: str, place: str, said: str) -> None:
     assert said in line
 
 
+SUPPORT = """
+[support]
+mass = "60 kg"
+center_of_mass = ["0 mm", "300 mm"]
+inertia = "4 kg m^2"
+"""
+MOUNT = '[support.mounts.front]\npoint = ["0 mm", "0 mm"]\n'
+MOTOR = "[drive.motor]\n"
+SUPPORTS = {
+    "freedom": (f'{SUPPORT}freedoms = ["pich"]', "support.freedoms[1]", "got 'pich'; give 'surge'"),
+    "no place": (f'{SUPPORT}[support.mounts.front]\nstiffness = "1 kN/m"', "support.mounts.front",
+                 "give either point or axis"),
+    "wrong kind": (f'{SUPPORT}{MOUNT}torsional_stiffness = "1 N m/rad"',
+                   "support.mounts.front.torsional_stiffness", "has no place beside a point"),
+    "unknown key": (f'{SUPPORT}{MOUNT}stifness = "1 kN/m"', "support.mounts.front.stifness",
+                    "did you mean 'stiffness'?"),
+    "space": (f'{SUPPORT}freedoms = ["roll"]', "support.inertia", "give three, about x, y and z"),
+    "row": ("[[rows]]\n[[rows]]\nphase = 90", "rows[2].phase", "got the bare number 90"),
+    "rows": ("[[rows]]\n" * 201, "rows", "got 201; at most 200 are used"),
+    "half a motor": (f'{MOTOR}stall_torque = "1 N m"', "drive.motor", "give either no_load_speed"),
+    "missing table": (f'{MOTOR}table = "no.csv"', "drive.motor.table", "there is no such file"),
+    "bad table": (f'{MOTOR}table = "bad.csv"', "drive.motor.table", "bad.csv, line 1, column"),
+    "falling speeds": (f'{MOTOR}table = "row.csv"', "drive.motor.table", "row.csv, line 3, column"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "place", "said"), SUPPORTS.values(), ids=SUPPORTS)
+def test_bad_supports(text: str, place: str, said: str) -> None:
+    Path("bad.csv").write_text("speed,torque\n0,1\n")
+    Path("row.csv").write_text("speed [rpm],torque [N m]\n10,1\n0,2\n")
+    line = complaint(f"{example_text(FOUR_BAR)}\n{text}\n")
+    assert line.startswith(f"{place}: ")
+    assert said in line
+
+
 # -- the text of a model file ----------------------------------------------------------------------
 
 TEXTS = {

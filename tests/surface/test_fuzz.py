@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import tomllib
 from collections.abc import Callable, Iterator
 from copy import deepcopy
 from datetime import date
@@ -19,6 +20,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from surface.running import EXAMPLES, Result, equipoise, example, example_text, refused
+from unit.io.samples import ROWS, SUPPORT
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
 Draw = Callable[..., Any]
@@ -75,7 +77,7 @@ def try_bytes(content: bytes, words: tuple[str, ...]) -> None:
 # -- junk ------------------------------------------------------------------------------------------
 
 UNITS = ("mm", "m", "km", "deg", "rad", "g", "kg", "kg mm^2", "kg m^2", "rpm", "rad/s", "N", "N m",
-         "rad/s^2", "m/s^2", "Hz", "mm mm", "", "µm", "%")  # fmt: skip
+         "N/m", "N s/m", "N m/rad", "rad/s^2", "m/s^2", "Hz", "mm mm", "", "µm", "%")  # fmt: skip
 NUMBERS = ("0", "-0", "1", "-1", "90", "180", "360", "1e-29", "1e-31", "1e-15", "1e15", "-1e20",
            "1e29", "1e31", "1e999", "nan", "-inf", "1,5", "0x1", "1_0", "٣", ".5", "")  # fmt: skip
 WORDS = ("", " ", "frame", "crank", "A", "a.b", "links[1]", "[bold]", "[/]", "[/bold]", "{0}",
@@ -140,9 +142,16 @@ def mutate(draw: Draw, document: Document) -> None:
             table.append(draw(junk)) if isinstance(table, list) else None
 
 
+CARRIED = tomllib.loads(SUPPORT + ROWS)
+MOTOR = {"no_load_speed": "3000 rpm", "stall_torque": "2 N m", "ratio": 12.5}
+
+
 @st.composite
 def mutated(draw: Draw) -> Document:
     document = deepcopy(example(draw(st.sampled_from(EXAMPLES))))
+    if draw(st.booleans()):
+        document |= deepcopy(CARRIED)
+        document["drive"] |= {"flywheel": "2 kg cm^2", "motor": dict(MOTOR)}
     for _ in range(draw(st.integers(1, 3))):
         mutate(draw, document)
     return document

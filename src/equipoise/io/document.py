@@ -6,8 +6,7 @@ to import, so nothing imports this module before a file is read.
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Annotated, Any, Literal, Protocol, TypeVar
+from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
@@ -15,38 +14,27 @@ from pydantic_core import core_schema
 
 from equipoise.errors import ModelError
 from equipoise.io import SCHEMA_VERSION
+from equipoise.io.beside import Beside, table_at
+from equipoise.io.document_motor import Motor
+from equipoise.io.document_planting import Planting
+from equipoise.io.document_support import Row, Support
 from equipoise.io.fields import (
     PAIR,
     Acceleration,
     Angle,
     AngularAcceleration,
     AngularSpeed,
-    Damping,
-    DampingPerLength,
     Force,
     Inertia,
-    Length,
     Mass,
     Point,
-    Speed,
-    Stiffness,
     Table,
     Torque,
     vector,
     vectors,
 )
-from equipoise.mechanism import field, model
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.model import LoadTable, Machine
-
-
-class Reader(Protocol):
-    """Reads the tables that a model file names."""
-
-    def load(self, file: str) -> LoadTable: ...
-
-    def soil(self, file: str) -> SoilTable: ...
-
+from equipoise.mechanism import model
+from equipoise.mechanism.model import Machine
 
 # -- tables ----------------------------------------------------------------------------------------
 
@@ -61,6 +49,17 @@ class Drive(Table):
         description="of the driven link, at every crank angle",
         json_schema_extra={"default": "0 rad/s^2"},
     )
+    flywheel: Inertia = Field(
+        0.0,
+        description="moment of inertia of what turns with the driven link beside it",
+        json_schema_extra={"default": "0 kg m^2"},
+    )
+    motor: Motor | None = None
+
+    def to_drive(self, reader: Beside) -> model.Drive:
+        given = dict(self)
+        given["motor"] = None if self.motor is None else self.motor.to_motor(reader)
+        return model.Drive(**given)
 
 
 class Frame(Table):
@@ -203,108 +202,11 @@ class Load(Table):
     start: Angle | None = Field(None, alias="from", description="crank angle at which it begins")
     stop: Angle | None = Field(None, alias="to", description="crank angle at which it ends")
 
-    def to_load(self, where: str, reader: Reader) -> model.Load:
-        table = _table(self.table, f"{where}.table", reader.load)
+    def to_load(self, where: str, reader: Beside) -> model.Load:
+        table = table_at(f"{where}.table", self.table, reader.load)
         return model.Load(
             self.link, self.point, self.force, self.torque, self.start, self.stop, table
         )
-
-
-class Soil(Table):
-    """What the soil does to the tip below its surface: a force against its motion over ground."""
-
-    resistance: Force = Field(
-        0.0, description="constant part of the force", json_schema_extra={"default": "0 N"}
-    )
-    per_depth: Stiffness = Field(
-        0.0, description="force for each unit of depth", json_schema_extra={"default": "0 N/m"}
-    )
-    per_speed: Damping = Field(
-        0.0,
-        description="force for each unit of the tip's speed over ground",
-        json_schema_extra={"default": "0 N s/m"},
-    )
-    per_depth_and_speed: DampingPerLength = Field(
-        0.0,
-        description="force for each unit of depth times speed",
-        json_schema_extra={"default": "0 N s/m^2"},
-    )
-    table: str | None = Field(
-        None,
-        description="CSV file beside this one: depth [mm],resistance [N]",
-        examples=["soil.csv"],
-    )
-
-    def to_soil(self, reader: Reader) -> field.Soil:
-        table = _table(self.table, "planting.soil.table", reader.soil)
-        parts = (self.resistance, self.per_depth, self.per_speed, self.per_depth_and_speed)
-        return field.Soil(*parts, table)
-
-
-class Planting(Table):
-    """The planting finger and the field it works in; needed by `equipoise plant`."""
-
-    model_config = ConfigDict(
-        json_schema_extra={
-            "allOf": [
-                {"oneOf": [{"required": [one]}, {"required": [other]}]}
-                for one, other in (("forward_speed", "hill_spacing"), ("depth", "surface"))
-            ]
-        }
-    )
-
-    tip: str = Field(description="point of a link that goes into the soil", examples=["P"])
-    forward_speed: Speed | None = Field(
-        None, description="of the machine over ground", examples=["0.6 m/s"]
-    )
-    hill_spacing: Length | None = Field(
-        None, description="of hills along a row, instead of forward_speed", examples=["15 cm"]
-    )
-    units_per_turn: Annotated[int, Field(ge=1, le=1_000_000)] = Field(
-        1, description="hills planted in a row in one turn of the drive"
-    )
-    travel: Literal["forward", "backward"] = Field(
-        "forward", description="whether the machine drives along x or against it"
-    )
-    depth: Length | None = Field(
-        None, description="of the lowest point below the surface", examples=["4 cm"]
-    )
-    surface: Length | None = Field(
-        None, description="height of the soil's surface in the frame, instead of depth"
-    )
-    finger_from: str | None = Field(
-        None, description="point of the tip's link from which the finger points to the tip"
-    )
-    release: Angle | None = Field(
-        None,
-        description="crank angle at which the seedling is let go; the lowest point if left out",
-    )
-    tray: Annotated[tuple[Point, Point], PAIR] | None = Field(
-        None, description="both ends of the edge of the seedling tray, in the frame"
-    )
-    acceleration_limit: Acceleration | None = Field(
-        None, description="largest acceleration of the tip that is wanted"
-    )
-    soil_acceleration_limit: Acceleration | None = Field(
-        None, description="the same while the tip is in the soil"
-    )
-    soil: Soil | None = None
-
-    def to_planting(self, reader: Reader) -> field.Planting:
-        given = dict(self)
-        given["tray"] = None if self.tray is None else tuple(vector(end) for end in self.tray)
-        given["soil"] = None if self.soil is None else self.soil.to_soil(reader)
-        return field.Planting(**given)
-
-
-Value = TypeVar("Value")
-
-
-def _table(file: str | None, where: str, read: Callable[[str], Value]) -> Value | None:
-    try:
-        return None if file is None else read(file)
-    except ModelError as error:
-        raise ModelError(where, error.what) from error
 
 
 class Position(Table):
@@ -344,15 +246,18 @@ class Document(Table):
     loads: list[Load] = Field([], description="forces and torques from outside")
     position: Position | None = None
     planting: Planting | None = None
+    support: Support | None = None
+    rows: list[Row] = Field(
+        [], description="equal linkages on one shaft; the one of this file if left out"
+    )
 
-    def to_machine(self, reader: Reader) -> Machine:
+    def to_machine(self, reader: Beside) -> Machine:
         """Return the machine; `reader` gets its tables by their files' names."""
-        drive = self.drive
         return Machine(
             title=self.title,
             description=self.description,
             gravity=self.gravity,
-            drive=model.Drive(drive.link, drive.speed, drive.acceleration),
+            drive=self.drive.to_drive(reader),
             frame=vectors(self.frame.points),
             links={name: link.to_link() for name, link in self.links.items()},
             assembly=dict(self.assembly),
@@ -363,6 +268,8 @@ class Document(Table):
             ),
             position=None if self.position is None else self.position.to_position(),
             planting=None if self.planting is None else self.planting.to_planting(reader),
+            support=None if self.support is None else self.support.to_support(),
+            rows=tuple(row.to_row() for row in self.rows),
         )
 
 

@@ -78,6 +78,15 @@ DampingPerLength = TypeAliasType(
     Annotated[float, _reader("damping per length"), _json("damping per length")],
 )
 
+TorsionalStiffness = TypeAliasType(
+    "TorsionalStiffness",
+    Annotated[float, _reader("torsional stiffness"), _json("torsional stiffness")],
+)
+TorsionalDamping = TypeAliasType(
+    "TorsionalDamping",
+    Annotated[float, _reader("torsional damping"), _json("torsional damping")],
+)
+
 # TOML knows lists only, which a strict tuple would refuse; what is in them stays strict.
 PAIR = Field(strict=False)
 
@@ -123,7 +132,8 @@ def _example(key: str, field: FieldInfo) -> str:
     return f"{key} = {quoted(example)}"
 
 
-LIST_TAG, TABLE_TAG = "<list>", "<table>"
+LIST_TAG, TABLE_TAG, TEXT_TAG = TAGS = ("<list>", "<table>", "<text>")
+"""Forms in which one thing can be given."""
 
 
 def _form(point: Any) -> str | None:

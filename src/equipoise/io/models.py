@@ -18,11 +18,12 @@ from equipoise.io import SCHEMA_VERSION
 from equipoise.io.files import LARGEST, FileError, printable, read_text, write_text
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine, unknown
+from equipoise.mechanism.motor import MotorTable
 
 __all__ = ["dumps", "examples", "json_schema", "load", "loads", "save"]
 
 # tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
-# minute for forty thousand.  No key of a model file has more than four.
+# minute for forty thousand.  No key of a model file has more than five.
 _ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
 
 
@@ -71,7 +72,7 @@ def loads(
     ----------
     text : TOML.
     source : name for it in errors.
-    folder : where its load tables are; without it they are refused.
+    folder : where its tables are; without it they are refused.
 
     Raises
     ------
@@ -87,7 +88,7 @@ def loads(
 def dumps(machine: Machine) -> str:
     """Write a machine as the text of a model file; `loads` of it gives an equal machine.
 
-    Tables of loads and soil are named, not written: `save` writes them too.
+    Tables of loads, soil and motor are named, not written: `save` writes them too.
 
     Raises
     ------
@@ -104,18 +105,18 @@ def dumps(machine: Machine) -> str:
 
 
 def save(machine: Machine, path: str | os.PathLike[str]) -> None:
-    """Write a machine as a model file, and its tables of loads and soil as CSV files beside it.
+    """Write a machine as a model file, and its tables as CSV files beside it.
 
-    They are called ``<stem>.load-<n>.csv`` and ``<stem>.soil.csv``.  Each file is afterwards either
-    the old or the new one, never half of it; the model file comes last, so that it never names a
-    table that is not there.
+    Those of loads, soil and motor are called ``<stem>.load-<n>.csv``, ``<stem>.soil.csv`` and
+    ``<stem>.motor.csv``.  Each file is afterwards either the old or the new one, never half of it;
+    the model file comes last, so that it never names a table that is not there.
 
     Raises
     ------
     UsageError
         The file cannot be written; says why.
     """
-    from equipoise.io.tables import format_load, format_soil
+    from equipoise.io.tables import format_table
     from equipoise.io.writing import document_of, toml_text
 
     path = Path(path)
@@ -123,8 +124,7 @@ def save(machine: Machine, path: str | os.PathLike[str]) -> None:
     names = _names(machine, path)
     text = toml_text(document_of(machine, names))
     for where, table in tables.items():
-        write = format_load(table) if isinstance(table, LoadTable) else format_soil(table)
-        _write(path.with_name(names[where]), write)
+        _write(path.with_name(names[where]), format_table(table))
     _write(path, text)
 
 
@@ -138,9 +138,9 @@ def _names(machine: Machine, path: Path) -> dict[str, str]:
     return {where: f"{path.stem}.{_part_of_name(where)}.csv" for where in tables_of(machine)}
 
 
-def tables_of(machine: Machine) -> dict[str, LoadTable | SoilTable]:
+def tables_of(machine: Machine) -> dict[str, LoadTable | SoilTable | MotorTable]:
     """Tables of a machine by the key that names them."""
-    tables: dict[str, LoadTable | SoilTable] = {
+    tables: dict[str, LoadTable | SoilTable | MotorTable] = {
         f"loads[{number}].table": load.table
         for number, load in enumerate(machine.loads, 1)
         if load.table is not None
@@ -148,12 +148,15 @@ def tables_of(machine: Machine) -> dict[str, LoadTable | SoilTable]:
     planting = machine.planting
     if planting is not None and planting.soil is not None and planting.soil.table is not None:
         tables["planting.soil.table"] = planting.soil.table
+    motor = machine.drive.motor
+    if motor is not None and motor.table is not None:
+        tables["drive.motor.table"] = motor.table
     return tables
 
 
 def _part_of_name(where: str) -> str:
     number = re.search("[0-9]+", where)
-    return f"load-{number[0]}" if number else "soil"
+    return f"load-{number[0]}" if number else where.split(".")[1]
 
 
 def examples() -> dict[str, str]:
@@ -179,6 +182,7 @@ def _machine(text: str, folder: Path | None) -> Machine:
 
     from pydantic import ValidationError
 
+    from equipoise.io.beside import Beside
     from equipoise.io.document import Document
     from equipoise.io.problems import translated
 
@@ -186,7 +190,7 @@ def _machine(text: str, folder: Path | None) -> Machine:
         document = Document.model_validate(content)
     except ValidationError as error:
         raise translated(error) from error
-    return document.to_machine(_Beside(folder))
+    return document.to_machine(Beside(folder))
 
 
 def toml_content(text: str) -> dict[str, Any]:
@@ -206,7 +210,7 @@ def _toml(text: str) -> dict[str, Any]:
         raise ModelError("", f"the text is longer than {LARGEST / 1e6:.0f} MB; give a model file")
     if endless := _ENDLESS_KEY.search(text):
         line = text.count("\n", 0, endless.start()) + 1
-        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need four")
+        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need five")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -240,28 +244,6 @@ def _check_version(content: dict[str, Any]) -> None:
         raise ModelError(
             "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
         )
-
-
-class _Beside:
-    """Reads the tables that lie beside a model file."""
-
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
-
-    def load(self, file: str) -> LoadTable:
-        from equipoise.io.tables import read_load
-
-        return read_load(file, self._folder(file))
-
-    def soil(self, file: str) -> SoilTable:
-        from equipoise.io.tables import read_soil
-
-        return read_soil(file, self._folder(file))
-
-    def _folder(self, file: str) -> Path:
-        if self.folder is None:
-            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
-        return self.folder
 
 
 def _bundled() -> dict[str, Traversable]:

@@ -7,7 +7,7 @@ from json import dumps as quoted
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
-from equipoise.io.fields import LIST_TAG, TABLE_TAG
+from equipoise.io.fields import TAGS
 from equipoise.io.unit_problems import described
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ _RIGHT = {
     "int_type": "give a whole number without quotes",
     "int_from_float": "give a whole number",
     "int_parsing_size": "give a whole number of usual size",
+    "bool_type": "give true or false without quotes",
     "float_type": "give a plain number without unit and quotes",
     "finite_number": "give a finite number",
     "greater_than_equal": "give {ge} or more",
@@ -58,7 +59,7 @@ def _sentence(details: ErrorDetails) -> str:
 
 def _place(details: ErrorDetails) -> str:
     """Dotted path with numbers from 1, as the machine's own checks write it."""
-    steps = [step for step in details["loc"] if step not in (LIST_TAG, TABLE_TAG)]
+    steps = [step for step in details["loc"] if step not in TAGS]
     if details["type"] == "missing":
         steps.pop()  # the second of two values: the list itself is meant
     if key := details.get("ctx", {}).get("key"):

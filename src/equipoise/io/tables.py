@@ -1,4 +1,4 @@
-"""Tables of loads and of soil: CSV files with units in the header.
+"""Tables of loads, of soil and of a motor: CSV files with units in the header.
 
 ::
 
@@ -21,6 +21,7 @@ from equipoise.io import units
 from equipoise.io.files import FileError, printable, read_text
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable
+from equipoise.mechanism.motor import MotorTable
 
 COLUMNS: dict[str, units.Dimension] = {
     "crank_angle": "angle",
@@ -29,15 +30,18 @@ COLUMNS: dict[str, units.Dimension] = {
     "torque": "torque",
     "depth": "length",
     "resistance": "force",
+    "speed": "angular speed",
 }
 COLUMN_UNITS = {"crank_angle": "deg", "force_x": "N", "force_y": "N", "torque": "N m"} | {
     "depth": "mm",
     "resistance": "N",
+    "speed": "rpm",
 }
 """Units that a header is shown with."""
 Forms = tuple[tuple[str, ...], ...]
 _LOAD: Forms = (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque"))
 _SOIL: Forms = (("depth", "resistance"),)
+_MOTOR: Forms = (("speed", "torque"),)
 """Columns of each kind of table; the first must rise from row to row."""
 
 
@@ -67,6 +71,12 @@ def read_soil(file: str, folder: Path) -> SoilTable:
     """Read a table of the soil's resistance against depth; as `read_load`."""
     columns = _read(file, folder, _SOIL)
     return SoilTable(columns["depth"], columns["resistance"], file)
+
+
+def read_motor(file: str, folder: Path) -> MotorTable:
+    """Read a table of a motor's torque against its speed; as `read_load`."""
+    columns = _read(file, folder, _MOTOR)
+    return MotorTable(columns["speed"], columns["torque"], file)
 
 
 def parse_load(text: str, file: str = "") -> LoadTable:
@@ -114,14 +124,17 @@ def _columns(text: str, forms: Forms) -> dict[str, tuple[float, ...]]:
     return by_name
 
 
+def format_table(table: LoadTable | SoilTable | MotorTable) -> str:
+    """Write any table as CSV such that reading it gives exactly the same numbers."""
+    if isinstance(table, LoadTable):
+        return format_load(table)
+    return format_soil(table) if isinstance(table, SoilTable) else format_motor(table)
+
+
 def format_load(table: LoadTable) -> str:
     """Write a load table as CSV such that reading it gives exactly the same numbers."""
     names = _LOAD[0] if len(table.values) == 2 else _LOAD[1]
-    degrees = [units.format_exact(angle, "angle").split(" ", 1) for angle in table.crank_angle]
-    if all(unit == "deg" for _, unit in degrees):
-        unit, angles = "deg", [number for number, _ in degrees]
-    else:
-        unit, angles = "rad", [repr(float(angle)) for angle in table.crank_angle]
+    unit, angles = _handy(table.crank_angle, "angle", "deg", "rad")
     unit_of = [unit, *(units.KINDS[COLUMNS[name]].units[0] for name in names[1:])]
     return _csv(names, unit_of, [angles, *(map(repr, column) for column in table.values)])
 
@@ -129,6 +142,22 @@ def format_load(table: LoadTable) -> str:
 def format_soil(table: SoilTable) -> str:
     """Write a table of soil as CSV such that reading it gives exactly the same numbers."""
     return _csv(_SOIL[0], ["m", "N"], [map(repr, table.depth), map(repr, table.resistance)])
+
+
+def format_motor(table: MotorTable) -> str:
+    """Write a table of a motor as CSV such that reading it gives exactly the same numbers."""
+    unit, speeds = _handy(table.speed, "angular speed", "rpm", "rad/s")
+    return _csv(_MOTOR[0], [unit, "N m"], [speeds, map(repr, table.torque)])
+
+
+def _handy(
+    values: Iterable[float], dimension: units.Dimension, usual: str, si: str
+) -> tuple[str, list[str]]:
+    """A unit and the numbers of a column in it: the usual one if it is exact for all of them."""
+    texts = [units.format_exact(value, dimension).split(" ", 1) for value in values]
+    if all(unit == usual for _, unit in texts):
+        return usual, [number for number, _ in texts]
+    return si, [repr(float(value)) for value in values]
 
 
 def _csv(names: Iterable[str], unit_of: Iterable[str], columns: Iterable[Iterable[str]]) -> str:

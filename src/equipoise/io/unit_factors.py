@@ -85,15 +85,27 @@ FACTORS = {
     "N/m": "1",
     "N/mm": "1000",
     "kN/m": "1000",
+    "kgf/m": "9.80665",
+    "kgf/cm": "980.665",
     "kgf/mm": "9806.65",
     "lbf/in": "175.1268352464763779527559055",
     # damping
     "N s/m": "1",
     "N s/mm": "1000",
     "kN s/m": "1000",
+    "kgf s/m": "9.80665",
     # damping per length
     "N s/m^2": "1",
     "kN s/m^2": "1000",
+    # torsional stiffness
+    "N m/rad": "1",
+    "kN m/rad": "1000",
+    "N m/deg": "57.29577951308232087679815481",
+    "kgf m/rad": "9.80665",
+    # torsional damping
+    "N m s/rad": "1",
+    "N m s/deg": "57.29577951308232087679815481",
+    "kgf m s/rad": "9.80665",
     # power
     "W": "1",
     "mW": "0.001",

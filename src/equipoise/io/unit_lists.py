@@ -22,6 +22,8 @@ Dimension = Literal[
     "stiffness",
     "damping",
     "damping per length",
+    "torsional stiffness",
+    "torsional damping",
     "power",
 ]
 
@@ -79,10 +81,23 @@ KINDS: dict[Dimension, Kind] = {
     "speed": _kind("a speed", "m/s, mm/s, cm/s, km/h, ft/s", "m/s, km/h", "0.3 m/s"),
     "frequency": _kind("a frequency", "Hz, kHz", "Hz", "50 Hz"),
     "time": _kind("a time", "s, ms, min, h", "s", "2 s"),
-    "stiffness": _kind("a stiffness", "N/m, N/mm, kN/m, kgf/mm, lbf/in", "N/m", "20 kN/m"),
-    "damping": _kind("a damping coefficient", "N s/m, N s/mm, kN s/m", "N s/m", "300 N s/m"),
+    "stiffness": _kind(
+        "a stiffness", "N/m, N/mm, kN/m, kgf/m, kgf/cm, kgf/mm, lbf/in", "N/m", "20 kN/m"
+    ),
+    "damping": _kind(
+        "a damping coefficient", "N s/m, N s/mm, kN s/m, kgf s/m", "N s/m", "300 N s/m"
+    ),
     "damping per length": _kind(
         "a damping coefficient per length", "N s/m^2, kN s/m^2", "N s/m^2", "300 N s/m^2"
+    ),
+    "torsional stiffness": _kind(
+        "a torsional stiffness", "N m/rad, kN m/rad, N m/deg, kgf m/rad", "N m/rad", "500 N m/rad"
+    ),
+    "torsional damping": _kind(
+        "a torsional damping coefficient",
+        "N m s/rad, N m s/deg, kgf m s/rad",
+        "N m s/rad",
+        "3 N m s/rad",
     ),
     "power": _kind("a power", "W, mW, kW", "W", "40 W"),
 }

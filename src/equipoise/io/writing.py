@@ -7,12 +7,15 @@ from dataclasses import fields
 from typing import Any
 
 from equipoise.io import SCHEMA_VERSION
+from equipoise.io.plain import listed, quantities, unless
 from equipoise.io.points import written
 from equipoise.io.units import Dimension, format_exact
+from equipoise.io.writing_support import motor_table, row_table, support_table
 from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import (
     FRAME,
     STANDARD_GRAVITY,
+    Drive,
     Gear,
     Link,
     Load,
@@ -33,7 +36,7 @@ def document_of(machine: Machine, tables: Mapping[str, str]) -> dict[str, Any]:
     machine : what is to be written.
     tables : name of the CSV file for each key that names one, such as ``loads[1].table``.
     """
-    drive = machine.drive
+    support = machine.support
     loads = [
         _load(load, tables.get(f"loads[{number}].table"))
         for number, load in enumerate(machine.loads, 1)
@@ -42,41 +45,51 @@ def document_of(machine: Machine, tables: Mapping[str, str]) -> dict[str, Any]:
     return {
         "schema": SCHEMA_VERSION,
         "title": machine.title,
-        **_unless(machine.description == "", description=machine.description),
-        **_unless(
-            machine.gravity == STANDARD_GRAVITY, gravity=_pair(machine.gravity, "acceleration")
+        **unless(machine.description == "", description=machine.description),
+        **unless(
+            machine.gravity == STANDARD_GRAVITY, gravity=listed(machine.gravity, "acceleration")
         ),
-        "drive": {
-            "link": drive.link,
-            "speed": format_exact(drive.speed, "angular speed"),
-            **_unless(
-                drive.acceleration == 0,
-                acceleration=format_exact(drive.acceleration, "angular acceleration"),
-            ),
-        },
+        "drive": _drive(machine.drive, tables.get("drive.motor.table")),
         "frame": {"points": _points(machine.frame)},
         "links": {name: _link(link) for name, link in machine.links.items()},
-        **_unless(not machine.assembly, assembly=dict(machine.assembly)),
-        **_unless(not machine.sliders, sliders=[_slider(slider) for slider in machine.sliders]),
-        **_unless(not machine.gears, gears=[_gear(gear) for gear in machine.gears]),
-        **_unless(not loads, loads=loads),
+        **unless(not machine.assembly, assembly=dict(machine.assembly)),
+        **unless(not machine.sliders, sliders=[_slider(slider) for slider in machine.sliders]),
+        **unless(not machine.gears, gears=[_gear(gear) for gear in machine.gears]),
+        **unless(not loads, loads=loads),
         **({} if machine.position is None else {"position": _position(machine.position)}),
         **({} if planting is None else {"planting": _planting(planting, tables)}),
+        **({} if support is None else {"support": support_table(support)}),
+        **unless(not machine.rows, rows=[row_table(row) for row in machine.rows]),
     }
 
 
+BY_NAME = {"links", "support.mounts", "support.gauges"}
+"""Tables that hold nothing but tables with names."""
+HEADED = {"drive.motor", "support.mounts", "support.gauges"}
+"""Tables inside of others that are written below a header of their own."""
+
+
 def toml_text(document: Mapping[str, Any]) -> str:
-    """Write a document as TOML, with one line a key and one table a link or joint."""
+    """Write a document as TOML, with one line a key and one table a link, joint or mount."""
     plain = {key: value for key, value in document.items() if not _is_tables(value)}
     blocks = ["".join(_lines(plain))]
     for key, value in document.items():
-        if key == "links":
-            blocks += [_block(f"[links.{_key(name)}]", link) for name, link in value.items()]
-        elif isinstance(value, dict):
-            blocks.append(_block(f"[{key}]", value))
+        if isinstance(value, dict):
+            blocks += _blocks(key, value)
         elif _is_tables(value):
             blocks += [_block(f"[[{key}]]", item) for item in value]
     return "\n".join(blocks)
+
+
+def _blocks(name: str, table: Mapping[str, Any]) -> Iterable[str]:
+    if name in BY_NAME:
+        for key, item in table.items():
+            yield _block(f"[{name}.{_key(key)}]", item)
+        return
+    within = {key: item for key, item in table.items() if f"{name}.{key}" in HEADED}
+    yield _block(f"[{name}]", {key: item for key, item in table.items() if key not in within})
+    for key, item in within.items():
+        yield from _blocks(f"{name}.{key}", item)
 
 
 def _is_tables(value: Any) -> bool:
@@ -123,25 +136,17 @@ def _key(name: str) -> str:
 # -- the parts of a machine ------------------------------------------------------------------------
 
 
-def _unless(default: bool, **items: Any) -> dict[str, Any]:
-    return {} if default else items
-
-
-def _quantities(table: Any, dimensions: Mapping[str, Dimension]) -> dict[str, str]:
-    """Write those attributes that are neither None nor 0."""
-    return {
-        name: format_exact(value, dimension)
-        for name, dimension in dimensions.items()
-        if (value := getattr(table, name))
-    }
-
-
-def _pair(vector: Vector, dimension: Dimension) -> list[str]:
-    return [format_exact(component, dimension) for component in vector]
-
-
 def _points(points: Mapping[str, Vector]) -> dict[str, Any]:
     return {name: written(point) for name, point in points.items()}
+
+
+def _drive(drive: Drive, table: str | None) -> dict[str, Any]:
+    return {
+        "link": drive.link,
+        "speed": format_exact(drive.speed, "angular speed"),
+        **quantities(drive, {"acceleration": "angular acceleration", "flywheel": "inertia"}),
+        **({} if drive.motor is None else {"motor": motor_table(drive.motor, table)}),
+    }
 
 
 def _link(link: Link) -> dict[str, Any]:
@@ -162,7 +167,7 @@ def _slider(slider: Slider) -> dict[str, Any]:
         "on": slider.on,
         "through": slider.through,
         "direction": format_exact(slider.direction, "angle"),
-        **_quantities(slider, {"angle": "angle"}),
+        **quantities(slider, {"angle": "angle"}),
     }
 
 
@@ -174,9 +179,9 @@ def _gear(gear: Gear) -> dict[str, Any]:
     return {
         "between": [gear.driver, gear.driven],
         **sizes,
-        **_unless(gear.carrier == FRAME, carrier=gear.carrier),
-        **_quantities(gear, {"start": "angle"}),
-        **_unless(
+        **unless(gear.carrier == FRAME, carrier=gear.carrier),
+        **quantities(gear, {"start": "angle"}),
+        **unless(
             gear.pressure_angle == _PRESSURE_ANGLE,
             pressure_angle=format_exact(gear.pressure_angle, "angle"),
         ),
@@ -188,7 +193,7 @@ def _load(load: Load, table: str | None) -> dict[str, Any]:
     if load.point is not None:
         given["point"] = load.point
     if load.force is not None:
-        given["force"] = _pair(load.force, "force")
+        given["force"] = listed(load.force, "force")
     if load.torque is not None:
         given["torque"] = format_exact(load.torque, "torque")
     if load.table is not None:
@@ -202,9 +207,9 @@ def _load(load: Load, table: str | None) -> dict[str, Any]:
 def _position(position: Position) -> dict[str, Any]:
     angles = {name: format_exact(angle, "angle") for name, angle in position.angles.items()}
     return {
-        **_quantities(position, {"crank_angle": "angle"}),
-        **_unless(not position.points, points=_points(position.points)),
-        **_unless(not angles, angles=angles),
+        **quantities(position, {"crank_angle": "angle"}),
+        **unless(not position.points, points=_points(position.points)),
+        **unless(not angles, angles=angles),
     }
 
 
@@ -214,9 +219,9 @@ def _planting(planting: Planting, tables: Mapping[str, str]) -> dict[str, Any]:
     table |= {
         key: format_exact(value, PLANTING[key]) for key, value in given.items() if value is not None
     }
-    table |= _unless(planting.units_per_turn == 1, units_per_turn=planting.units_per_turn)
-    table |= _unless(planting.travel == "forward", travel=planting.travel)
-    table |= _unless(planting.finger_from is None, finger_from=planting.finger_from)
+    table |= unless(planting.units_per_turn == 1, units_per_turn=planting.units_per_turn)
+    table |= unless(planting.travel == "forward", travel=planting.travel)
+    table |= unless(planting.finger_from is None, finger_from=planting.finger_from)
     if planting.tray is not None:
         table["tray"] = [written(end) for end in planting.tray]
     if planting.soil is not None:
@@ -242,4 +247,4 @@ def _soil(soil: Soil, table: str | None) -> dict[str, Any]:
         "per_speed": "damping",
         "per_depth_and_speed": "damping per length",
     }
-    return {**_quantities(soil, dimensions), **_unless(table is None, table=table)}
+    return {**quantities(soil, dimensions), **unless(table is None, table=table)}

@@ -15,8 +15,10 @@ class Frozen:
 
     shapes : field -> what it has to be, with a question mark where it may be None: ``text``,
         ``number``, ``pair`` (of numbers), ``segment`` (two pairs), ``count`` (a whole number),
-        ``counts`` (two of them), ``row`` and ``rows`` of numbers, ``list``; ``pairs``,
-        ``numbers``, ``texts`` and ``values`` are mappings of such.
+        ``counts`` (two of them), ``flag`` (true or false), ``place`` (two or three numbers),
+        ``direction`` (an angle or three numbers), ``row`` and ``rows`` of numbers, ``names`` (a
+        list of texts), ``list``; ``pairs``, ``numbers``, ``texts`` and ``values`` are mappings of
+        such.
     """
 
     shapes: ClassVar[dict[str, str]]
@@ -84,6 +86,36 @@ def _row(value: Any) -> tuple[float, ...]:
     return tuple(map(_number, value))
 
 
+def _flag(value: Any) -> bool:
+    if not isinstance(value, bool):
+        raise TypeError
+    return value
+
+
+def _three(value: Any) -> tuple[float, ...]:
+    if isinstance(value, str | Mapping) or len(row := _row(value)) != 3:
+        raise TypeError
+    return row
+
+
+def _place(value: Any) -> tuple[float, ...]:
+    """A place in space; of two coordinates, in the plane of the drawing."""
+    if isinstance(value, str | Mapping):
+        raise TypeError
+    row = _row(value)
+    return _three((*row, 0.0) if len(row) == 2 else row)
+
+
+def _direction(value: Any) -> float | tuple[float, ...]:
+    return _number(value) if isinstance(value, Real) else _three(value)
+
+
+def _names(value: Any) -> tuple[str, ...]:
+    if isinstance(value, str | Mapping):
+        raise TypeError
+    return tuple(map(_text, value))
+
+
 def _each(read: Callable[[Any], Any]) -> Callable[[Any], Any]:
     def mapping(value: Any) -> Mapping[str, Any]:
         if not isinstance(value, Mapping):
@@ -109,12 +141,16 @@ SHAPES: dict[str, tuple[Callable[[Any], Any], str]] = {
     "segment": (_two(_pair), "two points of two numbers each"),
     "count": (_count, f"a whole number of at most {MOST_TEETH}"),
     "counts": (_two(_count), f"two whole numbers of at most {MOST_TEETH}"),
+    "flag": (_flag, "true or false"),
+    "place": (_place, "two or three numbers"),
+    "direction": (_direction, "an angle, or three numbers"),
     "row": (_row, "numbers"),
+    "names": (_names, "a list of texts"),
     "rows": (lambda value: tuple(map(_row, value)), "rows of numbers"),
     "list": (lambda value: tuple(map(_frozen, value)), "a list of such objects"),
     "pairs": (_each(_pair), "a mapping of names to two numbers"),
     "numbers": (_each(_number), "a mapping of names to numbers"),
     "texts": (_each(_text), "a mapping of names to text"),
-    "values": (_each(_frozen), "a mapping of names to links"),
+    "values": (_each(_frozen), "a mapping of names to such objects"),
 }
 """How a value is read, and what to say it has to be."""

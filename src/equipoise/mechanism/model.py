@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import chain
@@ -17,6 +17,8 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.checks import FRAME, HUGE, problems, unknown
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.frozen import Frozen
+from equipoise.mechanism.motor import Motor, wrong_motor
+from equipoise.mechanism.support import Row, Support, wrong_support
 
 __all__ = [
     "FRAME",
@@ -75,13 +77,20 @@ class Drive(Frozen):
     """The link that is driven, at `speed` (rad/s, positive counterclockwise).
 
     acceleration : rad/s2, of the drive link at every crank angle that is analysed.
+    flywheel : moment of inertia of what turns with the drive link beside it, kg m2.
+    motor : what drives it, where the speed is not to be taken as constant.
     """
 
-    shapes: ClassVar[dict[str, str]] = {"link": "text", "speed": "number", "acceleration": "number"}
+    shapes: ClassVar[dict[str, str]] = {
+        "link": "text",
+        **dict.fromkeys(("speed", "acceleration", "flywheel"), "number"),
+    }
 
     link: str
     speed: float
     acceleration: float = 0.0
+    flywheel: float = 0.0
+    motor: Motor | None = None
 
 
 @dataclass(frozen=True)
@@ -235,6 +244,8 @@ class Machine(Frozen):
     gravity : (x, y) in m/s2.
     position : rough position, needed only where dyads do not suffice.
     planting : what a planting finger does in the field, where it is one.
+    support : the body that carries the linkage, where the frame does not stand still.
+    rows : the linkages on it; one, as the file has it, where there are none.
     """
 
     shapes: ClassVar[dict[str, str]] = {
@@ -242,7 +253,7 @@ class Machine(Frozen):
         "frame": "pairs",
         "links": "values",
         "assembly": "texts",
-        **dict.fromkeys(("sliders", "gears", "loads"), "list"),
+        **dict.fromkeys(("sliders", "gears", "loads", "rows"), "list"),
         "gravity": "pair",
         "description": "text",
     }
@@ -259,10 +270,14 @@ class Machine(Frozen):
     position: Position | None = None
     description: str = ""
     planting: Planting | None = None
+    support: Support | None = None
+    rows: tuple[Row, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in chain(problems(self), wrong_planting(self)):
+        for problem in chain(
+            problems(self), wrong_planting(self), wrong_motor(self), wrong_support(self)
+        ):
             raise problem
 
     def with_link(self, name: str, **changes: Any) -> Machine:
@@ -275,7 +290,7 @@ class Machine(Frozen):
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
-        return self._same_motion(changed, set(changes) <= {"speed", "acceleration"})
+        return self._same_motion(changed, "link" not in changes)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""
@@ -283,6 +298,15 @@ class Machine(Frozen):
             Planting(**changes) if self.planting is None else replace(self.planting, **changes)
         )
         return self._same_motion(replace(self, planting=planting), True)
+
+    def with_support(self, **changes: Any) -> Machine:
+        """Return the machine with values of its support changed, or given for the first time."""
+        support = Support(**changes) if self.support is None else replace(self.support, **changes)
+        return self._same_motion(replace(self, support=support), True)
+
+    def with_rows(self, rows: Iterable[Row]) -> Machine:
+        """Return the machine with other rows of linkages."""
+        return self._same_motion(replace(self, rows=tuple(rows)), True)
 
     def _same_motion(self, changed: Machine, same: bool) -> Machine:
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""

@@ -31,10 +31,51 @@ points.C = ["80 mm", "0 mm"]
 C = "left"
 """
 
+SUPPORT = """
+[support]
+mass = "60 kg"
+center_of_mass = ["10 mm", "0.3 m"]
+inertia = "4 kg m^2"
+freedoms = ["heave", "pitch"]
+
+[support.mounts.front]
+point = ["400 mm", "-200 mm"]
+stiffness = "50 kN/m"
+damping = "400 N s/m"
+
+[support.mounts.float]
+point = ["-400 mm", "-20 cm", "30 mm"]
+direction = [0.5, 2, 0]
+stiffness = "1 kgf/mm"
+preload = "90 N"
+one_sided = true
+
+[support.mounts.hitch]
+axis = "pitch"
+torsional_stiffness = "500 N m/rad"
+torsional_damping = "3 N m s/rad"
+torsional_preload = "-20 N m"
+
+[support.gauges.handle]
+point = { distance = "1 m", direction = "135 deg" }
+direction = "-30 deg"
+
+[support.gauges.nod]
+axis = "pitch"
+"""
+ROWS = """
+[[rows]]
+lateral = "-15 cm"
+
+[[rows]]
+phase = "180 deg"
+lateral = "150 mm"
+offset = ["20 mm", "-5 mm"]
+"""
 EVERYTHING = (
     FOUR_BAR.replace(
         '"Four-bar"\n', '"All"\ndescription = "x"\ngravity = ["1 gn", "0 m/s^2"]\n'
-    ).replace('"193 rpm"\n', '"193 rpm"\nacceleration = "2 rad/s^2"\n')
+    ).replace('"193 rpm"\n', '"193 rpm"\nacceleration = "2 rad/s^2"\nflywheel = "2 kg cm^2"\n')
     + """
 [links.piston]
 points.C = ["0 mm", "0 mm"]
@@ -77,5 +118,14 @@ torque = "1.5 N m"
 crank_angle = "30 deg"
 points.B = ["1 mm", "2 mm"]
 angles.coupler = "12 deg"
+
+[drive.motor]
+no_load_speed = "3000 rpm"
+stall_torque = "2 N m"
+ratio = 12.5
+inertia = "80 g cm^2"
+mean_speed = "free"
 """
+    + SUPPORT
+    + ROWS
 )

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 from equipoise.errors import ModelError, UsageError
 from equipoise.io import dumps, examples, load, loads, save
 from equipoise.mechanism.model import Drive, Link, Load, LoadTable, Machine, Position
+from equipoise.mechanism.support import UP
 from unit.io.samples import EVERYTHING, FOUR_BAR
 
 size = st.floats(1e-25, 1e25)
@@ -57,7 +58,10 @@ def test_a_file_is_written_as_people_write_it() -> None:
 @given(st.data())
 def test_random_edits_survive(data: st.DataObject) -> None:
     def draw(old: float) -> float:
-        # Only the sign is kept: a mass stays one, and a pressure angle below a right angle.
+        # The sign is kept: a mass stays one, and a pressure angle below a right angle.  What
+        # also stands for a value that has no place there is kept: 0, and up as a direction.
+        if old in (0, UP):
+            return old
         new = data.draw(st.floats(1e-25, 1.5) | st.floats(1e-3, 1.5))
         return new if old > 0 else -new
 
