@@ -7,11 +7,17 @@ b_n = -Im Y_n multiplies sin n theta; Y_0 is the mean.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import pi, sqrt
 from typing import Any
 
 import numpy as np
 
+from equipoise.errors import UsageError
+
 Array = np.ndarray[Any, Any]
+
+LEAST_SAMPLES, SAMPLES_PER_ORDER, NEWTON_ROUNDS = 720, 8, 4
+"""Samples in a turn among which the highest is looked for; steps from there to the top."""
 
 
 @dataclass(frozen=True)
@@ -69,3 +75,149 @@ def synthesis(amplitudes: Array, theta: Array) -> Array:
     """Values at angles theta (M,), rad, of complex amplitudes Y_0 ... Y_n; shape (..., M)."""
     orders = np.arange(amplitudes.shape[-1])
     return (amplitudes @ np.exp(1j * np.outer(orders, theta))).real
+
+
+@dataclass(frozen=True, eq=False)
+class Periodic:
+    """A periodic signal of the crank angle by its orders; one, or an array of them.
+
+    amplitudes : complex (..., K + 1), Y_0 ... Y_K; Y_k belongs to order k / turns.
+    turns : of the crank in one period.
+    """
+
+    amplitudes: Array
+    turns: int = 1
+
+    @classmethod
+    def of(cls, samples: Array, turns: int = 1, scale: float = 1e-14) -> Periodic:
+        """From samples (..., N), equally spaced from 0 over one period.
+
+        Orders above the last that exceeds `scale` times the largest are rounding, and left out; so
+        is order N / 2, whose phase N samples cannot tell.
+        """
+        found = harmonics(samples, (np.shape(samples)[-1] - 1) // 2)
+        sizes = np.max(np.abs(found), axis=tuple(range(found.ndim - 1)), initial=0.0)
+        above = np.flatnonzero(sizes > scale * np.max(sizes))
+        return cls(found[..., : (int(above[-1]) if above.size else 0) + 1], turns)
+
+    @property
+    def orders(self) -> Array:
+        """Order of each amplitude: events in one turn of the crank."""
+        return np.arange(self.amplitudes.shape[-1]) / self.turns
+
+    @property
+    def period(self) -> float:
+        """Crank angle of one period, rad."""
+        return 2 * pi * self.turns
+
+    def values(self, theta: Array) -> Array:
+        """Values (..., M) at crank angles (M,), rad."""
+        return synthesis(self.amplitudes, np.asarray(theta) / self.turns)
+
+    def samples(self, count: int) -> Array:
+        """Values (..., count), equally spaced from 0 over one period."""
+        half = self.amplitudes / 2
+        half[..., 0] *= 2
+        most = (count - 1) // 2
+        if half.shape[-1] > most + 1:  # more orders than the samples can hold apart
+            return self.values(np.arange(count) * (self.period / count))
+        return np.fft.irfft(half, count, axis=-1) * count
+
+    def shifted(self, phase: float) -> Periodic:
+        """The signal y(theta + phase), which is ahead by the phase, rad."""
+        return Periodic(self.amplitudes * np.exp(1j * self.orders * phase), self.turns)
+
+    def derivative(self, times: int = 1) -> Periodic:
+        """Derivative by crank angle, of which negative `times` integrate (and leave no mean)."""
+        factor = np.ones(len(self.orders), complex)
+        factor[1:] = (1j * self.orders[1:]) ** times
+        factor[0] = 1.0 if times == 0 else 0.0
+        return Periodic(self.amplitudes * factor, self.turns)
+
+    def __add__(self, other: Periodic) -> Periodic:
+        if self.turns != other.turns:
+            raise UsageError(f"signals of {self.turns} and {other.turns} turns cannot be added")
+        count = max(self.amplitudes.shape[-1], other.amplitudes.shape[-1])
+        return Periodic(self._padded(count) + other._padded(count), self.turns)
+
+    def __mul__(self, factor: float) -> Periodic:
+        return Periodic(self.amplitudes * factor, self.turns)
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Periodic:
+        return self * -1.0
+
+    def __sub__(self, other: Periodic) -> Periodic:
+        return self + -other
+
+    def _padded(self, count: int) -> Array:
+        missing = count - self.amplitudes.shape[-1]
+        widths = [(0, 0)] * (self.amplitudes.ndim - 1) + [(0, missing)]
+        return np.pad(self.amplitudes, widths)
+
+    @property
+    def sizes(self) -> Array:
+        """Amplitude R_n of each order, (..., K + 1)."""
+        return np.abs(self.amplitudes)
+
+    @property
+    def phases(self) -> Array:
+        """Phase of each order as a sine, rad: y = sum R_n sin(n theta + phase_n)."""
+        return np.angle(1j * self.amplitudes)
+
+    @property
+    def mean(self) -> Array:
+        """Mean value, (...)."""
+        return self.amplitudes[..., 0].real
+
+    @property
+    def rms_by_order(self) -> Array:
+        """RMS of each order, (..., K + 1)."""
+        sizes = self.sizes.copy()
+        sizes[..., 1:] /= sqrt(2)
+        return sizes
+
+    @property
+    def rms(self) -> Array:
+        """RMS of the whole signal with its mean, (...)."""
+        total: Array = np.sqrt(np.sum(self.rms_by_order**2, axis=-1))
+        return total
+
+    @property
+    def vibration_rms(self) -> Array:
+        """RMS about the mean, (...)."""
+        about_mean: Array = np.sqrt(np.sum(self.rms_by_order[..., 1:] ** 2, axis=-1))
+        return about_mean
+
+    @property
+    def peak_to_peak(self) -> Array:
+        """Largest minus smallest value, (...), not only at samples."""
+        return self.extreme(1)[0] - self.extreme(-1)[0]
+
+    def extreme(self, sign: int) -> tuple[Array, Array]:
+        """Largest (sign 1) or smallest (-1) value (...) and its crank angle (...), rad.
+
+        The highest of many samples, followed to its top by Newton's method.
+        """
+        count = max(LEAST_SAMPLES * self.turns, SAMPLES_PER_ORDER * self.amplitudes.shape[-1])
+        values = sign * self.samples(count)
+        best = np.argmax(values, axis=-1)
+        step = self.period / count
+        at = best * step
+        slope, curvature = self.derivative(), self.derivative(2)
+        move: Array = np.zeros_like(at)
+        for _ in range(NEWTON_ROUNDS):
+            down, bend = slope._at(at + move), curvature._at(at + move)
+            towards = np.divide(-down, bend, out=np.zeros_like(down), where=bend != 0)
+            move = np.clip(move + towards, -step, step)
+        top = sign * self._at(at + move)
+        sampled = np.take_along_axis(values, best[..., None], axis=-1)[..., 0]
+        better = top > sampled
+        return sign * np.where(better, top, sampled), np.mod(at + better * move, self.period)
+
+    def _at(self, theta: Array) -> Array:
+        """Value of each signal (...) at a crank angle of its own (...)."""
+        turning = np.exp(1j * np.multiply.outer(theta, self.orders))
+        value: Array = np.sum((self.amplitudes * turning).real, axis=-1)
+        return value
