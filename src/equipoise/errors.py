@@ -9,6 +9,7 @@
     │   ├── RangeError      the crank cannot turn fully
     │   └── ChangePointError  the linkage passes a position in which its branch is undecided
     ├── MassError           forces were asked for, but masses are missing
+    ├── ResponseError       the machine on its support, or with its motor, has no steady state
     └── UsageError          an argument of a function or command cannot be used
 """
 
@@ -67,6 +68,10 @@ class ChangePointError(MotionError):
 
 class MassError(EquipoiseError):
     """Forces need mass, centre of mass and inertia of every link."""
+
+
+class ResponseError(EquipoiseError):
+    """The machine on its support, or with its motor, has no steady state that could be found."""
 
 
 class UsageError(EquipoiseError):

@@ -1,0 +1,53 @@
+"""Which model answers, and whether the machine has what it needs."""
+
+from __future__ import annotations
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.model import Machine
+from equipoise.structures.body import MISSING
+from equipoise.structures.excitation import Step
+from equipoise.structures.response import MODELS, Model
+
+
+def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
+    """The model asked for, or the usual one; refused where the machine has no part for it."""
+    if model is not None and model not in MODELS:
+        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+    if drive and machine.drive.motor is None:
+        raise ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
+    if drive and model not in {None, "exact"}:
+        raise UsageError(f"the speed follows from the motor in the model exact, not in {model}")
+    support = machine.support
+    if support is None:
+        if drive:
+            return "exact"
+        raise ModelError("support", MISSING)
+    if not support.planar and (drive or model in {"coupled", "exact"}):
+        others = [name for name in support.coordinates if name in {"sway", "roll", "yaw"}]
+        raise ModelError(
+            "support.freedoms",
+            f"the model {model or 'exact'} is for motion in the plane of the drawing; leave out "
+            f"{' and '.join(others)}, or choose moment",
+        )
+    if model is not None:
+        return model
+    return "exact" if drive else usual_step(machine)
+
+
+def usual_step(machine: Machine, model: str | None = None) -> Step:
+    """The linear step that fits the support, or that goes with a model."""
+    if model is not None and model not in MODELS:
+        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+    if model in {"exact", "moment"}:
+        return "moment"
+    if model == "coupled":
+        return "torque"
+    assert machine.support is not None
+    return "linear" if machine.support.coordinates == ("pitch",) else "moment"
+
+
+def models_of(machine: Machine) -> tuple[Model, ...]:
+    """The models that can answer for a machine's support, from the plainest to the exact one."""
+    if machine.support is None:
+        return ()
+    return MODELS if machine.support.planar else ("linear", "torque", "moment")

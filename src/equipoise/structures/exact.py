@@ -1,0 +1,305 @@
+"""Exact response: the periodic solution of all equations, turned into signals.
+
+Signals are sampled at equal steps of time, so that orders mean what they mean where the crank's
+speed is constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.reactions import Pass
+from equipoise.signals import Periodic
+from equipoise.structures.body import Body
+from equipoise.structures.carried import Ride, joint_forces
+from equipoise.structures.collocation import Conditions
+from equipoise.structures.coupled import Coupled
+from equipoise.structures.following import settled
+from equipoise.structures.linear import Linear, gauges_of
+from equipoise.structures.linkages import Sums, rows_of
+from equipoise.structures.motor import speed_at, torque_on_crank
+from equipoise.structures.readings import PITCH, Reading
+from equipoise.structures.response import (
+    DriveSignals,
+    Energy,
+    GaugeSignals,
+    Joint,
+    MountForce,
+    Response,
+)
+from equipoise.structures.small_motion import force_amplitudes, mount_force
+from equipoise.structures.steady import SAMPLES, Guess, Steady, steady
+
+Array = np.ndarray[Any, Any]
+
+
+def respond_exact(
+    machine: Machine, speed: float, drive: bool, guess: Guess | None = None
+) -> Response:
+    """Response by the exact equations.
+
+    guess : states against the crank's turning to start from; those of the linear response if None.
+    """
+    found = solve_exact(machine, speed, drive, guess)
+    return found.response()
+
+
+def solve_exact(
+    machine: Machine, speed: float, drive: bool, guess: Guess | None = None
+) -> ExactSolution:
+    """The periodic solution itself; see `respond_exact`."""
+    linear = None if machine.support is None else Linear.of(machine, "moment")
+    torque = torque_on_crank(machine.drive) if drive else None
+    if linear is None:
+        assert torque is not None
+        system = Coupled.on_ground(machine, speed, torque)
+    else:
+        system = Coupled.on_support(linear.body, linear.rest, speed, torque)
+    start = guess or (lambda s: _from_linear(system, linear, s))
+    conditions = conditions_of(system)
+    found = steady(system, start, _turns(machine), conditions, _settled(system))
+    return ExactSolution(system, linear, found)
+
+
+def _turns(machine: Machine) -> int:
+    return assemble(machine).cycle.turns
+
+
+def conditions_of(system: Coupled) -> Conditions:
+    """What closes a period: everything comes back, and the mean speed is held where it is."""
+    conditions = Conditions.periodic(system.count)
+    if system.torque is None:
+        return conditions
+    begin, end, value = conditions.begin.copy(), conditions.end.copy(), conditions.value.copy()
+    time, shift = system.count - 2, system.count - 1
+    begin[time], end[time] = 0.0, 0.0
+    begin[time, time] = 1.0  # the time begins at 0
+    begin[shift], end[shift] = 0.0, 0.0
+    motor = system.machine.drive.motor
+    assert motor is not None
+    if motor.mean_speed == "held":
+        end[shift, time] = 1.0
+        value[shift] = 2 * pi * _turns(system.machine) / abs(system.speed)
+    else:
+        begin[shift, shift] = 1.0
+    return Conditions(begin, end, value)
+
+
+def _from_linear(system: Coupled, linear: Linear | None, s: Array) -> Array:
+    """States of the linear response, with the crank's speed constant."""
+    states = []
+    if linear is not None:
+        moved, theta = linear.motion(system.speed), system.sense * s
+        states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
+    if system.torque is None:
+        return np.stack(states)
+    motor = system.machine.drive.motor
+    assert motor is not None
+    mean = np.sign(system.speed) * _mean_torque(system.machine, system.speed) / motor.ratio
+    own = speed_at(motor, mean)
+    speed, shift = system.speed, motor.ratio * abs(system.speed) - own
+    if motor.mean_speed == "free":
+        speed, shift = np.sign(system.speed) * own / motor.ratio, 0.0
+    return np.stack([*states, np.full_like(s, speed), s / abs(speed), np.full_like(s, shift)])
+
+
+def _mean_torque(machine: Machine, speed: float) -> float:
+    found = forces(move(machine, SAMPLES, speed, 0.0))
+    return float(np.mean(found.drive_torque)) * len(rows_of(machine))
+
+
+def _settled(system: Coupled) -> Guess | None:
+    """States that the machine has come to from rest, where the linear response leads nowhere."""
+    if system.torque is not None:
+        return None
+
+    def guess(s: Array) -> Array:
+        return settled(system, s)
+
+    return guess
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSolution:
+    """A periodic solution of the exact equations, read off at equal steps of time."""
+
+    system: Coupled
+    linear: Linear | None
+    found: Steady
+
+    @property
+    def machine(self) -> Machine:
+        return self.system.machine
+
+    @cached_property
+    def turns(self) -> int:
+        return _turns(self.machine)
+
+    @cached_property
+    def turned(self) -> Array:
+        """Angle (N,) by which the crank has turned at equal steps of time, rad."""
+        count = SAMPLES * self.turns
+        s = np.arange(count) * (2 * pi / SAMPLES)
+        if self.system.torque is None:
+            return s
+        time = self.system.count - 2
+        orbit = self.found.orbit
+        wanted = np.arange(count) * (orbit.starts[time, -1] / count)
+        s = np.interp(wanted, orbit.starts[time], orbit.points)
+        for _ in range(8):
+            states = orbit.at(s)
+            s = s - (states[time] - wanted) * np.abs(self.system.crank_speed(states))
+        return np.asarray(s)
+
+    @property
+    def crank_angle(self) -> Array:
+        """(N,) at those instants, rad."""
+        return self.system.sense * self.turned
+
+    @cached_property
+    def states(self) -> Array:
+        """(n, N) at those instants."""
+        return np.asarray(self.found.orbit.at(self.turned))
+
+    @cached_property
+    def sums(self) -> Sums:
+        return self.system.sums(self.crank_angle)
+
+    @cached_property
+    def ride(self) -> Ride:
+        """Motion of support and crank at those instants."""
+        system, states = self.system, self.states
+        place, rate = system.place_and_rate(states)
+        found = system.accelerations(self.sums, states)
+        change = np.zeros_like(place)
+        change[list(system.free)] = found[: len(system.free)]
+        spin_up = np.zeros(len(self.crank_angle)) if system.torque is None else found[-1]
+        speed = system.crank_speed(states)
+        return Ride(place, rate, change, self.crank_angle, speed, spin_up, system.reference)
+
+    @cached_property
+    def passes(self) -> tuple[Pass, ...]:
+        """Joint forces of every row, in the support's axes."""
+        return tuple(
+            joint_forces(self.machine, self.ride, row.phase, complex(*row.offset))
+            for row in rows_of(self.machine)
+        )
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of the crank, rad/s."""
+        if self.system.torque is None:
+            return self.system.speed
+        period = self.found.orbit.starts[self.system.count - 2, -1]
+        return float(self.system.sense * 2 * pi * self.turns / period)
+
+    def signal(self, samples: Array) -> Periodic:
+        """Of samples (N,) at those instants: against the crank angle of a constant mean speed."""
+        backwards = self.system.sense < 0
+        return Periodic.of(np.roll(samples[::-1], 1) if backwards else samples, self.turns)
+
+    def response(self, brief: bool = False) -> Response:
+        """Everything that is told of it; `brief` leaves out the joint forces."""
+        system = self.system
+        count = 2 * len(system.free) + (system.torque is not None)
+        notes = []
+        multipliers = self.found.multipliers(count)
+        if multipliers.size and abs(multipliers[0]) >= 1 - 1e-9:
+            notes.append(
+                "this steady state is not stable: a disturbance does not die out"
+                if abs(multipliers[0]) > 1 + 1e-9
+                else "a disturbance neither grows nor dies out: something is undamped"
+            )
+        return Response(
+            self.machine,
+            "exact",
+            self.speed,
+            self.turns,
+            {} if self.linear is None else self._gauges(self.linear.body),
+            self._mounts(),
+            () if self.linear is None else self.linear.modes,
+            self._drive(),
+            {} if brief else self._joints(),
+            self.found.residual,
+            multipliers,
+            self.energy(),
+            tuple(notes),
+        )
+
+    def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
+        ride = self.ride
+        found = {}
+        for name, gauge in gauges_of(body).items():
+            at = Reading.of(body, gauge)
+            found[name] = GaugeSignals(
+                self.signal(at.displacement(ride.place)),
+                self.signal(at.velocity(ride.place, ride.rate)),
+                self.signal(at.acceleration(ride.place, ride.rate, ride.change)),
+                gauge.axis is not None,
+            )
+        return found
+
+    def _mounts(self) -> Mapping[str, MountForce]:
+        if self.linear is None:
+            return {}
+        exciting = force_amplitudes(self.linear, self.speed)
+        found = {}
+        for contact in self.system.contacts:
+            force = contact.force(self.ride.place, self.ride.rate)
+            hands_on = exciting if contact.at.along is not None else exciting[:0]
+            mount = mount_force(self.signal(force), 0.0, hands_on)
+            if contact.one_sided:
+                mount = replace(mount, lifts_off=float(np.mean(force <= 0)), least=0.0)
+            found[contact.name] = mount
+        return found
+
+    def _drive(self) -> DriveSignals:
+        torque = self.signal(self.system.drive_torque(self.sums, self.states))
+        if self.system.torque is None:
+            return DriveSignals(torque)
+        speed = self.signal(self.system.crank_speed(self.states))
+        return DriveSignals(torque, speed, float(self.states[-1, 0]))
+
+    def _joints(self) -> dict[str, Joint]:
+        """Of the first row, beside the same joints on solid ground at a constant speed."""
+        here = self.passes[0]
+        ground = forces(move(self.machine, SAMPLES, self.speed, 0.0))
+        still = {**ground.joints, **ground.gears}
+        return {
+            name: Joint(float(np.max(joint.size)), float(np.max(still[name].size)))
+            for name, joint in {**here.joints, **here.gears}.items()
+        }
+
+    def energy(self) -> Energy:
+        """Work over a period, by the quadrature of the solution itself."""
+        system, orbit = self.system, self.found.orbit
+        states = orbit.states.reshape(system.count, -1)
+        table = system.sums(system.sense * orbit.nodes.ravel())
+        place, rate = system.place_and_rate(states)
+        speed = system.crank_speed(states)
+        fed = system.drive_torque(table, states) * speed + _work_of_loads(table, place, rate, speed)
+        lost = np.zeros_like(speed)
+        for contact in system.contacts:
+            lost -= contact.force(place, rate) * contact.at.velocity(place, rate)
+        over = [
+            orbit.integral((power / np.abs(speed)).reshape(orbit.nodes.shape))
+            for power in (fed, lost)
+        ]
+        return Energy(*over)
+
+
+def _work_of_loads(table: Sums, place: Array, rate: Array, speed: Array) -> Array:
+    """Power of the loads from outside, W."""
+    force = table.load_force * np.exp(1j * place[PITCH])
+    carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
+    return np.asarray(carried + table.load_torque * speed)

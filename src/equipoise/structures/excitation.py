@@ -1,0 +1,149 @@
+"""What the linkages do to the support, in each of the paper's steps and as a whole.
+
+Steps of Yamashita, Ichikawa and Mori, from the plainest: (59) ``linear``, the shaking force at the
+drive's pivot alone; (57) ``torque``, with the torque that the drive takes from the support;
+``moment``, the whole force and moment of all joints on the frame.  In the first two the linkage's
+mass rides at the drive's pivot, in the third it is spread as it is in the mean over a turn.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.mechanism.dynamics import Forces, forces
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.support import Row
+from equipoise.signals import Periodic
+from equipoise.structures.body import Body, moved, rigid_mass
+from equipoise.structures.linkages import rows_of, spread
+
+Array = np.ndarray[Any, Any]
+Step = Literal["linear", "torque", "moment"]
+STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
+
+ANGLES = 720
+"""Crank angles in a turn from which orders are taken."""
+
+
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """Wrench of all linkages on the support, and where their mass and weight are.
+
+    body : the support.  step : which of the simplifications.
+    """
+
+    body: Body
+    step: Step
+
+    @property
+    def machine(self) -> Machine:
+        return self.body.machine
+
+    @cached_property
+    def motion(self) -> Motion:
+        return move(self.machine, ANGLES, acceleration=0.0)
+
+    @cached_property
+    def pivot(self) -> complex:
+        """The drive's pivot in the frame."""
+        return complex(*self.machine.frame[self.motion.linkage.pivot])
+
+    @cached_property
+    def mass(self) -> Array:
+        """Mass matrix (6, 6) of the linkages."""
+        return np.sum([self._row_mass(row) for row in rows_of(self.machine)], axis=0)  # type: ignore[no-any-return]
+
+    def _row_mass(self, row: Row) -> Array:
+        if self.step == "moment":
+            origin = np.array([*row.offset, row.lateral])
+            return moved(self._spread, origin - self.body.reference)
+        arm = self._pivot_of(row) - self.body.reference
+        return rigid_mass(self._links_mass, arm, np.zeros((3, 3)))
+
+    @cached_property
+    def _spread(self) -> Array:
+        return spread(self.machine, self.motion.crank_angle)
+
+    @cached_property
+    def _links_mass(self) -> float:
+        return sum(link.mass or 0.0 for link in self.machine.links.values())
+
+    def _pivot_of(self, row: Row) -> Array:
+        x, y = row.offset
+        return np.array([self.pivot.real + x, self.pivot.imag + y, row.lateral])
+
+    @cached_property
+    def weights(self) -> list[tuple[Array, Array]]:
+        """Weight (3,), N, and where it acts (3,), m, of the support and of each row."""
+        gravity = np.array([*self.machine.gravity, 0.0])
+        support = self.body.support
+        found = [(support.mass * gravity, np.array(support.center_of_mass))]
+        for row in rows_of(self.machine):
+            place = self._pivot_of(row)
+            if self.step == "moment":
+                center = self._mean_center + complex(*row.offset)
+                place = np.array([center.real, center.imag, row.lateral])
+            found.append((self._links_mass * gravity, place))
+        return found
+
+    @cached_property
+    def _mean_center(self) -> complex:
+        """Mean place of the links' common centre of mass."""
+        if not self._links_mass:
+            return self.pivot
+        sx, sy = self._spread[1, 5], -self._spread[0, 5]
+        return complex(sx, sy) / self._links_mass
+
+    def at(self, speed: float) -> Periodic:
+        """Wrench (6, K + 1) about the support's reference point at a speed, rad/s.
+
+        Without the weight itself, which the mounts carry at rest.
+        """
+        total = None
+        for row in rows_of(self.machine):
+            here = self._of_row(speed, row).shifted(row.phase)
+            total = here if total is None else total + here
+        assert total is not None
+        return total
+
+    def _of_row(self, speed: float, row: Row) -> Periodic:
+        force_and_moment = self._on_pivot(speed).amplitudes
+        force = np.zeros((force_and_moment.shape[1], 3), complex)
+        force[:, :2] = force_and_moment[:2].T
+        wrench = self.body.wrench(force, self._pivot_of(row))
+        wrench[:, 5] += force_and_moment[2]
+        return Periodic(wrench.T, self.motion.turns)
+
+    def _on_pivot(self, speed: float) -> Periodic:
+        """Force along x and y, and moment about the pivot, of one linkage; (3, K + 1)."""
+        planting = self.machine.planting
+        if planting is not None and planting.soil is not None:
+            return Periodic.of(self._signals(speed), self.motion.turns)
+        still, moving = self._parts
+        return Periodic(still + speed**2 * moving, self.motion.turns)
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array]:
+        """What does not depend on the speed, and what grows with its square."""
+        still = self._signals(0.0)
+        both = Periodic.of(np.stack([still, self._signals(1.0) - still]), self.motion.turns)
+        return both.amplitudes[0], both.amplitudes[1]
+
+    def _signals(self, speed: float) -> Array:
+        """Force along x and y, and moment about the pivot, (3, N)."""
+        found = forces(self.motion.at(speed), self.pivot)
+        force = found.frame_force.value - found.weight.value
+        return np.stack([force.real, force.imag, self._moment(found)])
+
+    def _moment(self, found: Forces) -> Array:
+        if self.step == "linear":
+            return np.zeros(len(found.motion.crank_angle))
+        if self.step == "torque":
+            return -found.drive_torque
+        varying: Array = found.frame_moment - np.mean(found.weight_moment)
+        return varying

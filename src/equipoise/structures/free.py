@@ -1,0 +1,93 @@
+"""Free vibration of a machine on its support, and the crank speeds that would excite it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast, get_args
+
+import numpy as np
+
+from equipoise.errors import MassError, ModelError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
+from equipoise.structures.body import MISSING
+from equipoise.structures.choice import usual_step
+from equipoise.structures.excitation import Step
+from equipoise.structures.linear import Linear, gauges_of
+from equipoise.structures.modes import Mode
+from equipoise.structures.table import Values, mode_values
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class FreeVibration:
+    """Modes of a machine on its support, standing in the mean of a turn."""
+
+    linear: Linear
+
+    @property
+    def machine(self) -> Machine:
+        return self.linear.body.machine
+
+    @property
+    def modes(self) -> tuple[Mode, ...]:
+        """By frequency."""
+        return self.linear.modes
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        """What the parts of a shape belong to: displacements and rotations of the support."""
+        return self.linear.body.support.coordinates
+
+    @cached_property
+    def gauges(self) -> Mapping[str, Array]:
+        """What each gauge reads of each mode's shape, complex (modes,)."""
+        body = self.linear.body
+        shapes = np.array([mode.shape for mode in self.modes]).reshape(-1, len(body.free))
+        return {n: shapes @ body.row(gauge)[body.free] for n, gauge in gauges_of(body).items()}
+
+    @property
+    def preloads(self) -> Mapping[str, float]:
+        """Force (N) or torque (N m) of each mount at rest."""
+        return self.linear.rest.preload
+
+    def to_dict(self) -> Values:
+        """The machine-readable output, in SI units; shapes as real and imaginary parts."""
+        modes = []
+        for number, mode in enumerate(self.modes):
+            read = {n: [v[number].real, v[number].imag] for n, v in self.gauges.items()}
+            modes.append({**mode_values(mode), "gauges": read})
+        return {
+            "title": self.machine.title,
+            "model": self.linear.excitation.step,
+            "coordinates": list(self.coordinates),
+            "modes": modes,
+            "mass": self.linear.mass,
+            "damping": self.linear.damping,
+            "stiffness": self.linear.stiffness,
+            "preloads": dict(self.preloads),
+        }
+
+
+def vibrate_freely(machine: Machine, model: str | None = None) -> FreeVibration:
+    """Natural frequencies, damping and shapes of a machine on its support.
+
+    Parameters
+    ----------
+    model : ``linear`` or ``torque``, for the linkages' mass at the drive's pivot, or ``moment``,
+        for it spread as in the mean of a turn; what `respond` takes where not given.
+
+    Raises
+    ------
+    ModelError : there is no support, or its mounts do not hold it.
+    MassError, MotionError, UsageError.
+    """
+    if machine.support is None:
+        raise ModelError("support", MISSING)
+    if missing := massless(machine):
+        raise MassError(missing)
+    step = model if model in get_args(Step) else usual_step(machine, model)
+    return FreeVibration(Linear.of(machine, cast(Step, step)))

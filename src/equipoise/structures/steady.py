@@ -1,0 +1,116 @@
+"""Steady state: the periodic solution of a machine's equations, with what it leaves unsolved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError
+from equipoise.structures.collocation import (
+    RULE,
+    Conditions,
+    Orbit,
+    System,
+    solve,
+)
+
+Array = np.ndarray[Any, Any]
+Guess = Callable[[Array], Array]
+
+SAMPLES = 720
+"""In a turn, at which a solution is read off."""
+INTERVALS = 36
+"""In a turn, to begin with."""
+MOST_INTERVALS = 4000
+FINE = 1e-11
+"""Residual of an interval at which it is left as it is."""
+ROUNDS = 14
+"""Of refinement: where a contact opens or a load sets in, intervals are cut in four."""
+LOOSE = 1e-6
+"""Change of the solution above which Newton's method has not found one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steady:
+    """A periodic solution against crank angle.
+
+    residual : of the worst interval, the share by which the equations are not met between nodes,
+        times the interval's share of the period.
+    """
+
+    orbit: Orbit
+    residual: float
+
+    def multipliers(self, count: int) -> Array:
+        """Floquet multipliers (count,) of the first `count` states: by what a disturbance has
+        grown after one period; the largest first.
+        """
+        values = np.linalg.eigvals(self.orbit.monodromy[:count, :count])
+        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+
+def steady(
+    system: System, guess: Guess, turns: int, conditions: Conditions, settle: Guess | None = None
+) -> Steady:
+    """Find the periodic solution on a mesh that is refined where the equations are not met.
+
+    Parameters
+    ----------
+    guess : states (n, M) at crank angles (M,), rad.
+    settle : another guess, which costs more, for where the first leads nowhere.
+
+    Raises
+    ------
+    ResponseError : there is none that Newton's method could find.
+    """
+    points = np.linspace(0.0, 2 * pi * turns, INTERVALS * turns + 1)
+    orbit = _tried(system, points, guess, conditions)
+    if orbit is None and settle is not None:
+        orbit = _tried(system, points, settle, conditions)
+    if orbit is None:
+        raise ResponseError(
+            "no steady state was found; the machine may not settle into one. Look at it from rest "
+            "(--transient), or try another speed or more damping"
+        )
+    error = _residuals(system, orbit)
+    for _ in range(ROUNDS):
+        coarse = error > FINE
+        if not np.any(coarse) or len(orbit.points) > MOST_INTERVALS * turns:
+            break
+        finer = _tried(system, _cut(orbit.points, coarse), orbit.at, conditions)
+        if finer is None:
+            break
+        orbit = finer
+        error = _residuals(system, orbit)
+    return Steady(orbit, float(np.max(error)))
+
+
+def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) -> Orbit | None:
+    with np.errstate(all="ignore"):
+        try:
+            orbit = solve(system, points, guess, conditions)
+        except np.linalg.LinAlgError:
+            return None
+    return orbit if orbit.change < LOOSE else None
+
+
+def _residuals(system: System, orbit: Orbit) -> Array:
+    """How far each interval (K,) is from the equations, beside the largest rate of each state."""
+    steps = np.diff(orbit.points)
+    scale = np.maximum(np.max(np.abs(orbit.slopes), axis=(1, 2)), 1e-300)
+    worst = np.zeros(len(steps))
+    for share in (RULE.nodes[0] / 2, 0.5, 1 - RULE.nodes[0] / 2):
+        s = orbit.points[:-1] + share * steps
+        missed = np.abs(orbit.slopes_at(share) - system.rates(s)(orbit.at(s))) / scale[:, None]
+        worst = np.maximum(worst, np.max(missed, axis=0, initial=0.0))
+    return np.asarray(worst * steps / (orbit.points[-1] - orbit.points[0]))
+
+
+def _cut(points: Array, coarse: Array) -> Array:
+    """The mesh with coarse intervals (K,) cut in four."""
+    inner = points[:-1, None] + np.diff(points)[:, None] * np.array([0.25, 0.5, 0.75])
+    return np.sort(np.concatenate([points, inner[coarse].ravel()]))

@@ -1,0 +1,301 @@
+"""Steady response over a range of crank speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast, get_args
+
+import numpy as np
+
+from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
+from equipoise.structures.body import MISSING
+from equipoise.structures.choice import chosen_model, usual_step
+from equipoise.structures.exact import solve_exact
+from equipoise.structures.excitation import Step
+from equipoise.structures.linear import Linear
+from equipoise.structures.modes import Mode
+from equipoise.structures.reduced import respond_coupled
+from equipoise.structures.resonance import Resonance, resonances
+from equipoise.structures.response import Model, Response
+from equipoise.structures.small_motion import respond_linear
+from equipoise.structures.table import Values, mode_values
+
+Array = np.ndarray[Any, Any]
+Progress = Callable[[int, int], None]
+
+SPEEDS = 200
+"""In a sweep, besides those about resonances."""
+MOST_SPEEDS = 20_000
+NEAR = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
+TOLD = ("peak_to_peak", "rms")
+MOUNT = (*TOLD, "transmissibility", "lifts_off")
+QUANTITIES = ("", "velocity_", "acceleration_")
+MOST_RESONANCES = 60
+
+
+@dataclass(frozen=True, eq=False)
+class GaugeCurve:
+    """What a gauge reads against speed, arrays (S,): m, m/s and m/s2, or rad, rad/s and rad/s2."""
+
+    peak_to_peak: Array
+    rms: Array
+    velocity_peak_to_peak: Array
+    velocity_rms: Array
+    acceleration_peak_to_peak: Array
+    acceleration_rms: Array
+    harmonics: Array
+    """(S, K + 1) amplitude of the displacement's orders."""
+    rotation: bool
+
+
+@dataclass(frozen=True, eq=False)
+class MountCurve:
+    """Force (N or N m) of a mount against speed, arrays (S,)."""
+
+    peak_to_peak: Array
+    rms: Array
+    transmissibility: Array
+    lifts_off: Array
+    torsional: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Sweep:
+    """Steady vibration of a machine on its support over a range of speeds.
+
+    speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are
+    NaN and `notes` tell.
+    """
+
+    machine: Machine
+    model: Model
+    speed: Array
+    gauges: Mapping[str, GaugeCurve]
+    mounts: Mapping[str, MountCurve]
+    modes: tuple[Mode, ...]
+    resonances: tuple[Resonance, ...]
+    fluctuation: Array
+    stable: Array
+    notes: tuple[str, ...]
+
+    @cached_property
+    def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
+        """Speed and value of the highest points of each gauge's peak-to-peak curve."""
+        return {name: _tops(self.speed, curve.peak_to_peak) for name, curve in self.gauges.items()}
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (S,) of every figure; NaN where there is none."""
+        found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
+        for name, curve in self.gauges.items():
+            unit = "rad" if curve.rotation else "m"
+            units = ("", unit), ("velocity_", f"{unit}/s"), ("acceleration_", f"{unit}/s^2")
+            found += [
+                (f"gauges.{name}.{quantity}{figure}", unit, getattr(curve, f"{quantity}{figure}"))
+                for quantity, unit in units
+                for figure in TOLD
+            ]
+        for name, mount in self.mounts.items():
+            unit = "N m" if mount.torsional else "N"
+            found += [(f"mounts.{name}.{key}", unit, getattr(mount, key)) for key in TOLD]
+            found.append((f"mounts.{name}.transmissibility", "1", mount.transmissibility))
+        return found
+
+    def to_dict(self) -> Values:
+        """The machine-readable output, in SI units; speeds at which there is none are null."""
+        values: Values = {
+            "title": self.machine.title,
+            "model": self.model,
+            "speed": self.speed,
+            "gauges": {name: _gauge(curve) for name, curve in self.gauges.items()},
+            "mounts": {
+                name: {key: _plain(getattr(curve, key)) for key in MOUNT}
+                for name, curve in self.mounts.items()
+            },
+            "modes": [mode_values(mode) for mode in self.modes],
+            "resonances": [resonance.speed for resonance in self.resonances],
+            "resonance_map": [resonance.to_dict() for resonance in self.resonances],
+        }
+        if self.model in {"coupled", "exact"}:
+            values["stable"] = self.stable.tolist()
+        if np.any(self.fluctuation > 0):
+            values["fluctuation"] = _plain(self.fluctuation)
+        values["notes"] = list(self.notes)
+        return values
+
+
+def _gauge(curve: GaugeCurve) -> Values:
+    values: Values = {"quantity": "rotation" if curve.rotation else "displacement"}
+    values |= {key: _plain(getattr(curve, key)) for key in TOLD}
+    for name in ("velocity", "acceleration"):
+        values[name] = {key: _plain(getattr(curve, f"{name}_{key}")) for key in TOLD}
+    values["harmonics"] = _plain(curve.harmonics)
+    return values
+
+
+def _plain(values: Array) -> list[Any]:
+    """As lists, with None for what is not a number."""
+    if values.ndim > 1:
+        return [_plain(row) for row in values]
+    return [value if np.isfinite(value) else None for value in values.tolist()]
+
+
+def sweep_speed(
+    machine: Machine,
+    slowest: float,
+    fastest: float,
+    model: Model | None = None,
+    drive: bool = False,
+    speeds: int = SPEEDS,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Steady vibration of a machine on its support, over a range of speeds.
+
+    Parameters
+    ----------
+    slowest, fastest : of the crank, rad/s, of the same sign.
+    model, drive : as in `respond`.
+    speeds : how many, equally spaced; more are added about each resonance.
+    progress : called with the number of speeds that are done, and of all.
+
+    Raises
+    ------
+    As `respond`.
+    """
+    model = chosen_model(machine, model, drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    if machine.support is None:
+        raise ModelError("support", MISSING)
+    if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
+        raise UsageError(
+            f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are "
+            "not 0, the slower one first"
+        )
+    if not 2 <= speeds <= MOST_SPEEDS:
+        raise UsageError(f"got {speeds} speeds; give 2 to {MOST_SPEEDS}")
+    step = cast(Step, model) if model in get_args(Step) else usual_step(machine, model)
+    linear = Linear.of(machine, step)
+    met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
+    grid = _speeds(slowest, fastest, speeds, met, linear)
+    answers, notes = [], []
+    for number, answer in enumerate(_answers(linear, model, drive, grid), 1):
+        answers.append(answer)
+        if progress is not None:
+            progress(number, len(grid))
+    notes += _missing(grid, answers)
+    return _gathered(machine, model, grid, answers, linear, met, tuple(notes))
+
+
+def _speeds(
+    slowest: float, fastest: float, count: int, met: list[Resonance], linear: Linear
+) -> Array:
+    """Equally spaced, and closer about resonances."""
+    grid = [np.linspace(slowest, fastest, count)]
+    for resonance in met:
+        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
+        grid.append(resonance.speed * (1 + np.array(NEAR) * damping))
+    low, high = sorted((slowest, fastest))
+    speeds = np.concatenate(grid)
+    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
+    return inside if fastest > 0 else inside[::-1]
+
+
+def _answers(linear: Linear, model: Model, drive: bool, grid: Array) -> Iterator[Response | None]:
+    """The response at every speed; exact ones start from their neighbour."""
+    machine = linear.body.machine
+    guess = None
+    for speed in grid.tolist():
+        if model == "coupled":
+            yield respond_coupled(linear, speed)
+        elif model == "exact":
+            try:
+                found = solve_exact(machine, speed, drive, guess)
+            except ResponseError:
+                guess = None
+                yield None
+                continue
+            yield found.response(brief=True)
+        else:
+            yield respond_linear(linear, speed)
+
+
+def _missing(grid: Array, answers: list[Response | None]) -> list[str]:
+    lost = [speed for speed, answer in zip(grid.tolist(), answers, strict=True) if answer is None]
+    if len(lost) == len(grid):
+        raise ResponseError("no steady state was found at any of these speeds")
+    if not lost:
+        return []
+    return [
+        f"no steady state was found at {len(lost)} of {len(grid)} speeds, "
+        f"from {lost[0]:.4g} to {lost[-1]:.4g} rad/s"
+    ]
+
+
+def _gathered(
+    machine: Machine,
+    model: Model,
+    grid: Array,
+    answers: list[Response | None],
+    linear: Linear,
+    met: list[Resonance],
+    notes: tuple[str, ...],
+) -> Sweep:
+    first = next(answer for answer in answers if answer is not None)
+    told = dict.fromkeys(note for a in answers if a is not None for note in a.notes)
+    return Sweep(
+        machine,
+        model,
+        grid,
+        {name: _curve(name, answers, first) for name in first.gauges},
+        {name: _mount_curve(name, answers, first) for name in first.mounts},
+        linear.modes,
+        tuple(met),
+        np.array([np.nan if a is None else a.drive.fluctuation for a in answers]),
+        np.array([a is not None and a.stable is not False for a in answers]),
+        (*notes, *told),
+    )
+
+
+def _curve(name: str, answers: list[Response | None], first: Response) -> GaugeCurve:
+    orders = max(a.gauges[name].displacement.amplitudes.shape[-1] for a in answers if a is not None)
+    columns = np.full((6, len(answers)), np.nan)
+    sizes = np.full((len(answers), orders), np.nan)
+    for k, answer in enumerate(answers):
+        if answer is not None:
+            gauge = answer.gauges[name]
+            signals = (gauge.displacement, gauge.velocity, gauge.acceleration)
+            columns[:, k] = [
+                value for s in signals for value in (float(s.peak_to_peak), float(s.vibration_rms))
+            ]
+            found = gauge.displacement.sizes
+            sizes[k] = np.pad(found, (0, orders - len(found)))
+    keys = [f"{quantity}{figure}" for quantity in QUANTITIES for figure in TOLD]
+    curves = dict(zip(keys, columns, strict=True))
+    return GaugeCurve(**curves, harmonics=sizes, rotation=first.gauges[name].rotation)
+
+
+def _mount_curve(name: str, answers: list[Response | None], first: Response) -> MountCurve:
+    columns = np.full((len(MOUNT), len(answers)), np.nan)
+    for k, answer in enumerate(answers):
+        if answer is not None:
+            mount = answer.mounts[name]
+            force = mount.force
+            columns[:, k] = (
+                mount.largest - mount.smallest,
+                float(force.vibration_rms),
+                mount.whole,
+                mount.lifts_off,
+            )
+    curves = dict(zip(MOUNT, columns, strict=True))
+    return MountCurve(**curves, torsional=first.mounts[name].torsional)
+
+
+def _tops(speed: Array, values: Array) -> list[tuple[float, float]]:
+    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    found = [(float(speed[k]), float(values[k])) for k in inner]
+    return sorted(found, key=lambda top: -top[1])

@@ -1,0 +1,151 @@
+"""From rest: the exact equations followed in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.model import Machine
+from equipoise.structures.body import Body
+from equipoise.structures.choice import chosen_model
+from equipoise.structures.coupled import Coupled
+from equipoise.structures.exact import solve_exact
+from equipoise.structures.following import follow
+from equipoise.structures.linear import Linear, gauges_of
+from equipoise.structures.motor import torque_on_crank
+from equipoise.structures.readings import Reading
+
+Array = np.ndarray[Any, Any]
+
+MOST_TURNS = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class Transient:
+    """A machine on its support from rest, at M instants.
+
+    time : (M,) s.  states : (n, M), displacements and velocities of the free coordinates.
+    crank_angle, crank_speed : (M,), rad and rad/s.
+    """
+
+    machine: Machine
+    system: Coupled
+    time: Array
+    states: Array
+    crank_angle: Array
+    crank_speed: Array
+
+    @cached_property
+    def gauges(self) -> Mapping[str, Array]:
+        """Displacement (M,) at each gauge, m or rad."""
+        if self.machine.support is None:
+            return {}
+        body = Body(self.machine)
+        place, _ = self.system.place_and_rate(self.states)
+        return {
+            name: Reading.of(body, gauge).displacement(place)
+            for name, gauge in gauges_of(body).items()
+        }
+
+    @cached_property
+    def mounts(self) -> Mapping[str, Array]:
+        """Force (M,) of each mount, N or N m."""
+        ride = self.system.place_and_rate(self.states)
+        return {contact.name: contact.force(*ride) for contact in self.system.contacts}
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (M,) of every signal."""
+        found = [
+            ("time", "s", self.time),
+            ("crank_angle", "rad", self.crank_angle),
+            ("crank_speed", "rad/s", self.crank_speed),
+        ]
+        for name, values in self.gauges.items():
+            found.append((f"gauges.{name}.displacement", self.unit(name), values))
+        for name, force in self.mounts.items():
+            found.append((f"mounts.{name}.force", "N" if self.along(name) else "N m", force))
+        return found
+
+    def along(self, mount: str) -> bool:
+        """Whether a mount pushes along a line, instead of turning back."""
+        assert self.machine.support is not None
+        return self.machine.support.mounts[mount].point is not None
+
+    def unit(self, gauge: str) -> str:
+        """SI unit of a gauge's displacement."""
+        assert self.machine.support is not None
+        return "rad" if gauges_of(Body(self.machine))[gauge].axis is not None else "m"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units."""
+        return {
+            "title": self.machine.title,
+            "time": self.time,
+            "crank_angle": self.crank_angle,
+            "crank_speed": self.crank_speed,
+            "gauges": {name: {"displacement": y} for name, y in self.gauges.items()},
+            "mounts": {name: {"force": y} for name, y in self.mounts.items()},
+        }
+
+
+def from_rest(
+    machine: Machine,
+    duration: float,
+    speed: float | None = None,
+    drive: bool = False,
+    samples: int = 2000,
+) -> Transient:
+    """Follow a machine from rest in the drawn position.
+
+    Parameters
+    ----------
+    duration : s.
+    speed : of the crank, rad/s, which it has at once; with `drive` it stands still at first, and
+        the motor brings it up.
+    samples : number of instants that are told.
+
+    Raises
+    ------
+    ModelError, UsageError, ResponseError.
+    """
+    model = chosen_model(machine, "exact", drive)
+    assert model == "exact"
+    speed = machine.drive.speed if speed is None else float(speed)
+    turns = abs(speed) * duration / (2 * pi)
+    if not 0 < turns <= MOST_TURNS:
+        raise UsageError(
+            f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
+            f"than 0 and at most {MOST_TURNS} turns"
+        )
+    system, shift = _system(machine, speed, drive)
+    count = 2 * len(system.free)
+    begin = np.zeros(count + 2)
+    begin[count] = 0.0 if drive else speed
+    time = np.linspace(0.0, duration, samples)
+    states = follow(system, time, begin, shift)
+    return Transient(machine, system, time, states[:count], states[count + 1], states[count])
+
+
+def _system(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, float]:
+    """The equations, and the shift of the motor's curve that holds the mean speed."""
+    if machine.support is None and not drive:
+        raise ModelError("support", "a frame that stands still does not vibrate")
+    shift = 0.0
+    torque = None
+    if drive:
+        torque = torque_on_crank(machine.drive)
+        motor = machine.drive.motor
+        assert motor is not None
+        if motor.mean_speed == "held":
+            shift = float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+    if machine.support is None:
+        assert torque is not None
+        return Coupled.on_ground(machine, speed, torque), shift
+    linear = Linear.of(machine, "moment")
+    return Coupled.on_support(linear.body, linear.rest, speed, torque), shift
