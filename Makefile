@@ -21,6 +21,7 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise examples                         other machines"
 	@echo "  $(BIN)/equipoise analyze yamashita-1 --csv out.csv    every signal against crank angle"
 	@echo "  $(BIN)/equipoise plant transplanter               the path of a planting finger, and its figures"
+	@echo "  $(BIN)/equipoise respond yamashita-rig            how it shakes what it stands on"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test
@@ -36,6 +37,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"
 	$(BIN)/python benchmarks/analysis.py
 	$(BIN)/python benchmarks/planting.py
+	$(BIN)/python benchmarks/vibration.py
 	$(BIN)/python benchmarks/startup.py
 
 clean:

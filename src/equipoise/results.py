@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.errors import MassError
+from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.dynamics import Forces, SliderForce, VectorSignal, massless
 from equipoise.mechanism.fourbar import FourBar, four_bar
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, Named
-from equipoise.signals import Figures, figures
+from equipoise.signals import Figures, Periodic, figures
 
 if TYPE_CHECKING:
     import pandas
@@ -60,6 +60,32 @@ class Analysis:
         """Mean, RMS, peak and extremes of each output of the forces, by name."""
         signals = outputs(self).items()
         return Named("output", ((name, figures(self.crank_angle, s)) for name, s in signals))
+
+    @cached_property
+    def by_order(self) -> Mapping[str, Periodic]:
+        """Shaking force and moment, drive torque, and acceleration of the common centre of mass
+        (``mass_center.ax``, ``mass_center.ay``, m/s2), by order.
+
+        Raises
+        ------
+        MassError : masses are missing.
+        UsageError : the crank angles are not equally spaced over the whole cycle.
+        """
+        found = self.forces
+        if not self.motion.whole_cycle:
+            raise UsageError("orders need crank angles over the whole cycle; give a number of them")
+        mass = sum(link.mass or 0.0 for link in self.machine.links.values())
+        signals = {
+            "shaking_force.x": found.shaking_force.x,
+            "shaking_force.y": found.shaking_force.y,
+            "shaking_moment": found.shaking_moment,
+            "drive_torque": found.drive_torque,
+        }
+        if mass:
+            signals["mass_center.ax"] = -found.shaking_force.x / mass
+            signals["mass_center.ay"] = -found.shaking_force.y / mass
+        turns = self.motion.turns
+        return Named("output", ((name, Periodic.of(s, turns)) for name, s in signals.items()))
 
     def to_dict(self, split: bool = False) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
@@ -124,6 +150,25 @@ def to_dict(analysis: Analysis, split: bool = False) -> Values:
             result.update(_split(analysis.solved))
     result["summary"] = _summary(analysis)
     return result
+
+
+def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
+    """Outputs by order, as in `Analysis.by_order`, up to an order; SI units and rad.
+
+    zero : rad, direction from which crank angles count.
+    """
+    found = {}
+    for name, whole in analysis.by_order.items():
+        signal = whole.shifted(zero)
+        kept = slice(0, signal.count_to(orders))
+        found[name] = {
+            "orders": signal.orders[kept],
+            "a": signal.amplitudes.real[kept],
+            "b": -signal.amplitudes.imag[kept],
+            "harmonics": signal.sizes[kept],
+            "phases": signal.phases[kept],
+        }
+    return found
 
 
 def columns(analysis: Analysis) -> Iterator[tuple[str, Array]]:

@@ -105,6 +105,10 @@ class Periodic:
         """Order of each amplitude: events in one turn of the crank."""
         return np.arange(self.amplitudes.shape[-1]) / self.turns
 
+    def count_to(self, order: int) -> int:
+        """How many amplitudes there are up to an order, the mean included."""
+        return int(min(order * self.turns + 1, self.amplitudes.shape[-1]))
+
     @property
     def period(self) -> float:
         """Crank angle of one period, rad."""

@@ -13,6 +13,8 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
+MOST_ORDERS = 100
+
 
 @app.command
 def analyze(
@@ -26,6 +28,8 @@ def analyze(
     json: bool = False,
     split: bool = False,
     csv: str | None = None,
+    orders: Annotated[int | None, SIGNED] = None,
+    crank_zero: Annotated[str | None, SIGNED] = None,
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
 
@@ -47,12 +51,22 @@ def analyze(
         With --json: add every force by cause and by link.
     csv
         Write every signal against crank angle to this file.
+    orders
+        Print the harmonics of forces, moment and torque up to this order instead.
+    crank_zero
+        With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
     from equipoise import pipeline
     from equipoise.io.models import load
+    from equipoise.results import order_values
 
     machine = load(file)
     check_belonging("--json", json or None, split=split or None)
+    if crank_zero is not None and orders is None:
+        raise UsageError("--crank-zero belongs to --orders; give both")
+    if orders is not None and not 1 <= orders <= MOST_ORDERS:
+        raise UsageError(f"--orders: got {orders}; give 1 to {MOST_ORDERS}")
+    zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     if csv is not None:
         check_target("--csv", csv, file, machine)
     arguments = (
@@ -65,15 +79,20 @@ def analyze(
     )
     with naming(file):
         analysis = pipeline.analyze(machine, *arguments)
+        told = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
     if csv is not None:
         from equipoise.io.output import to_csv, write
 
         write(csv, to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)
     if json:
-        from equipoise.io.output import to_json
+        from equipoise.io.output import json_text
 
-        print(to_json(analysis, split))
+        print(json_text(analysis.to_dict(split) | told))
+    elif orders is not None:
+        from equipoise.terminal.orders import print_orders
+
+        print_orders(analysis, orders, zero)
     else:
         from equipoise.terminal.analysis import print_analysis
 

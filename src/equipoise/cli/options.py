@@ -7,7 +7,15 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from equipoise.errors import EquipoiseError, MobilityError, ModelError, MotionError, UsageError
+from equipoise.errors import (
+    EquipoiseError,
+    MassError,
+    MobilityError,
+    ModelError,
+    MotionError,
+    ResponseError,
+    UsageError,
+)
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
@@ -18,7 +26,7 @@ def naming(file: str) -> Iterator[None]:
     """Put the file's name in front of what turns out wrong with its machine."""
     try:
         yield
-    except (ModelError, MobilityError, MotionError) as error:
+    except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
         from equipoise.io.files import printable
 
         raise EquipoiseError(f"{printable(file)}: {error}") from error

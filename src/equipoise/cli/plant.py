@@ -7,18 +7,17 @@ import re
 import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
 from equipoise.cli.options import check_belonging, check_target, naming, quantity
+from equipoise.cli.results import Kind, draw, write_csv
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
-
-Kind = Literal["svg", "png", "pdf"]
 
 
 @app.command
@@ -111,23 +110,15 @@ def plant(
 
 
 def _write_csv(figures: PlantingFigures, path: str, angles: int) -> None:
-    from equipoise.io.output import csv_text, write
     from equipoise.planting.table import table
 
-    write(path, csv_text(table(figures, angles)))
-    print(f"wrote {path}", file=sys.stderr)
+    write_csv(table(figures, angles), path)
 
 
 def _draw(figures: PlantingFigures, folder: str, kind: Kind) -> None:
-    from equipoise.io.output import write_all
     from equipoise.plotting.planting import drawings
-    from equipoise.plotting.style import render
 
-    pictures = {
-        f"{name}.{kind}": render(figure, kind) for name, figure in drawings(figures).items()
-    }
-    write_all(folder, pictures)
-    print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)
+    draw(drawings(figures), folder, kind)
 
 
 def _count(angles: str | None) -> int:

@@ -5,10 +5,13 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
+from time import monotonic
 
 Told = Callable[[int, int, float], None]
 LINES = 10
 """Lines in a log."""
+SECONDS = 5.0
+"""Between lines in a log about work that is quick as a rule."""
 
 
 @contextmanager
@@ -33,6 +36,35 @@ def told() -> Iterator[Told]:
             bar.update(task, completed=generation, total=max(most, generation), cost=cost)
 
         yield show
+
+
+@contextmanager
+def counted(what: str) -> Iterator[Callable[[int, int], None]]:
+    """Yield what long work calls with how many of its parts are done, and how many there are."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield _counter(what)
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn())
+    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("", total=None)
+        yield lambda done, total: bar.update(task, completed=done, total=total)
+
+
+def _counter(what: str) -> Callable[[int, int], None]:
+    """Lines in a log, but only where there is time to read them."""
+    last = monotonic()
+
+    def count(done: int, total: int) -> None:
+        nonlocal last
+        if monotonic() - last > SECONDS:
+            last = monotonic()
+            with suppress(OSError):
+                print(f"{what} {done} of {total}", file=sys.stderr)
+
+    return count
 
 
 def _line(generation: int, most: int, cost: float) -> None:

@@ -14,14 +14,9 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.io.files import FileError, make_folder, printable, write_bytes
-from equipoise.results import Analysis, columns, to_dict, unit_of
+from equipoise.results import Analysis, columns, unit_of
 
 Array = np.ndarray[Any, Any]
-
-
-def to_json(analysis: Analysis, split: bool = False) -> str:
-    """The machine-readable output as one JSON object, in SI units; `split` as in `to_dict`."""
-    return json_text(to_dict(analysis, split))
 
 
 def json_text(values: dict[str, Any]) -> str:

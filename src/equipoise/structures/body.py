@@ -60,7 +60,7 @@ class Body:
     def row(self, item: Mount | Gauge) -> Array:
         """Row (6,) that reads a displacement, or a rotation, off the coordinates."""
         if item.axis is not None:
-            return np.eye(6)[3 + AXES.index(item.axis)]
+            return np.asarray(np.eye(6)[3 + AXES.index(item.axis)])
         along = np.array(unit_vector(item.direction))
         found: Array = self.wrench(along, item.point)
         return found

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from math import pi
 from typing import Any
 
@@ -42,22 +42,23 @@ from equipoise.structures.steady import SAMPLES, Guess, Steady, steady
 
 Array = np.ndarray[Any, Any]
 
+ROUGH = 12
+"""Orders of the linear response that do to start from."""
 
-def respond_exact(
-    machine: Machine, speed: float, drive: bool, guess: Guess | None = None
-) -> Response:
-    """Response by the exact equations.
 
-    guess : states against the crank's turning to start from; those of the linear response if None.
-    """
-    found = solve_exact(machine, speed, drive, guess)
-    return found.response()
+def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
+    """Response by the exact equations."""
+    return solve_exact(machine, speed, drive).response()
 
 
 def solve_exact(
-    machine: Machine, speed: float, drive: bool, guess: Guess | None = None
+    machine: Machine, speed: float, drive: bool, near: Guess | None = None
 ) -> ExactSolution:
-    """The periodic solution itself; see `respond_exact`."""
+    """The periodic solution itself.
+
+    near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
+        from where the linear response leads nowhere.
+    """
     linear = None if machine.support is None else Linear.of(machine, "moment")
     torque = torque_on_crank(machine.drive) if drive else None
     if linear is None:
@@ -65,9 +66,12 @@ def solve_exact(
         system = Coupled.on_ground(machine, speed, torque)
     else:
         system = Coupled.on_support(linear.body, linear.rest, speed, torque)
-    start = guess or (lambda s: _from_linear(system, linear, s))
-    conditions = conditions_of(system)
-    found = steady(system, start, _turns(machine), conditions, _settled(system))
+    guesses: list[Guess] = [partial(_from_linear, system, linear)]
+    if near is not None:
+        guesses.append(near)
+    if torque is None:
+        guesses.append(partial(settled, system))
+    found = steady(system, guesses, _turns(machine), conditions_of(system))
     return ExactSolution(system, linear, found)
 
 
@@ -99,7 +103,8 @@ def _from_linear(system: Coupled, linear: Linear | None, s: Array) -> Array:
     """States of the linear response, with the crank's speed constant."""
     states = []
     if linear is not None:
-        moved, theta = linear.motion(system.speed), system.sense * s
+        whole, theta = linear.motion(system.speed), system.sense * s
+        moved = Periodic(whole.amplitudes[:, : ROUGH * whole.turns + 1], whole.turns)
         states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
     if system.torque is None:
         return np.stack(states)
@@ -116,17 +121,6 @@ def _from_linear(system: Coupled, linear: Linear | None, s: Array) -> Array:
 def _mean_torque(machine: Machine, speed: float) -> float:
     found = forces(move(machine, SAMPLES, speed, 0.0))
     return float(np.mean(found.drive_torque)) * len(rows_of(machine))
-
-
-def _settled(system: Coupled) -> Guess | None:
-    """States that the machine has come to from rest, where the linear response leads nowhere."""
-    if system.torque is not None:
-        return None
-
-    def guess(s: Array) -> Array:
-        return settled(system, s)
-
-    return guess
 
 
 @dataclass(frozen=True, eq=False)

@@ -113,7 +113,7 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         return np.concatenate([moved.values(theta), (moved.derivative() * speed).values(theta)])
 
     turns = moved.turns
-    found = steady(system, guess, turns, Conditions.periodic(system.count))
+    found = steady(system, [guess], turns, Conditions.periodic(system.count))
     theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
     states = found.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
     d = len(states) // 2

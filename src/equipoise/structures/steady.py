@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import pi
 from typing import Any
@@ -30,6 +30,8 @@ FINE = 1e-11
 """Residual of an interval at which it is left as it is."""
 ROUNDS = 14
 """Of refinement: where a contact opens or a load sets in, intervals are cut in four."""
+NEUTRAL = 1 + 1e-6
+"""Multiplier up to which nothing grows, whatever rounding says."""
 LOOSE = 1e-6
 """Change of the solution above which Newton's method has not found one."""
 
@@ -53,24 +55,26 @@ class Steady:
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
-def steady(
-    system: System, guess: Guess, turns: int, conditions: Conditions, settle: Guess | None = None
-) -> Steady:
+def steady(system: System, guesses: Iterable[Guess], turns: int, conditions: Conditions) -> Steady:
     """Find the periodic solution on a mesh that is refined where the equations are not met.
 
     Parameters
     ----------
-    guess : states (n, M) at crank angles (M,), rad.
-    settle : another guess, which costs more, for where the first leads nowhere.
+    guesses : states (n, M) against the crank's turning (M,), rad; the next is tried where one leads
+        nowhere, or to a solution that is not stable, such as a support balanced on its head.
 
     Raises
     ------
     ResponseError : there is none that Newton's method could find.
     """
     points = np.linspace(0.0, 2 * pi * turns, INTERVALS * turns + 1)
-    orbit = _tried(system, points, guess, conditions)
-    if orbit is None and settle is not None:
-        orbit = _tried(system, points, settle, conditions)
+    orbit = None
+    for guess in guesses:
+        found = _tried(system, points, guess, conditions)
+        if found is not None and (orbit is None or _dies_out(found)):
+            orbit = found
+        if orbit is not None and _dies_out(orbit):
+            break
     if orbit is None:
         raise ResponseError(
             "no steady state was found; the machine may not settle into one. Look at it from rest "
@@ -96,6 +100,11 @@ def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) 
         except np.linalg.LinAlgError:
             return None
     return orbit if orbit.change < LOOSE else None
+
+
+def _dies_out(orbit: Orbit) -> bool:
+    """Whether disturbances do not grow; constants, such as the shift of a curve, have 1."""
+    return bool(np.max(np.abs(np.linalg.eigvals(orbit.monodromy)), initial=0.0) < NEUTRAL)
 
 
 def _residuals(system: System, orbit: Orbit) -> Array:

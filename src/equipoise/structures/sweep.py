@@ -207,21 +207,21 @@ def _speeds(
 
 def _answers(linear: Linear, model: Model, drive: bool, grid: Array) -> Iterator[Response | None]:
     """The response at every speed; exact ones start from their neighbour."""
-    machine = linear.body.machine
-    guess = None
+    near = None
     for speed in grid.tolist():
         if model == "coupled":
             yield respond_coupled(linear, speed)
-        elif model == "exact":
+        elif model != "exact":
+            yield respond_linear(linear, speed)
+        else:
             try:
-                found = solve_exact(machine, speed, drive, guess)
+                found = solve_exact(linear.body.machine, speed, drive, near)
             except ResponseError:
-                guess = None
+                near = None
                 yield None
                 continue
+            near = None if drive else found.found.orbit.at
             yield found.response(brief=True)
-        else:
-            yield respond_linear(linear, speed)
 
 
 def _missing(grid: Array, answers: list[Response | None]) -> list[str]:

@@ -22,6 +22,18 @@ USUAL: dict[Dimension, str] = {
     "torque": "N m",
 }
 
+OF_VIBRATION: dict[Dimension, str] = {
+    "length": "mm",
+    "angle": "deg",
+    "speed": "mm/s",
+    "acceleration": "m/s^2",
+    "time": "ms",
+    "frequency": "Hz",
+    "angular speed": "rpm",
+    "force": "N",
+    "torque": "N m",
+}
+
 
 @dataclass(frozen=True)
 class Units:
@@ -30,17 +42,17 @@ class Units:
     chosen: Mapping[Dimension, str]
 
     @classmethod
-    def read(cls, text: str) -> Units:
+    def read(cls, text: str, usual: Mapping[Dimension, str] = USUAL) -> Units:
         """Units from a list such as ``"mm, km/h"``; the usual ones of what is not in it."""
         given: dict[Dimension, str] = {}
         for unit in filter(None, (part.strip() for part in text.split(","))):
-            dimension = _dimension(unit)
+            dimension = _dimension(unit, usual)
             if given.setdefault(dimension, unit) != unit:
                 raise UsageError(
                     f"--units: got {given[dimension]!r} and {unit!r}, both units of "
                     f"{dimension}; give one"
                 )
-        return cls(USUAL | given)
+        return cls({**usual, **given})
 
     def name(self, dimension: Dimension) -> str:
         """The unit, such as ``cm``."""
@@ -62,9 +74,9 @@ class Units:
 ANGLE_DIGITS = {"deg": 2, "rad": 4, "turn": 5}
 
 
-def _dimension(unit: str) -> Dimension:
-    for dimension in USUAL:
+def _dimension(unit: str, usual: Mapping[Dimension, str]) -> Dimension:
+    for dimension in usual:
         if unit in KINDS[dimension].units:
             return dimension
-    known = (unit for dimension in USUAL for unit in KINDS[dimension].units)
+    known = (unit for dimension in usual for unit in KINDS[dimension].units)
     raise UsageError(f"--units: got {unit!r}; choose among {', '.join(known)}")

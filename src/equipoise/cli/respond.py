@@ -1,0 +1,246 @@
+"""The commands `respond` and `modes`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from equipoise.cli.app import FILE, SIGNED, app
+from equipoise.cli.options import naming, quantity
+from equipoise.cli.results import Kind, Wanted
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from equipoise.mechanism.model import Machine
+    from equipoise.structures.response import Response
+    from equipoise.terminal.units import Units
+
+Model = Literal["linear", "torque", "moment", "coupled", "exact"]
+
+
+@app.command
+def respond(
+    file: Annotated[str, FILE],
+    /,
+    *,
+    model: Model | None = None,
+    speed: Annotated[str | None, SIGNED] = None,
+    speeds: Annotated[int | None, SIGNED] = None,
+    drive: bool = False,
+    transient: Annotated[str | None, SIGNED] = None,
+    units: str = "",
+    json: bool = False,
+    csv: str | None = None,
+    plot: str | None = None,
+    format: Kind | None = None,
+) -> None:
+    """How the support of a machine vibrates under its linkages, at one speed or over a range.
+
+    Parameters
+    ----------
+    file
+        Path of a model file with a table [support], or the name of a bundled example.
+    model
+        linear (shaking force at the drive's pivot), torque (with the drive torque), moment (whole
+        force and moment), coupled (with the torque that the motion takes), exact (all bodies).
+    speed
+        Speed of the crank instead of the file's: "193 rpm", or a range: "20 rpm : 400 rpm".
+    speeds
+        With a range: number of speeds, 200 if not given; more are added about resonances.
+    drive
+        Let the speed follow from the motor in [drive.motor], by the model exact.
+    transient
+        Follow the machine from rest for so long, such as "5 s", by the model exact.
+    units
+        Units of the printed tables where they are not to be mm, mm/s, m/s^2 and rpm: "um, rad/s".
+    json
+        Print one JSON object in SI units, and nothing else.
+    csv
+        Write every signal against time, or every figure against speed, to this file.
+    plot
+        Draw the response into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
+    """
+    from equipoise.io.models import load
+    from equipoise.terminal.units import OF_VIBRATION, Units
+
+    machine = load(file)
+    wanted = Wanted(json, csv, plot, format)
+    wanted.check(file, machine)
+    shown_in = Units.read(units, OF_VIBRATION)
+    ends = [] if speed is None else _speeds(speed)
+    if speeds is not None and len(ends) != 2:
+        raise UsageError('--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both')
+    if ends:
+        machine = machine.with_drive(speed=ends[-1])
+    with naming(file):
+        if transient is not None:
+            _follow(machine, quantity("--transient", transient, "time"), ends, model, drive, wanted)
+        elif len(ends) == 2:
+            _sweep(machine, (ends[0], ends[1]), model, drive, speeds, shown_in, wanted)
+        else:
+            _answer(machine, model, drive, shown_in, wanted)
+
+
+@app.command
+def modes(
+    file: Annotated[str, FILE],
+    /,
+    *,
+    model: Model | None = None,
+    json: bool = False,
+    plot: str | None = None,
+    format: Kind | None = None,
+) -> None:
+    """Natural frequencies, damping and shapes of a machine on its support.
+
+    Parameters
+    ----------
+    file
+        Path of a model file with a table [support], or the name of a bundled example.
+    model
+        linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
+    json
+        Print one JSON object in SI units, and nothing else.
+    plot
+        Draw every mode into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
+    """
+    from equipoise.io.models import load
+    from equipoise.structures.free import vibrate_freely
+
+    machine = load(file)
+    wanted = Wanted(json, None, plot, format)
+    wanted.check(file, machine)
+    with naming(file):
+        found = vibrate_freely(machine, model)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.vibration import mode_drawings
+
+        return mode_drawings(found)
+
+    def show() -> None:
+        from equipoise.terminal.modes import print_modes
+
+        print_modes(found)
+
+    wanted.give(None, drawings, found.to_dict, show)
+
+
+def _speeds(text: str) -> list[float]:
+    """One speed, or the two ends of a range; a unit may stand after the second only."""
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) > 2 or not all(parts):
+        raise UsageError(
+            f'--speed: got {text!r}; give a speed, "193 rpm", or a range: "20 rpm : 400 rpm"'
+        )
+    if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
+        parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"
+    ends = [quantity("--speed", part, "angular speed") for part in parts]
+    if len(ends) == 2 and (ends[0] * ends[1] <= 0 or abs(ends[0]) >= abs(ends[1])):
+        raise UsageError(
+            f"--speed: got {text!r}; give a range of speeds of the same sign that are not 0, the "
+            "slower one first"
+        )
+    return ends
+
+
+def _answer(
+    machine: Machine, model: Model | None, drive: bool, units: Units, wanted: Wanted
+) -> None:
+    """The response at one speed."""
+    from equipoise.structures.forced import respond as solve
+
+    found = solve(machine, None, model, drive)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.vibration import response_drawings
+
+        return response_drawings(found)
+
+    def show() -> None:
+        from equipoise.terminal.vibration import print_response
+
+        print_response(found, {} if drive else _others(machine, found), units)
+
+    wanted.give(found.columns, drawings, found.to_dict, show)
+
+
+def _others(machine: Machine, found: Response) -> dict[str, Response]:
+    """The response by every model, for comparison; without those that find none."""
+    from equipoise.errors import EquipoiseError
+    from equipoise.structures.choice import models_of
+    from equipoise.structures.forced import respond as solve
+
+    others = {}
+    for model in models_of(machine):
+        try:
+            others[model] = found if model == found.model else solve(machine, None, model)
+        except EquipoiseError:
+            continue
+    return {str(model): response for model, response in others.items()}
+
+
+def _sweep(
+    machine: Machine,
+    ends: tuple[float, float],
+    model: Model | None,
+    drive: bool,
+    speeds: int | None,
+    units: Units,
+    wanted: Wanted,
+) -> None:
+    """The response over a range of speeds."""
+    from equipoise.cli.progress import counted
+    from equipoise.structures.sweep import SPEEDS, sweep_speed
+
+    count = SPEEDS if speeds is None else speeds
+    with counted("speed") as progress:
+        found = sweep_speed(machine, *ends, model, drive, count, progress)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.vibration import sweep_drawings
+
+        return sweep_drawings(found)
+
+    def show() -> None:
+        from equipoise.terminal.sweep import print_sweep
+
+        print_sweep(found, units)
+
+    wanted.give(found.columns, drawings, found.to_dict, show)
+
+
+def _follow(
+    machine: Machine,
+    duration: float,
+    ends: Sequence[float],
+    model: Model | None,
+    drive: bool,
+    wanted: Wanted,
+) -> None:
+    """The machine from rest."""
+    from equipoise.structures.transient import from_rest
+
+    if len(ends) == 2:
+        raise UsageError("--transient follows the machine at one speed; give one, no range")
+    if model not in {None, "exact"}:
+        raise UsageError(f"--transient is by the model exact; leave out --model {model}")
+    found = from_rest(machine, duration, drive=drive)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.vibration import transient_drawings
+
+        return transient_drawings(found)
+
+    def show() -> None:
+        from equipoise.terminal.transient import print_transient
+
+        print_transient(found)
+
+    wanted.give(found.columns, drawings, found.to_dict, show)

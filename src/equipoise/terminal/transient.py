@@ -1,0 +1,39 @@
+"""What `equipoise respond --transient` prints."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.terminal.tables import PER_RPM, Array, Row, number, table
+
+if TYPE_CHECKING:
+    from equipoise.structures.transient import Transient
+
+PARTS = 5
+"""Equal stretches of the time, of which the first and the last show whether it has settled."""
+
+
+def print_transient(found: Transient) -> None:
+    """Extremes of every gauge and mount, in the first and the last stretch of the time."""
+    turns = abs(float(found.crank_angle[-1])) / (2 * np.pi)
+    print(found.machine.title)
+    print(f"from rest for {number(float(found.time[-1]))} s, {number(turns)} turns of the crank")
+    rows = []
+    for name, values in found.gauges.items():
+        unit, scale = ("mm", 1e3) if found.unit(name) == "m" else ("deg", float(np.degrees(1.0)))
+        rows.append(_row(name, values * scale, unit))
+    for name, values in found.mounts.items():
+        rows.append(_row(name, values, "N" if found.along(name) else "N m"))
+    rows.append(_row("crank speed", found.crank_speed / PER_RPM, "rpm"))
+    header = ("", "smallest", "largest", "range in the first fifth", "in the last", "")
+    print(table("Gauges, mounts and drive", header, rows))
+
+
+def _row(name: str, values: Array, unit: str) -> Row:
+    stretch = max(1, len(values) // PARTS)
+    low, high = float(np.min(values)), float(np.max(values))
+    scale = max(abs(low), abs(high))
+    ranges = (float(np.ptp(values[:stretch])), float(np.ptp(values[-stretch:])))
+    return (name, *(number(value, scale) for value in (low, high, *ranges)), unit)
