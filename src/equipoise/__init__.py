@@ -16,12 +16,15 @@ __version__ = "0.1.0"
 _HOMES = {
     "Analysis": "results",
     "BaseParameters": "mechanism.parameters",
+    "Decay": "measured.decay",
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
+    "FreeVibration": "structures.free",
+    "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
     "Goal": "planting.goals",
     "Link": "mechanism.model",
@@ -30,13 +33,23 @@ _HOMES = {
     "LoadTable": "mechanism.model",
     "Machine": "mechanism.model",
     "Motion": "mechanism.motion",
+    "Motor": "mechanism.motor",
+    "MotorTable": "mechanism.motor",
+    "Mount": "mechanism.support",
+    "Periodic": "signals",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
+    "Record": "measured.record",
     "Regressor": "mechanism.parameters",
+    "Response": "structures.response",
+    "Row": "mechanism.support",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
+    "Support": "mechanism.support",
+    "Sweep": "structures.sweep",
+    "Transient": "structures.transient",
     "analyze": "pipeline",
     "assemble": "mechanism.linkage",
     "base_parameters": "mechanism.parameters",
@@ -45,14 +58,21 @@ _HOMES = {
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
+    "from_rest": "structures.transient",
     "harmonics": "signals",
+    "identify_decay": "measured.decay",
     "json_schema": "io.models",
     "load": "io.models",
     "loads": "io.models",
     "move": "mechanism.motion",
     "plant": "planting.summary",
+    "read_record": "io.records",
     "regressor": "mechanism.parameters",
+    "respond": "structures.forced",
     "save": "io.models",
+    "simulate_decay": "measured.swinging",
+    "sweep_speed": "structures.sweep",
+    "vibrate_freely": "structures.free",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -66,6 +86,11 @@ if TYPE_CHECKING:
     from equipoise.io.models import load as load
     from equipoise.io.models import loads as loads
     from equipoise.io.models import save as save
+    from equipoise.io.records import read_record as read_record
+    from equipoise.measured.decay import Decay as Decay
+    from equipoise.measured.decay import identify_decay as identify_decay
+    from equipoise.measured.record import Record as Record
+    from equipoise.measured.swinging import simulate_decay as simulate_decay
     from equipoise.mechanism.dynamics import Forces as Forces
     from equipoise.mechanism.dynamics import forces as forces
     from equipoise.mechanism.field import Planting as Planting
@@ -101,6 +126,8 @@ if TYPE_CHECKING:
     )
     from equipoise.mechanism.motion import Motion as Motion
     from equipoise.mechanism.motion import move as move
+    from equipoise.mechanism.motor import Motor as Motor
+    from equipoise.mechanism.motor import MotorTable as MotorTable
     from equipoise.mechanism.parameters import (
         BaseParameters as BaseParameters,
     )
@@ -113,6 +140,10 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parameters import (
         regressor as regressor,
     )
+    from equipoise.mechanism.support import Gauge as Gauge
+    from equipoise.mechanism.support import Mount as Mount
+    from equipoise.mechanism.support import Row as Row
+    from equipoise.mechanism.support import Support as Support
     from equipoise.pipeline import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
@@ -121,7 +152,16 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.results import Analysis as Analysis
     from equipoise.signals import Figures as Figures
+    from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
+    from equipoise.structures.forced import respond as respond
+    from equipoise.structures.free import FreeVibration as FreeVibration
+    from equipoise.structures.free import vibrate_freely as vibrate_freely
+    from equipoise.structures.response import Response as Response
+    from equipoise.structures.sweep import Sweep as Sweep
+    from equipoise.structures.sweep import sweep_speed as sweep_speed
+    from equipoise.structures.transient import Transient as Transient
+    from equipoise.structures.transient import from_rest as from_rest
 
 
 def __getattr__(name: str) -> Any:

@@ -14,16 +14,18 @@ class FileError(Exception):
     """A file cannot be read or written; `str(problem)` says why and what would be right."""
 
 
-def read_text(path: str | os.PathLike[str]) -> str:
+def read_text(path: str | os.PathLike[str], largest: int = LARGEST) -> str:
     """Read a regular file of UTF-8 text, with or without a byte order mark.
+
+    largest : bytes that are read at most.
 
     Raises
     ------
     FileError
-        Missing, no regular file (a pipe would wait for ever), larger than 2 MB, not UTF-8.
+        Missing, no regular file (a pipe would wait for ever), too large, not UTF-8.
     """
     try:
-        data = _bytes(path)
+        data = _bytes(path, largest)
     except FileNotFoundError as error:
         raise FileError("there is no such file") from error
     except PermissionError as error:
@@ -39,7 +41,7 @@ def read_text(path: str | os.PathLike[str]) -> str:
         ) from error
 
 
-def _bytes(path: str | os.PathLike[str]) -> bytes:
+def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:
     # O_NONBLOCK: opening a pipe that nobody writes to would otherwise wait.
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
     descriptor = os.open(path, flags)
@@ -50,10 +52,10 @@ def _bytes(path: str | os.PathLike[str]) -> bytes:
         status = os.fstat(file.fileno())
         if not stat.S_ISREG(status.st_mode):
             raise FileError("this is no regular file; give a file on disk")
-        data = b"" if status.st_size > LARGEST else file.read(LARGEST + 1)
-        if max(status.st_size, len(data)) > LARGEST:
+        data = b"" if status.st_size > largest else file.read(largest + 1)
+        if max(status.st_size, len(data)) > largest:
             size = max(status.st_size, len(data)) / 1e6
-            raise FileError(f"the file has {size:.0f} MB; at most {LARGEST / 1e6:.0f} MB are read")
+            raise FileError(f"the file has {size:.0f} MB; at most {largest / 1e6:.0f} MB are read")
     return data
 
 

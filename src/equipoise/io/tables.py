@@ -31,11 +31,17 @@ COLUMNS: dict[str, units.Dimension] = {
     "depth": "length",
     "resistance": "force",
     "speed": "angular speed",
+    "time": "time",
+    "displacement": "length",
+    "angle": "angle",
 }
 COLUMN_UNITS = {"crank_angle": "deg", "force_x": "N", "force_y": "N", "torque": "N m"} | {
     "depth": "mm",
     "resistance": "N",
     "speed": "rpm",
+    "time": "s",
+    "displacement": "mm",
+    "angle": "deg",
 }
 """Units that a header is shown with."""
 Forms = tuple[tuple[str, ...], ...]

@@ -1,0 +1,241 @@
+"""Frequency, inertia and damping from a free decay, by two methods side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.measured.estimate import Quantity
+from equipoise.measured.record import Kind, Record, positive
+from equipoise.measured.swings import line_of_swings
+from equipoise.measured.turning import Turns, find_turns
+from equipoise.measured.wholefit import WholeFit, fit_whole
+
+Array = np.ndarray[Any, Any]
+
+MUCH_CORRELATED = 3.0
+"""Points over which a residual is correlated, from where on it is told."""
+POOR = 2.0
+"""Residual over the noise of the samples, from where on the model is doubted."""
+MOST_ROUNDING = 1e-6
+"""A residual below this share of the first half-swing is rounding, not noise."""
+
+
+@dataclass(frozen=True, eq=False)
+class Decay:
+    """What a free decay tells; see docs/decay.md.
+
+    record : as it was identified, in m or rad.
+    confidence : of the intervals, such as 0.95.
+    stiffness : N/m, or N m/rad of a record of angles; None where it was not given.
+    turns : turning points and half-swings.
+    line : slope n and intercept m (m or rad) of the line of half-swings.
+    by_line, by_record : every quantity by name, from the line and from the whole record.
+    whole : the fit of the whole record.
+    notes : what deserves a second look, as sentences.
+    """
+
+    record: Record
+    confidence: float
+    stiffness: float | None
+    turns: Turns
+    line: dict[str, Quantity]
+    by_line: dict[str, Quantity]
+    by_record: dict[str, Quantity]
+    whole: WholeFit
+    notes: tuple[str, ...]
+
+    @property
+    def kind(self) -> Kind:
+        """``"length"`` or ``"angle"``."""
+        return self.record.kind
+
+    def fitted(self, time: Array) -> Array:
+        """The motion that fits the whole record, m or rad, at times (N,), s."""
+        return self.whole.motion.displacement(np.asarray(time, dtype=float))
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units."""
+        turns = self.turns
+        return {
+            "kind": self.kind,
+            "samples": len(self.record.time),
+            "duration": self.record.duration,
+            "confidence": self.confidence,
+            "stiffness": self.stiffness,
+            "noise": turns.noise,
+            "half_swings": {
+                **{name: quantity.to_dict() for name, quantity in self.line.items()},
+                "heights": turns.heights.tolist(),
+                "turning_points": {
+                    "time": turns.time.tolist(),
+                    "displacement": turns.displacement.tolist(),
+                },
+            },
+            "by_line": {name: quantity.to_dict() for name, quantity in self.by_line.items()},
+            "by_record": {
+                **{name: quantity.to_dict() for name, quantity in self.by_record.items()},
+                "center": self.whole.motion.center,
+                "residual": self.whole.rms,
+            },
+            "notes": list(self.notes),
+        }
+
+
+def identify_decay(
+    record: Record,
+    stiffness: float | None = None,
+    *,
+    arm: float | None = None,
+    spring_arm: float | None = None,
+    confidence: float = 0.95,
+) -> Decay:
+    """Frequency, damping and Coulomb friction from a free decay; with a stiffness, inertia too.
+
+    Parameters
+    ----------
+    record : displacement against time.
+    stiffness : N/m for a record of lengths, N m/rad for one of angles.
+    arm : distance (m) from the pivot at which lengths were read; makes angles of them.
+    spring_arm : distance (m) from the pivot at which a spring acts, whose stiffness is then N/m.
+    confidence : of the intervals, between 0 and 1.
+
+    Raises
+    ------
+    UsageError
+        An argument cannot be used, or the record has no free decay with three half-swings.
+    """
+    if not 0 < confidence < 1:
+        raise UsageError(f"confidence: got {confidence:g}; give a number between 0 and 1, as 0.95")
+    if arm is not None:
+        record = record.as_angle(arm)
+    stiffness = _stiffness(record.kind, stiffness, spring_arm)
+    turns = find_turns(record)
+    line = line_of_swings(turns, confidence)
+    whole = fit_whole(record, turns, line, confidence)
+    by_line = line.quantities(record.kind, stiffness)
+    by_record = whole.constants.quantities(record.kind, stiffness)
+    notes = (
+        *_on_window(record, turns),
+        *_on_terms(by_line, by_record),
+        *_on_both(by_record, turns),
+        *_on_methods(by_line, by_record),
+        *_on_fit(turns, whole),
+    )
+    return Decay(
+        record, confidence, stiffness, turns, line.line(), by_line, by_record, whole, notes
+    )
+
+
+def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) -> float | None:
+    """Stiffness of the record's kind: of a spring at an arm, K L^2."""
+    if stiffness is not None:
+        stiffness = positive("stiffness", stiffness)
+    if spring_arm is None:
+        return stiffness
+    spring_arm = positive("spring_arm", spring_arm)
+    if stiffness is None:
+        raise UsageError("spring_arm: belongs to a stiffness; give both")
+    if kind == "length":
+        raise UsageError(
+            "spring_arm: belongs to a record of angles; give arm too, or leave spring_arm out"
+        )
+    return stiffness * spring_arm**2
+
+
+# -- notes -----------------------------------------------------------------------------------------
+
+
+def _on_window(record: Record, turns: Turns) -> Iterator[str]:
+    """What is left out of the record."""
+    half = float(np.median(np.diff(turns.time)))
+    before = turns.time[0] - record.time[0]
+    after = record.time[-1] - turns.time[-1]
+    if before > 0.5 * half:
+        yield f"the first {before:.3g} s, before the largest half-swing, are left out"
+    if after > 1.5 * half:
+        yield (
+            f"the last {after:.3g} s are left out: the motion has stopped, or swings no more than "
+            "the noise"
+        )
+    if len(turns.heights) == 3:
+        yield "three half-swings have exactly one line, so that it has no confidence intervals"
+
+
+WHOLE = "whole record"
+TERMS = {
+    "viscous damping": "decay_rate",
+    "Coulomb friction": "coulomb_displacement",
+}
+
+
+def _on_terms(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
+    """Which terms cannot be told from noise, or have the wrong sign."""
+    for term, name in TERMS.items():
+        line, record = by_line[name], by_record[name]
+        if record.includes_zero:
+            yield f"{term} cannot be told from noise: its interval ({WHOLE}) includes zero"
+        elif record.value < 0:
+            yield (
+                f"{term} comes out negative: something feeds the vibration, or it is damped "
+                "otherwise than by these two terms"
+            )
+        elif line.includes_zero:
+            yield (
+                f"the line alone cannot tell {term} from noise; its interval ({WHOLE}) does not "
+                "include zero"
+            )
+
+
+def _on_both(by_record: dict[str, Quantity], turns: Turns) -> Iterator[str]:
+    """Whether it is only the two terms that cannot be told from each other."""
+    lost = turns.heights[0] - turns.heights[-1]
+    sure = 4 * turns.noise * float(np.max(turns.spread)) + MOST_ROUNDING * turns.heights[0]
+    if lost > sure and all(by_record[name].includes_zero for name in TERMS.values()):
+        yield (
+            "the swings do become smaller, but this record does not tell viscous damping from "
+            "Coulomb friction; a longer or clearer one may"
+        )
+
+
+def _on_methods(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
+    """Whether the line decays, and where the methods contradict each other."""
+    if by_line["decay_rate"].value <= 0:
+        yield (
+            "the line of half-swings has a slope of 1 or more: by it the viscous damping does not "
+            "take energy out of the vibration"
+        )
+    for words, name in {**TERMS, "natural frequency": "natural_frequency"}.items():
+        if by_line[name].apart_from(by_record[name]):
+            yield (
+                f"line and whole record contradict each other on {words}: their intervals have "
+                "nothing in common"
+            )
+
+
+def _on_fit(turns: Turns, whole: WholeFit) -> Iterator[str]:
+    """How well the exact motion describes the record."""
+    if whole.per_point > 1:
+        yield (
+            f"the whole record is fitted to {len(whole.time)} means of {whole.per_point} samples "
+            "each"
+        )
+    if whole.rms < MOST_ROUNDING * turns.heights[0]:
+        return
+    noise = turns.noise / np.sqrt(whole.per_point)
+    if whole.rms > POOR * noise:
+        yield (
+            f"the fit of the whole record misses the samples by {whole.rms / noise:.2g} times "
+            "their noise: viscous damping and Coulomb friction alone do not describe this decay"
+            if noise > 0
+            else "viscous damping and Coulomb friction alone do not describe this decay"
+        )
+    if whole.correlated > MUCH_CORRELATED:
+        yield (
+            f"what the fit of the whole record leaves is correlated over {whole.correlated:.2g} "
+            "points; its intervals are widened for that"
+        )

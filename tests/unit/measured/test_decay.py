@@ -1,0 +1,212 @@
+"""What is made of a record: quantities with a stiffness, notes, arguments that are refused."""
+
+from __future__ import annotations
+
+from dataclasses import astuple
+from itertools import pairwise
+from math import log, pi, sqrt
+from typing import Any
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import equipoise as eq
+from equipoise.measured.decay import _on_methods
+from equipoise.measured.estimate import Quantity
+from unit.measured.samples import OMEGA, held, noisy, simulated
+
+NAMES = [
+    "damped_angular_frequency",
+    "natural_angular_frequency",
+    "damped_frequency",
+    "natural_frequency",
+    "damping_ratio",
+    "logarithmic_decrement",
+    "decay_rate",
+    "coulomb_displacement",
+]
+
+
+def test_quantities_follow_60_to_62() -> None:
+    """From slope n, intercept m and beta alone, by both methods."""
+    stiffness = 1000.0
+    found = eq.identify_decay(simulated(noise=0.005), stiffness)
+    for method in (found.by_line, found.by_record):
+        beta = method["damped_angular_frequency"].value
+        n = np.exp(-method["logarithmic_decrement"].value / 2)
+        mass = stiffness / (beta**2 * ((log(n) / pi) ** 2 + 1))
+        assert method["mass"].value == pytest.approx(mass, rel=1e-12)
+        damping = -2 / pi * mass * beta * log(n)
+        assert method["viscous_damping"].value == pytest.approx(damping, rel=1e-12)
+        ratio = damping / (2 * sqrt(stiffness * mass))
+        assert method["damping_ratio"].value == pytest.approx(ratio, rel=1e-12)
+        assert method["natural_frequency"].value == pytest.approx(sqrt(stiffness / mass) / 2 / pi)
+        assert method["decay_rate"].value == pytest.approx(damping / 2 / mass, rel=1e-12)
+    n, m = found.line["slope"].value, found.line["intercept"].value
+    force = -m * stiffness / (2 * (1 + n))
+    assert found.by_line["coulomb_force"].value == pytest.approx(force, rel=1e-12)
+
+
+def test_names_by_kind() -> None:
+    record = simulated(noise=0.005)
+    assert list(eq.identify_decay(record).by_record) == NAMES
+    lengths = eq.identify_decay(record, 1.0)
+    assert list(lengths.by_line)[8:] == ["mass", "viscous_damping", "coulomb_force"]
+    angles = eq.identify_decay(record, 1.0, arm=2.0)
+    assert list(angles.by_line)[8:] == ["inertia", "viscous_damping", "coulomb_torque"]
+
+
+def test_an_arm_makes_angles_of_lengths() -> None:
+    record = simulated(noise=0.005)
+    turned = eq.Record(record.time, record.displacement / 1.5, "angle")
+    by_arm = eq.identify_decay(record, 200.0, arm=1.5, spring_arm=2.0)
+    by_angle = eq.identify_decay(turned, 800.0)
+    assert by_arm.stiffness == 800
+    assert by_arm.kind == by_angle.kind == "angle"
+    assert by_arm.record.unit == "rad"
+    for name, quantity in by_angle.by_record.items():
+        assert by_arm.by_record[name].value == pytest.approx(quantity.value, rel=1e-9)
+
+
+def test_intervals_of_what_follows_from_others() -> None:
+    """Twice the decrement has twice the interval; inertia is as uncertain as frequency squared."""
+    found = eq.identify_decay(simulated(noise=0.005), 1000.0)
+    for method in (found.by_line, found.by_record):
+        relative = {name: (q.high - q.low) / q.value for name, q in method.items() if q.low}
+        assert relative["mass"] == pytest.approx(2 * relative["natural_frequency"], rel=1e-6)
+        assert relative["coulomb_force"] == pytest.approx(relative["coulomb_displacement"])
+        for quantity in method.values():
+            assert quantity.low < quantity.value < quantity.high
+
+
+def test_to_dict() -> None:
+    found = eq.identify_decay(simulated(noise=0.005), 1000.0)
+    plain = found.to_dict()
+    assert plain["kind"] == "length"
+    assert plain["samples"] == 1000
+    assert plain["duration"] == pytest.approx(5.0)
+    assert plain["stiffness"] == 1000
+    heights = plain["half_swings"]["heights"]
+    assert len(heights) == len(plain["half_swings"]["turning_points"]["time"]) - 1
+    assert all(after < before for before, after in pairwise(heights))
+    assert plain["by_record"]["mass"] == found.by_record["mass"].to_dict()
+    assert plain["notes"] == list(found.notes)
+
+
+def test_the_fitted_motion() -> None:
+    record = simulated(noise=0.01, center=2.0)
+    found = eq.identify_decay(record)
+    exact = simulated(center=2.0).displacement
+    part = record.time < found.turns.time[-1]
+    assert np.max(np.abs(found.fitted(record.time) - exact)[part]) < 0.003
+    assert found.whole.motion.center == pytest.approx(2.0, abs=0.002)
+    assert found.whole.rms == pytest.approx(0.01, rel=0.1)
+    assert found.turns.noise == pytest.approx(0.01, rel=0.1)
+
+
+# -- notes -----------------------------------------------------------------------------------------
+
+
+def notes(record: eq.Record) -> str:
+    return "\n".join(eq.identify_decay(record).notes)
+
+
+def test_a_good_record_has_no_note() -> None:
+    assert notes(simulated(duration=2.6, noise=0.005)) == ""
+
+
+def test_terms_that_cannot_be_told_from_noise() -> None:
+    told = notes(simulated(duration=2.6, coulomb=0.0, noise=0.005))
+    assert "Coulomb friction cannot be told from noise: its interval (whole record)" in told
+    assert "viscous" not in told
+    told = notes(simulated(duration=2.6, ratio=0.0, noise=0.005))
+    assert "viscous damping cannot be told from noise" in told
+    assert "Coulomb" not in told
+
+
+def test_terms_that_cannot_be_told_from_each_other() -> None:
+    told = notes(simulated(duration=1.3, ratio=0.01, coulomb=0.005, noise=0.04))
+    assert "this record does not tell viscous damping from Coulomb friction" in told
+
+
+def test_a_term_that_only_the_line_misses() -> None:
+    told = notes(simulated(duration=1.3, ratio=0.01, coulomb=0.005, noise=0.01))
+    assert "the line alone cannot tell" in told
+
+
+def test_parts_that_are_left_out() -> None:
+    time = np.linspace(0.0, 8.0, 4000)
+    told = notes(noisy(time, held(time, 1.25)))
+    assert "the first 1.25 s, before the largest half-swing, are left out" in told
+    assert "s are left out: the motion has stopped, or swings no more than the noise" in told
+
+
+def test_three_half_swings() -> None:
+    """One line, no interval; the whole record has them all the same."""
+    found = eq.identify_decay(simulated(duration=0.8, count=100, noise=0.002))
+    assert len(found.turns.heights) == 3
+    assert found.by_line["damping_ratio"].low is None
+    assert not found.by_line["decay_rate"].includes_zero
+    assert found.by_record["damping_ratio"].low is not None
+    assert "three half-swings have exactly one line" in "\n".join(found.notes)
+
+
+def test_a_vibration_that_is_fed() -> None:
+    """Growing by 1 % in all, which hardly shows."""
+    time = np.linspace(0.0, 6.0, 3000)
+    record = eq.Record(time, np.exp(0.002 * time) * np.sin(OMEGA * time))
+    told = notes(record)
+    assert "viscous damping comes out negative: something feeds the vibration" in told
+    assert "slope of 1 or more" in told
+
+
+def test_a_damping_that_is_neither() -> None:
+    """Drag with the square of the speed."""
+    time = np.linspace(0.0, 6.0, 3000)
+
+    def pull(_: float, y: Any) -> list[float]:
+        return [y[1], -(OMEGA**2) * y[0] - 0.12 * y[1] * abs(y[1])]
+
+    moved = solve_ivp(pull, (0.0, 6.0), [1.0, 0.0], t_eval=time, rtol=1e-9, atol=1e-11).y[0]
+    told = notes(noisy(time, moved, 0.003))
+    assert "times their noise: viscous damping and Coulomb friction alone do not describe" in told
+    assert "its intervals are widened for that" in told
+
+
+def test_methods_that_contradict_each_other() -> None:
+    found = eq.identify_decay(simulated(noise=0.005))
+    frequency = found.by_record["natural_frequency"]
+    assert not list(_on_methods(found.by_line, found.by_record))
+    moved = Quantity(*(1.1 * value for value in astuple(frequency)))
+    told = list(_on_methods(found.by_line, {**found.by_record, "natural_frequency": moved}))
+    assert told == [
+        "line and whole record contradict each other on natural frequency: their intervals have "
+        "nothing in common"
+    ]
+    assert not Quantity(1.0).apart_from(moved)
+
+
+# -- refused ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"stiffness": 0.0}, "stiffness: got 0; give a number above 0"),
+        ({"stiffness": float("nan")}, "stiffness: got nan; give a number above 0"),
+        ({"arm": -1.0}, "arm: got -1; give a number above 0"),
+        ({"confidence": 1.0}, "confidence: got 1; give a number between 0 and 1"),
+        ({"spring_arm": 1.0}, "spring_arm: belongs to a stiffness; give both"),
+        ({"stiffness": 1.0, "spring_arm": 1.0}, "spring_arm: belongs to a record of angles"),
+        ({"stiffness": 1.0, "arm": 1.0, "spring_arm": 0.0}, "spring_arm: got 0; give a number"),
+    ],
+)
+def test_arguments_that_cannot_be_used(arguments: dict[str, Any], said: str) -> None:
+    with pytest.raises(eq.EquipoiseError, match=said):
+        eq.identify_decay(simulated(), **arguments)
+
+
+def test_angles_need_no_arm() -> None:
+    with pytest.raises(eq.EquipoiseError, match="arm: the record is one of angles, which need no"):
+        eq.identify_decay(simulated(kind="angle"), arm=1.0)

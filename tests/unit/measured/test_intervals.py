@@ -1,0 +1,126 @@
+"""Both methods against the truth, and how often their intervals hold it."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+import equipoise as eq
+from equipoise.measured.decay import Decay, identify_decay
+from equipoise.measured.swings import line_of_swings
+from equipoise.measured.turning import find_turns
+from unit.measured.samples import OMEGA, simulated
+
+RUNS = 120
+LEAST, MOST = 0.90, 0.995
+"""Coverage of 95 % intervals in so many records: 2.5 standard errors of a share below and above."""
+
+
+def test_without_noise_the_whole_record_gives_the_truth() -> None:
+    """To rounding; the line to 1e-3, since its polynomials are no cosines."""
+    for ratio, coulomb in ((0.02, 0.03), (0.1, 0.0), (0.0, 0.05), (0.25, 0.01)):
+        found = identify_decay(simulated(ratio=ratio, coulomb=coulomb, center=3.0))
+        truth = {
+            "natural_angular_frequency": OMEGA,
+            "damping_ratio": ratio,
+            "coulomb_displacement": coulomb,
+        }
+        for name, value in truth.items():
+            assert found.by_record[name].value == pytest.approx(value, rel=1e-9, abs=1e-12)
+            assert found.by_line[name].value == pytest.approx(value, rel=1e-3, abs=1e-3)
+
+
+@cache
+def identified(ratio: float, coulomb: float, noise: float, colour: float = 0.0) -> list[Decay]:
+    found = []
+    for seed in range(RUNS):
+        rng = np.random.default_rng(seed)
+        white = rng.normal(0.0, noise * (1 - colour**2) ** 0.5, 900)
+        added = lfilter([1.0], [1.0, -colour], white)[-600:]
+        record = simulated(4.0, 600, ratio, coulomb, center=0.2, start=1.2)
+        found.append(identify_decay(eq.Record(record.time, record.displacement + added)))
+    return found
+
+
+CASES = {
+    "both": (0.03, 0.02, 0.01),
+    "viscous only": (0.05, 0.0, 0.01),
+    "Coulomb only": (0.0, 0.03, 0.01),
+    "much noise": (0.02, 0.01, 0.05),
+}
+NAMES = ("natural_angular_frequency", "damping_ratio", "coulomb_displacement")
+
+
+@pytest.mark.parametrize("method", ["by_record", "by_line"])
+@pytest.mark.parametrize("case", CASES.values(), ids=CASES)
+def test_intervals_hold_the_truth_as_often_as_they_say(
+    case: tuple[float, float, float], method: str
+) -> None:
+    """Nineteen times in twenty; the line's frequency more often, its intervals being wide."""
+    truth = dict(zip(NAMES, (OMEGA, *case[:2]), strict=True))
+    for name, value in truth.items():
+        held = [
+            q.low <= value <= q.high for q in (getattr(d, method)[name] for d in identified(*case))
+        ]
+        wide = method == "by_line" and name == NAMES[0]
+        assert LEAST <= np.mean(held) <= (1.0 if wide else MOST), name
+
+
+def test_estimates_do_not_lean_to_one_side() -> None:
+    """Their mean is within half a standard deviation of the truth, by both methods."""
+    for case in CASES.values():
+        truth = dict(zip(NAMES, (OMEGA, *case[:2]), strict=True))
+        for method in ("by_record", "by_line"):
+            for name, value in truth.items():
+                found = np.array([getattr(d, method)[name].value for d in identified(*case)])
+                assert abs(np.mean(found) - value) < 0.5 * np.std(found), (case, method, name)
+
+
+def test_correlated_noise_widens_the_intervals() -> None:
+    """Noise that stays for 30 samples; as white noise it would be held one time in three."""
+    case = (0.03, 0.02, 0.01)
+    for name, value in zip(NAMES, (OMEGA, *case[:2]), strict=True):
+        quantities = [d.by_record[name] for d in identified(*case, 0.9)]
+        assert np.mean([q.low <= value <= q.high for q in quantities]) > 0.85, name
+    white, coloured = (np.median([_width(d) for d in identified(*case, c)]) for c in (0.0, 0.9))
+    assert coloured > 2 * white
+
+
+def _width(decay: Decay) -> float:
+    quantity = decay.by_record["damping_ratio"]
+    assert quantity.low is not None and quantity.high is not None
+    return quantity.high - quantity.low
+
+
+def test_a_higher_confidence_gives_wider_intervals() -> None:
+    record = simulated(noise=0.01)
+    widths = [_width(identify_decay(record, confidence=share)) for share in (0.5, 0.95, 0.99)]
+    assert widths[0] == pytest.approx(widths[1] * 0.6745 / 1.96, rel=0.01)
+    assert widths[2] == pytest.approx(widths[1] * 2.576 / 1.96, rel=0.01)
+
+
+def test_a_plain_regression_would_lean() -> None:
+    """Errors in both variables make the slope of a regression too small, not that of this line."""
+    slopes, plain = [], []
+    for seed in range(60):
+        turns = find_turns(simulated(ratio=0.005, coulomb=0.0, noise=0.1, seed=seed))
+        slopes.append(np.exp(-line_of_swings(turns, 0.95).loss))
+        plain.append(np.polyfit(turns.heights[:-1], turns.heights[1:], 1)[0])
+    truth = np.exp(-np.pi * 0.005)
+    assert abs(np.median(slopes) - truth) < 0.02
+    assert np.median(plain) < truth - 0.03
+
+
+def test_a_large_record_is_fitted_by_means() -> None:
+    record = simulated(count=200_000, noise=0.02)
+    found = identify_decay(record)
+    assert 10_000 < len(found.whole.time) <= 20_000
+    assert any("means of" in note for note in found.notes)
+    for name, value in zip(NAMES, (OMEGA, 0.03, 0.02), strict=True):
+        quantity = found.by_record[name]
+        assert quantity.value == pytest.approx(value, rel=0.01)
+        assert quantity.low is not None and quantity.high is not None
+        assert quantity.low <= value <= quantity.high

@@ -1,0 +1,136 @@
+"""Turning points of records as they come: held, pushed, stopped, with gaps, noise and offsets."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.measured.turning import Turns, find_turns
+from unit.measured.samples import OMEGA, held, integrated, noisy, simulated
+
+HALF = pi / (OMEGA * sqrt(1 - 0.03**2))
+TIME = np.linspace(0.0, 6.0, 3000)
+
+
+def check(turns: Turns, release: float, count: tuple[int, ...], tolerance: float) -> None:
+    """Turning points from the release on, evenly spaced, where they should be.
+
+    The last half-swing is 0.06 m high, so noise of 0.01 m may hide it.
+    """
+    exact = release + HALF * np.arange(len(turns.time))
+    np.testing.assert_allclose(turns.time, exact, atol=0.03 * HALF)
+    wanted = held(np.maximum(exact, release), release)
+    np.testing.assert_allclose(turns.displacement - wanted, 0, atol=tolerance)
+    assert len(turns.heights) in count
+    assert turns.side == 1
+
+
+def test_a_clean_record() -> None:
+    """To 3e-4, by which polynomials of fourth order miss a cosine at most."""
+    turns = find_turns(eq.Record(TIME, held(TIME, -1e-9)))
+    check(turns, 0.0, (13,), 3e-4)
+    assert turns.noise < 1e-4
+
+
+@pytest.mark.parametrize("release", [0.01, 0.4, 1.234, 2.5])
+def test_a_record_that_begins_before_the_release(release: float) -> None:
+    """To 0.0125, four standard errors of the first turning point and six of the others."""
+    check(find_turns(noisy(TIME, held(TIME, release))), release, (12, 13), 0.0125)
+
+
+def test_pushed_by_hand_held_and_released() -> None:
+    slow = np.sin(np.clip(TIME / 0.8, 0, 1) * pi / 2)
+    turns = find_turns(noisy(TIME, np.where(TIME < 1.4, slow, held(TIME, 1.4))))
+    check(turns, 1.4, (12, 13), 0.0125)
+
+
+def test_struck_at_rest() -> None:
+    """The swing from rest to the first peak is no half-swing."""
+    moved = np.zeros(len(TIME))
+    on = TIME >= 1.3
+    moved[on] = integrated(TIME[on], OMEGA, 0.03, 0.02, 0.0, 12.0)
+    turns = find_turns(noisy(TIME, moved))
+    assert turns.time[0] == pytest.approx(1.3 + HALF / 2, abs=0.02)
+    assert len(turns.heights) == 12
+
+
+def test_nothing_after_the_stop_is_a_swing() -> None:
+    time = np.linspace(0.0, 30.0, 15000)
+    check(find_turns(noisy(time, held(time, 0.5))), 0.5, (12, 13), 0.0125)
+
+
+def test_a_stop_is_a_turning_point() -> None:
+    """Three half-swings, of which the last ends at rest."""
+    time = np.linspace(0.0, 3.0, 1500)
+    turns = find_turns(noisy(time, held(time, 0.5, coulomb=0.15), 0.003))
+    assert turns.time[-1] == pytest.approx(0.5 + 3 * HALF, abs=0.02)
+    assert turns.displacement[-1] == pytest.approx(held(time, 0.5, coulomb=0.15)[-1], abs=0.004)
+
+
+def test_an_offset_costs_nothing() -> None:
+    values = held(TIME, 0.5)
+    near, far = (find_turns(noisy(TIME, values + offset)) for offset in (0.0, 1000.0))
+    np.testing.assert_allclose(near.heights, far.heights, atol=1e-9)
+
+
+def test_irregular_sampling_with_gaps() -> None:
+    time = np.sort(np.random.default_rng(2).uniform(0.0, 6.0, 2500))
+    time = time[(time < 2.0) | (time > 2.15)]
+    check(find_turns(noisy(time, held(time, 0.5))), 0.5, (12, 13), 0.02)
+
+
+def test_a_gap_that_hides_turning_points_ends_the_decay() -> None:
+    """Nobody can count the half-swings in it; those before it do."""
+    kept = (TIME < 2.3) | (TIME > 2.9)
+    turns = find_turns(noisy(TIME[kept], held(TIME, 0.0)[kept]))
+    assert np.all(np.isfinite(turns.displacement))
+    assert turns.time[-1] < 2.3
+    assert len(turns.heights) >= 7
+
+
+def test_a_record_turned_over_and_in_other_units() -> None:
+    values = held(TIME, 0.5)
+    one = find_turns(noisy(TIME, values))
+    other = find_turns(eq.Record(TIME, -1e-3 * noisy(TIME, values).displacement))
+    np.testing.assert_allclose(other.heights, 1e-3 * one.heights, rtol=1e-9)
+    np.testing.assert_allclose(other.passed, one.passed, rtol=1e-9)
+    assert other.side == -1
+
+
+@pytest.mark.parametrize("count", [160, 200, 400])
+def test_few_samples_in_a_half_swing(count: int) -> None:
+    """Seven, eight and seventeen of them."""
+    time = np.linspace(0.0, 6.0, count)
+    turns = find_turns(noisy(time, held(time, 0.0), 0.001))
+    assert len(turns.heights) >= 12
+    assert np.diff(turns.passed) == pytest.approx(HALF, rel=0.1)
+
+
+REFUSED = {
+    "constant": (np.ones(3000), "the displacement does not change; give a record of a free decay"),
+    "ramp": (TIME, "found 1 of at least 3 free half-swings above the noise"),
+    "step": (1.0 * (TIME > 3), "swings that stand out of the noise"),
+    "growing": (np.exp(0.2 * TIME) * np.sin(OMEGA * TIME), "the swings grow from the first to the"),
+    "one swing": (integrated(TIME, OMEGA, 0.6, 0.02, 1.0, 0.0), "found [12] of at least 3 free"),
+    "noise": (noisy(TIME, np.zeros(3000)).displacement, "swings that stand out of the noise"),
+}
+
+
+@pytest.mark.parametrize(("values", "said"), REFUSED.values(), ids=REFUSED)
+def test_what_is_no_free_decay(values: np.ndarray, said: str) -> None:
+    with pytest.raises(eq.EquipoiseError, match=said):
+        find_turns(eq.Record(TIME, values))
+
+
+def test_too_few_samples_in_a_half_swing() -> None:
+    time = np.linspace(0.0, 6.0, 100)
+    with pytest.raises(eq.EquipoiseError, match="about 4 samples each; take 6 or more"):
+        find_turns(eq.Record(time, held(time, 0.0)))
+
+
+def test_two_half_swings_are_too_few() -> None:
+    with pytest.raises(eq.EquipoiseError, match="found 2 of at least 3 free half-swings"):
+        find_turns(simulated(duration=0.6, count=100))
