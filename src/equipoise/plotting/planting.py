@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.plotting.pathview import path_figure
 from equipoise.plotting.signals import joints_figure, ratio_figure, tip_figures, torque_figure
-from equipoise.plotting.style import styled
+from equipoise.plotting.style import free_name, styled
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -26,18 +26,9 @@ def drawings(figures: PlantingFigures) -> dict[str, Figure]:
         drawn = {"path": path_figure(figures)}
         for link in machine.links:
             if link != machine.drive.link:
-                drawn[_free(f"ratio-{link}", drawn)] = ratio_figure(figures, link)
+                drawn[free_name(f"ratio-{link}", drawn)] = ratio_figure(figures, link)
         drawn |= tip_figures(figures)
         if figures.forces is not None:
             drawn["torque"] = torque_figure(figures)
             drawn["joints"] = joints_figure(figures)
     return drawn
-
-
-def _free(name: str, taken: dict[str, Figure]) -> str:
-    """A name that is none yet, of signs that every file system takes."""
-    name = "".join("_" if sign in '/\\:*?"<>|' else sign for sign in name)[:60].rstrip(". ")
-    number = 1
-    while (f"{name}-{number}" if number > 1 else name).lower() in map(str.lower, taken):
-        number += 1
-    return f"{name}-{number}" if number > 1 else name

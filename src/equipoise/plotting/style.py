@@ -165,3 +165,12 @@ def degrees_shown(angle: float) -> str:
 def short(name: str, most: int = 24) -> str:
     """A name that may be long."""
     return name if len(name) <= most else f"{name[: most - 1]}\N{HORIZONTAL ELLIPSIS}"
+
+
+def free_name(name: str, taken: dict[str, Figure]) -> str:
+    """A name that is none yet, of signs that every file system takes."""
+    name = "".join("_" if sign in '/\\:*?"<>|' else sign for sign in name)[:60].rstrip(". ")
+    number = 1
+    while (f"{name}-{number}" if number > 1 else name).lower() in map(str.lower, taken):
+        number += 1
+    return f"{name}-{number}" if number > 1 else name

@@ -1,0 +1,135 @@
+"""Pictures of one speed against crank angle: a gauge, and the drive."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from equipoise.plotting.crank import MOST_TICKS, Line, angle_step, draw, mark
+from equipoise.plotting.style import LINES, SMALL, short, shown
+from equipoise.plotting.vibration.panels import (
+    RPM,
+    Unit,
+    by_phase,
+    name_x,
+    name_y,
+    stack,
+    told_speed,
+)
+
+if TYPE_CHECKING:
+    from equipoise.signals import Periodic
+    from equipoise.structures.response import Response
+
+Array = np.ndarray[Any, Any]
+
+SAMPLES = 720
+"""In a turn."""
+ROW = 1.6
+"""Inches: height of a panel."""
+MEAN = (0, (5, 2))
+"""Dashes of the mean."""
+VARIES = 1e-9
+"""Share of a signal below which what varies is rounding."""
+
+
+def sampled(signal: Periodic, factor: float = 1.0) -> tuple[Array, Array]:
+    """Crank angles (rad) and values of a whole period, with its first value again at its end."""
+    count = SAMPLES * signal.turns
+    values = factor * signal.samples(count)
+    return np.linspace(0.0, signal.period, count + 1), np.append(values, values[0])
+
+
+def line_of(signal: Periodic, factor: float) -> Line:
+    """A signal over a period, with its largest and smallest value marked."""
+    theta, values = sampled(signal, factor)
+    marked = []
+    for sign in (1, -1):
+        value, at = signal.extreme(sign)
+        marked.append((float(at), factor * float(value)))
+    if float(np.ptp(values)) <= VARIES * float(np.max(np.abs(values))):
+        return Line(theta, np.full_like(values, factor * float(signal.mean)))
+    return Line(theta, values, marked=marked)
+
+
+def phase_axis(axes: Axes, turns: int, most: int = MOST_TICKS) -> None:
+    """The x axis: one period in degrees."""
+    axes.set_xlim(0, 360 * turns)
+    axes.set_xticks(np.arange(0, 360 * turns + 1, angle_step(turns, most)))
+
+
+def phase_label(response: Response) -> str:
+    """What that axis is."""
+    drive = response.machine.drive.link
+    return by_phase(drive, response.speed, response.drive.speed is not None)
+
+
+def period_told(response: Response) -> str:
+    """Length of a period, speed and model in words."""
+    turns = "one turn" if response.turns == 1 else f"{response.turns} turns"
+    return f"over {turns} at {told_speed(response.speed)}; model {response.model}"
+
+
+def gauge_figure(response: Response, name: str) -> Figure:
+    """Displacement, velocity and acceleration at a gauge."""
+    gauge = response.gauges[name]
+    signals = {
+        "displacement": gauge.displacement,
+        "velocity": gauge.velocity,
+        "acceleration": gauge.acceleration,
+    }
+    what = f"{'Rotation' if gauge.rotation else 'Motion'} at {short(name)} {period_told(response)}"
+    figure, panels = stack(len(signals), ROW, response.machine.title, what)
+    for axes, (quantity, signal) in zip(panels, signals.items(), strict=True):
+        unit = Unit.of(quantity, gauge.rotation, [signal.extreme(sign)[0] for sign in (1, -1)])
+        label = "rotation" if gauge.rotation and quantity == "displacement" else quantity
+        phase_axis(axes, response.turns)
+        signal_panel(axes, signal, unit.factor, f"{label}, {unit.name}")
+    name_x(figure, phase_label(response))
+    return figure
+
+
+def drive_figure(response: Response) -> Figure:
+    """Torque of the drive and, where it varies, speed of the crank."""
+    drive = response.drive
+    what = f"Drive of {short(response.machine.drive.link)}"
+    rows = len(response.machine.rows)
+    what += f", {rows} rows together," if rows > 1 else ""
+    what += f" {period_told(response)}"
+    count = 1 if drive.speed is None else 2
+    figure, panels = stack(count, ROW + 0.6, response.machine.title, what)
+    unit = Unit.of("force", True, [drive.torque.extreme(sign)[0] for sign in (1, -1)])
+    phase_axis(panels[0], response.turns)
+    signal_panel(panels[0], drive.torque, unit.factor, f"drive torque, {unit.name}", mean=True)
+    if drive.speed is not None:
+        phase_axis(panels[1], response.turns)
+        signal_panel(panels[1], drive.speed, RPM, "crank speed, rpm", mean=True)
+        panels[1].set_title(
+            f"varies by {shown(100 * drive.fluctuation)} % of its mean",
+            fontsize=SMALL,
+            loc="left",
+            pad=3,
+            color=LINES,
+        )
+    name_x(figure, phase_label(response))
+    return figure
+
+
+def signal_panel(
+    axes: Axes, signal: Periodic, factor: float, label: str, mean: bool = False
+) -> None:
+    """One signal over a period; `mean` draws its mean value too."""
+    line = line_of(signal, factor)
+    name_y(axes, label)
+    draw(axes, [line])
+    if mean and line.varies:
+        average = factor * float(signal.mean)
+        if abs(average) <= VARIES * float(np.ptp(line.values)):
+            average = 0.0
+        axes.axhline(average, color=LINES, linewidth=0.9, linestyle=MEAN, zorder=2)
+        text = f"dashed: mean {shown(average)}"
+        axes.set_title(text, fontsize=SMALL, loc="right", pad=3, color=LINES)
+    mark(axes, [line], [])
