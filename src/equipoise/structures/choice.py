@@ -8,6 +8,14 @@ from equipoise.structures.body import MISSING
 from equipoise.structures.excitation import Step
 from equipoise.structures.response import MODELS, Model
 
+STEP_OF: dict[str, Step] = {
+    "linear": "linear",
+    "torque": "torque",
+    "moment": "moment",
+    "coupled": "torque",
+    "exact": "moment",
+}
+
 
 def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
     """The model asked for, or the usual one; refused where the machine has no part for it."""
@@ -38,10 +46,8 @@ def usual_step(machine: Machine, model: str | None = None) -> Step:
     """The linear step that fits the support, or that goes with a model."""
     if model is not None and model not in MODELS:
         raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
-    if model in {"exact", "moment"}:
-        return "moment"
-    if model == "coupled":
-        return "torque"
+    if model is not None:
+        return STEP_OF[model]
     assert machine.support is not None
     return "linear" if machine.support.coordinates == ("pitch",) else "moment"
 

@@ -6,7 +6,7 @@ speed is constant.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import pi
@@ -42,6 +42,10 @@ from equipoise.structures.steady import SAMPLES, Guess, Steady, steady
 
 Array = np.ndarray[Any, Any]
 
+NEUTRAL = 1e-9
+"""How near to 1 a multiplier is told as 1."""
+LEANING = 10.0
+"""deg, from which on it is told how far from the drawn position the support has come to rest."""
 ROUGH = 12
 """Orders of the linear response that do to start from."""
 
@@ -57,7 +61,7 @@ def solve_exact(
     """The periodic solution itself.
 
     near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
-        from where the linear response leads nowhere.
+        from; the linear response if None.
     """
     linear = None if machine.support is None else Linear.of(machine, "moment")
     torque = torque_on_crank(machine.drive) if drive else None
@@ -66,9 +70,8 @@ def solve_exact(
         system = Coupled.on_ground(machine, speed, torque)
     else:
         system = Coupled.on_support(linear.body, linear.rest, speed, torque)
-    guesses: list[Guess] = [partial(_from_linear, system, linear)]
-    if near is not None:
-        guesses.append(near)
+    guesses: list[Guess] = [] if near is None else [near]
+    guesses.append(partial(_from_linear, system, linear))
     if torque is None:
         guesses.append(partial(settled, system))
     found = steady(system, guesses, _turns(machine), conditions_of(system))
@@ -206,14 +209,7 @@ class ExactSolution:
         """Everything that is told of it; `brief` leaves out the joint forces."""
         system = self.system
         count = 2 * len(system.free) + (system.torque is not None)
-        notes = []
         multipliers = self.found.multipliers(count)
-        if multipliers.size and abs(multipliers[0]) >= 1 - 1e-9:
-            notes.append(
-                "this steady state is not stable: a disturbance does not die out"
-                if abs(multipliers[0]) > 1 + 1e-9
-                else "a disturbance neither grows nor dies out: something is undamped"
-            )
         return Response(
             self.machine,
             "exact",
@@ -227,8 +223,19 @@ class ExactSolution:
             self.found.residual,
             multipliers,
             self.energy(),
-            tuple(notes),
+            tuple(self._notes(multipliers)),
         )
+
+    def _notes(self, multipliers: Array) -> Iterator[str]:
+        """What a reader has to know of the solution."""
+        largest = abs(multipliers[0]) if multipliers.size else 0.0
+        if largest > 1 + NEUTRAL:
+            yield "this steady state is not stable: a disturbance does not die out"
+        elif largest >= 1 - NEUTRAL:
+            yield "a disturbance neither grows nor dies out: something is undamped"
+        lean = float(np.degrees(np.mean(self.ride.place[PITCH])))
+        if abs(lean) > LEANING:
+            yield f"the support leans by {lean:.1f} deg from the drawn position in the mean"
 
     def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
         ride = self.ride

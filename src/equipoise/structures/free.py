@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, cast, get_args
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.body import MISSING
 from equipoise.structures.choice import usual_step
-from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.modes import Mode
 from equipoise.structures.table import Values, mode_values
@@ -89,5 +88,4 @@ def vibrate_freely(machine: Machine, model: str | None = None) -> FreeVibration:
         raise ModelError("support", MISSING)
     if missing := massless(machine):
         raise MassError(missing)
-    step = model if model in get_args(Step) else usual_step(machine, model)
-    return FreeVibration(Linear.of(machine, cast(Step, step)))
+    return FreeVibration(Linear.of(machine, usual_step(machine, model)))

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, ResponseError
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge
 from equipoise.signals import Periodic
@@ -20,6 +20,9 @@ from equipoise.structures.excitation import Excitation, Step
 from equipoise.structures.modes import Mode, find_modes
 
 Array = np.ndarray[Any, Any]
+
+SINGULAR = 1e10
+"""Condition of an order's equations above which it meets an undamped mode."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,7 +88,8 @@ class Linear:
 
         Raises
         ------
-        ModelError : something would move without bound.
+        ModelError : a constant force drives the support away.
+        ResponseError : a resonance without damping.
         """
         wrench = self.wrench(speed)
         frequency = wrench.orders * speed
@@ -98,13 +102,21 @@ class Linear:
         # A coordinate without a spring has no mean of its own; nothing must push it in the mean.
         mean = self._mean(loads[0].real)
         loads[0], impedance[0] = mean, np.eye(len(mean))
-        try:
-            moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
-        except np.linalg.LinAlgError:
-            raise ModelError(
-                "support.mounts", f"a resonance without damping at {speed:g} rad/s; give a damping"
-            ) from None
+        if self._resonant(impedance, frequency):
+            raise ResponseError(
+                f"resonance without damping at {speed:g} rad/s; give the mounts a damping, or take "
+                "another speed"
+            )
+        moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
         return Periodic(moved.T, wrench.turns)
+
+    def _resonant(self, impedance: Array, frequency: Array) -> bool:
+        """Whether an order meets a mode that nothing damps, as near as rounding tells."""
+        inertia = frequency[:, None] ** 2 * np.diagonal(self.mass)
+        size = np.abs(np.diagonal(self.stiffness)) + inertia
+        size[0] = 1.0
+        scaled = impedance / np.sqrt(size[:, :, None] * size[:, None, :])
+        return bool(np.max(np.linalg.cond(scaled)) > SINGULAR)
 
     def _mean(self, load: Array) -> Array:
         scale = float(np.linalg.norm(self.excitation.weights[0][0])) + float(np.linalg.norm(load))

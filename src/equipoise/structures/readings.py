@@ -96,7 +96,7 @@ class Contact:
         moved, moving = self.at.displacement(place), self.at.velocity(place, rate)
         force = self.preload - self.stiffness * moved - self.damping * moving
         if self.one_sided:
-            force = np.where(force.real > 0, force, 0.0 * force)
+            force = np.where(force.real > 0, force, 0.0)
         return force
 
 

@@ -28,8 +28,8 @@ class Resonance:
     speed : of the crank, rad/s.  order : events in a turn.  mode : its number, from 1.
     frequency : of the mode, rad/s.
     share : amplitude at the gauge that this resonance shakes most, over the largest there.
-    avoid : speeds between which the mode amplifies this order more than three times; None where
-        its damping never lets it.
+    avoid : speeds between which the mode amplifies this order more than three times, the slower one
+        first; None where its damping never lets it.
     """
 
     speed: float

@@ -15,6 +15,9 @@ from equipoise.structures.response import DriveSignals, GaugeSignals, MountForce
 
 Array = np.ndarray[Any, Any]
 
+NEUTRAL = 1e-9
+"""Growth of a mode, beside its frequency, up to which it is rounding."""
+
 
 def respond_linear(linear: Linear, speed: float) -> Response:
     """Response of a linear step, by orders."""
@@ -25,6 +28,8 @@ def respond_linear(linear: Linear, speed: float) -> Response:
         for name, gauge in gauges_of(body).items()
     }
     mounts, notes = linear_mounts(linear, moved, moved.derivative() * speed, speed)
+    if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
+        notes.append("the support falls over by itself: it does not stand in the drawn position")
     return Response(
         body.machine,
         linear.excitation.step,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast, get_args
@@ -13,8 +13,8 @@ from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.body import MISSING
+from equipoise.structures.branches import Progress, follow_speeds
 from equipoise.structures.choice import chosen_model, usual_step
-from equipoise.structures.exact import solve_exact
 from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
 from equipoise.structures.modes import Mode
@@ -25,7 +25,6 @@ from equipoise.structures.small_motion import respond_linear
 from equipoise.structures.table import Values, mode_values
 
 Array = np.ndarray[Any, Any]
-Progress = Callable[[int, int], None]
 
 SPEEDS = 200
 """In a sweep, besides those about resonances."""
@@ -182,13 +181,12 @@ def sweep_speed(
     linear = Linear.of(machine, step)
     met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
     grid = _speeds(slowest, fastest, speeds, met, linear)
-    answers, notes = [], []
-    for number, answer in enumerate(_answers(linear, model, drive, grid), 1):
-        answers.append(answer)
-        if progress is not None:
-            progress(number, len(grid))
-    notes += _missing(grid, answers)
-    return _gathered(machine, model, grid, answers, linear, met, tuple(notes))
+    told = progress if progress is not None else (lambda done, total: None)
+    if model == "exact":
+        answers, notes = follow_speeds(machine, grid.tolist(), drive, told)
+    else:
+        answers, notes = _by_orders(linear, model, grid.tolist(), told), []
+    return _gathered(machine, model, grid, answers, linear, met, (*notes, *_missing(grid, answers)))
 
 
 def _speeds(
@@ -205,23 +203,19 @@ def _speeds(
     return inside if fastest > 0 else inside[::-1]
 
 
-def _answers(linear: Linear, model: Model, drive: bool, grid: Array) -> Iterator[Response | None]:
-    """The response at every speed; exact ones start from their neighbour."""
-    near = None
-    for speed in grid.tolist():
-        if model == "coupled":
-            yield respond_coupled(linear, speed)
-        elif model != "exact":
-            yield respond_linear(linear, speed)
-        else:
-            try:
-                found = solve_exact(linear.body.machine, speed, drive, near)
-            except ResponseError:
-                near = None
-                yield None
-                continue
-            near = None if drive else found.found.orbit.at
-            yield found.response(brief=True)
+def _by_orders(
+    linear: Linear, model: Model, speeds: list[float], progress: Progress
+) -> list[Response | None]:
+    """The response at every speed by a model whose speeds do not depend on each other."""
+    answers: list[Response | None] = []
+    respond = respond_coupled if model == "coupled" else respond_linear
+    for speed in speeds:
+        try:
+            answers.append(respond(linear, speed))
+        except ResponseError:
+            answers.append(None)
+        progress(len(answers), len(speeds))
+    return answers
 
 
 def _missing(grid: Array, answers: list[Response | None]) -> list[str]:

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import MassError, ModelError, UsageError
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.body import Body
 from equipoise.structures.choice import chosen_model
@@ -24,6 +25,7 @@ from equipoise.structures.readings import Reading
 Array = np.ndarray[Any, Any]
 
 MOST_TURNS = 2000
+LEAST_SAMPLES, SAMPLES_PER_TURN = 2000, 72
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +101,7 @@ def from_rest(
     duration: float,
     speed: float | None = None,
     drive: bool = False,
-    samples: int = 2000,
+    samples: int | None = None,
 ) -> Transient:
     """Follow a machine from rest in the drawn position.
 
@@ -108,14 +110,15 @@ def from_rest(
     duration : s.
     speed : of the crank, rad/s, which it has at once; with `drive` it stands still at first, and
         the motor brings it up.
-    samples : number of instants that are told.
+    samples : number of instants that are told; 72 in each turn, and 2000 at least, if None.
 
     Raises
     ------
     ModelError, UsageError, ResponseError.
     """
-    model = chosen_model(machine, "exact", drive)
-    assert model == "exact"
+    chosen_model(machine, "exact", drive)
+    if missing := massless(machine):
+        raise MassError(missing)
     speed = machine.drive.speed if speed is None else float(speed)
     turns = abs(speed) * duration / (2 * pi)
     if not 0 < turns <= MOST_TURNS:
@@ -124,12 +127,14 @@ def from_rest(
             f"than 0 and at most {MOST_TURNS} turns"
         )
     system, shift = _system(machine, speed, drive)
-    count = 2 * len(system.free)
-    begin = np.zeros(count + 2)
-    begin[count] = 0.0 if drive else speed
-    time = np.linspace(0.0, duration, samples)
+    states_of = 2 * len(system.free)
+    begin = np.zeros(states_of + 2)
+    begin[states_of] = 0.0 if drive else speed
+    count = max(LEAST_SAMPLES, round(SAMPLES_PER_TURN * turns)) if samples is None else samples
+    time = np.linspace(0.0, duration, count + 1)
     states = follow(system, time, begin, shift)
-    return Transient(machine, system, time, states[:count], states[count + 1], states[count])
+    moved, crank_speed, crank_angle = np.split(states, [states_of, states_of + 1])
+    return Transient(machine, system, time, moved, crank_angle[0], crank_speed[0])
 
 
 def _system(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, float]:
