@@ -15,19 +15,17 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.reactions import Pass
 from equipoise.signals import Periodic
+from equipoise.structures.beginning import conditions_of, equations, from_linear, turns_of
 from equipoise.structures.body import Body
 from equipoise.structures.carried import Ride, joint_forces
-from equipoise.structures.collocation import Conditions
 from equipoise.structures.coupled import Coupled
 from equipoise.structures.following import settled
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.linkages import Sums, rows_of
-from equipoise.structures.motor import speed_at, torque_on_crank
 from equipoise.structures.readings import PITCH, Reading
 from equipoise.structures.response import (
     DriveSignals,
@@ -46,8 +44,6 @@ NEUTRAL = 1e-9
 """How near to 1 a multiplier is told as 1."""
 LEANING = 10.0
 """deg, from which on it is told how far from the drawn position the support has come to rest."""
-ROUGH = 12
-"""Orders of the linear response that do to start from."""
 
 
 def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
@@ -63,67 +59,13 @@ def solve_exact(
     near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
         from; the linear response if None.
     """
-    linear = None if machine.support is None else Linear.of(machine, "moment")
-    torque = torque_on_crank(machine.drive) if drive else None
-    if linear is None:
-        assert torque is not None
-        system = Coupled.on_ground(machine, speed, torque)
-    else:
-        system = Coupled.on_support(linear.body, linear.rest, speed, torque)
+    system, linear = equations(machine, speed, drive)
     guesses: list[Guess] = [] if near is None else [near]
-    guesses.append(partial(_from_linear, system, linear))
-    if torque is None:
+    guesses.append(partial(from_linear, system, linear))
+    if system.torque is None:
         guesses.append(partial(settled, system))
-    found = steady(system, guesses, _turns(machine), conditions_of(system))
+    found = steady(system, guesses, turns_of(machine), conditions_of(system))
     return ExactSolution(system, linear, found)
-
-
-def _turns(machine: Machine) -> int:
-    return assemble(machine).cycle.turns
-
-
-def conditions_of(system: Coupled) -> Conditions:
-    """What closes a period: everything comes back, and the mean speed is held where it is."""
-    conditions = Conditions.periodic(system.count)
-    if system.torque is None:
-        return conditions
-    begin, end, value = conditions.begin.copy(), conditions.end.copy(), conditions.value.copy()
-    time, shift = system.count - 2, system.count - 1
-    begin[time], end[time] = 0.0, 0.0
-    begin[time, time] = 1.0  # the time begins at 0
-    begin[shift], end[shift] = 0.0, 0.0
-    motor = system.machine.drive.motor
-    assert motor is not None
-    if motor.mean_speed == "held":
-        end[shift, time] = 1.0
-        value[shift] = 2 * pi * _turns(system.machine) / abs(system.speed)
-    else:
-        begin[shift, shift] = 1.0
-    return Conditions(begin, end, value)
-
-
-def _from_linear(system: Coupled, linear: Linear | None, s: Array) -> Array:
-    """States of the linear response, with the crank's speed constant."""
-    states = []
-    if linear is not None:
-        whole, theta = linear.motion(system.speed), system.sense * s
-        moved = Periodic(whole.amplitudes[:, : ROUGH * whole.turns + 1], whole.turns)
-        states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
-    if system.torque is None:
-        return np.stack(states)
-    motor = system.machine.drive.motor
-    assert motor is not None
-    mean = np.sign(system.speed) * _mean_torque(system.machine, system.speed) / motor.ratio
-    own = speed_at(motor, mean)
-    speed, shift = system.speed, motor.ratio * abs(system.speed) - own
-    if motor.mean_speed == "free":
-        speed, shift = np.sign(system.speed) * own / motor.ratio, 0.0
-    return np.stack([*states, np.full_like(s, speed), s / abs(speed), np.full_like(s, shift)])
-
-
-def _mean_torque(machine: Machine, speed: float) -> float:
-    found = forces(move(machine, SAMPLES, speed, 0.0))
-    return float(np.mean(found.drive_torque)) * len(rows_of(machine))
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,7 +82,7 @@ class ExactSolution:
 
     @cached_property
     def turns(self) -> int:
-        return _turns(self.machine)
+        return turns_of(self.machine)
 
     @cached_property
     def turned(self) -> Array:

@@ -10,16 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import MassError, ModelError, UsageError
+from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.structures.beginning import equations
 from equipoise.structures.body import Body
 from equipoise.structures.choice import chosen_model
 from equipoise.structures.coupled import Coupled
 from equipoise.structures.exact import solve_exact
 from equipoise.structures.following import follow
-from equipoise.structures.linear import Linear, gauges_of
-from equipoise.structures.motor import torque_on_crank
+from equipoise.structures.linear import gauges_of
 from equipoise.structures.readings import Reading
 
 Array = np.ndarray[Any, Any]
@@ -126,7 +126,8 @@ def from_rest(
             f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
             f"than 0 and at most {MOST_TURNS} turns"
         )
-    system, shift = _system(machine, speed, drive)
+    system, _ = equations(machine, speed, drive)
+    shift = _shift(machine, speed) if drive else 0.0
     states_of = 2 * len(system.free)
     begin = np.zeros(states_of + 2)
     begin[states_of] = 0.0 if drive else speed
@@ -137,20 +138,10 @@ def from_rest(
     return Transient(machine, system, time, moved, crank_angle[0], crank_speed[0])
 
 
-def _system(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, float]:
-    """The equations, and the shift of the motor's curve that holds the mean speed."""
-    if machine.support is None and not drive:
-        raise ModelError("support", "a frame that stands still does not vibrate")
-    shift = 0.0
-    torque = None
-    if drive:
-        torque = torque_on_crank(machine.drive)
-        motor = machine.drive.motor
-        assert motor is not None
-        if motor.mean_speed == "held":
-            shift = float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
-    if machine.support is None:
-        assert torque is not None
-        return Coupled.on_ground(machine, speed, torque), shift
-    linear = Linear.of(machine, "moment")
-    return Coupled.on_support(linear.body, linear.rest, speed, torque), shift
+def _shift(machine: Machine, speed: float) -> float:
+    """Shift of the motor's curve that holds the mean speed in the steady state."""
+    motor = machine.drive.motor
+    assert motor is not None
+    if motor.mean_speed == "free":
+        return 0.0
+    return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])

@@ -22,17 +22,7 @@ USUAL: dict[Dimension, str] = {
     "torque": "N m",
 }
 
-OF_VIBRATION: dict[Dimension, str] = {
-    "length": "mm",
-    "angle": "deg",
-    "speed": "mm/s",
-    "acceleration": "m/s^2",
-    "time": "ms",
-    "frequency": "Hz",
-    "angular speed": "rpm",
-    "force": "N",
-    "torque": "N m",
-}
+OF_VIBRATION: dict[Dimension, str] = {**USUAL, "length": "mm", "speed": "mm/s"}
 
 
 @dataclass(frozen=True)
