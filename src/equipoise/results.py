@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 
+LEAST_ANGLES = 90
+"""In a turn, from which harmonics are taken: those that matter end before half of it."""
+
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
@@ -74,6 +77,12 @@ class Analysis:
         found = self.forces
         if not self.motion.whole_cycle:
             raise UsageError("orders need crank angles over the whole cycle; give a number of them")
+        in_a_turn = len(self.crank_angle) // self.motion.turns
+        if in_a_turn < LEAST_ANGLES:
+            raise UsageError(
+                f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
+                "high ones are taken for low ones"
+            )
         mass = sum(link.mass or 0.0 for link in self.machine.links.values())
         signals = {
             "shaking_force.x": found.shaking_force.x,

@@ -26,13 +26,17 @@ EXAMPLES = (
     "lee-kim-c",
     "planetary-planting-arm",
     "quick-return",
+    "riding-transplanter",
     "scotch-yoke",
     "slider-crank-engine",
     "stephenson-six-bar",
     "transplanter",
+    "walking-transplanter",
     "watt-six-bar",
     "yamashita-1",
     "yamashita-2",
+    "yamashita-rig",
+    "yamashita-rig-counterweight",
 )
 
 

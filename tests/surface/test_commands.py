@@ -28,7 +28,7 @@ from surface.running import (
 )
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("analyze", "check", "examples", "new", "plant", "schema")
+COMMANDS = ("analyze", "check", "decay", "examples", "modes", "new", "plant", "respond", "schema")
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
 MASSES = re.compile(r"^(mass|center_of_mass|inertia) = .*\n", re.MULTILINE)
@@ -70,15 +70,24 @@ def test_help_names_every_command() -> None:
 
 
 OPTIONS = {
-    "analyze": (
-        ["FILE", "--angles", "--speed", "--acceleration", "--about", "--json", "--split", "--csv"]
-    ),
+    "analyze": [
+        *["FILE", "--angles", "--speed", "--acceleration", "--about", "--json", "--split"],
+        *["--csv", "--orders", "--crank-zero"],
+    ],
     "check": ["FILE"],
+    "decay": (
+        ["--stiffness", "--arm", "--spring-arm", "--confidence", "--json", "--plot", "--format"]
+    ),
     "examples": [],
+    "modes": ["FILE", "--model", "--json", "--plot", "--format"],
     "new": ["FILE"],
     "plant": [
         *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
         *["--plot", "--format", "--fit", "--out", "--seed"],
+    ],
+    "respond": [
+        *["FILE", "--model", "--speed", "--speeds", "--drive", "--transient", "--units"],
+        *["--json", "--csv", "--plot", "--format"],
     ],
     "schema": [],
 }

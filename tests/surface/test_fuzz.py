@@ -65,6 +65,10 @@ COMMANDS = (
     ("analyze", "--json", "--split", "--angles", "0 deg, -400 deg"),
     ("analyze", "--angles", "4", "--csv", "result.csv"),
     ("check",),
+    ("respond", "--json"),
+    ("respond", "--json", "--model", "torque", "--speed", "20:300 rpm", "--speeds", "2"),
+    ("modes", "--json"),
+    ("modes",),
 )
 commands = st.sampled_from(COMMANDS)
 
@@ -379,6 +383,29 @@ def test_extreme_arguments(
     pairs = ((key, value) for (key, _), value in zip(PAIRS, chosen, strict=True) if value)
     words = [word for pair in pairs for word in pair]
     checked(equipoise("analyze", name, *words, *output), bool(output))
+
+
+RESPOND = (
+    ("--speed", ("1e29 rpm", "-1e-29 rpm", "0 rpm", "1e-29:1e29 rpm", "-3:-300 rpm", "9:8 rpm",
+                 "1:2:3 rpm", "5:6", ":", "x")),
+    ("--speeds", ("0", "2", "-1", "9", "1e9", "20001", "x")),
+    ("--model", ("linear", "torque", "moment", "best", "")),
+    ("--units", ("", "um, rad/s", "kg", ",", "mm, mm", "[bold]")),
+    ("--csv", ("result.csv", "", ".")),
+)  # fmt: skip
+
+
+@given(
+    st.sampled_from(("yamashita-rig", "walking-transplanter", "riding-transplanter", "lee-kim-a")),
+    st.tuples(*(st.none() | st.sampled_from(values) for _, values in RESPOND)),
+)
+@fuzz(60)
+def test_extreme_speeds(name: str, chosen: tuple[str | None, ...]) -> None:
+    pairs = ((key, value) for (key, _), value in zip(RESPOND, chosen, strict=True) if value)
+    words = [word for pair in pairs for word in pair]
+    result = equipoise("respond", name, *words, "--json")
+    if result.err != "wrote result.csv\n":
+        checked(result, True)
 
 
 # -- sizes -----------------------------------------------------------------------------------------

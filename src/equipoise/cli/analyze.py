@@ -7,7 +7,7 @@ import sys
 from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import check_belonging, check_target, naming, quantity
+from equipoise.cli.options import check_belonging, check_target, naming, quantity, whole
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ def analyze(
     json: bool = False,
     split: bool = False,
     csv: str | None = None,
-    orders: Annotated[int | None, SIGNED] = None,
+    orders: Annotated[str | None, SIGNED] = None,
     crank_zero: Annotated[str | None, SIGNED] = None,
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
@@ -64,8 +64,7 @@ def analyze(
     check_belonging("--json", json or None, split=split or None)
     if crank_zero is not None and orders is None:
         raise UsageError("--crank-zero belongs to --orders; give both")
-    if orders is not None and not 1 <= orders <= MOST_ORDERS:
-        raise UsageError(f"--orders: got {orders}; give 1 to {MOST_ORDERS}")
+    count = None if orders is None else whole("--orders", orders, 1, MOST_ORDERS)
     zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     if csv is not None:
         check_target("--csv", csv, file, machine)
@@ -79,7 +78,7 @@ def analyze(
     )
     with naming(file):
         analysis = pipeline.analyze(machine, *arguments)
-        told = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
+        told = {} if count is None else {"by_order": order_values(analysis, count, zero)}
     if csv is not None:
         from equipoise.io.output import to_csv, write
 
@@ -89,10 +88,10 @@ def analyze(
         from equipoise.io.output import json_text
 
         print(json_text(analysis.to_dict(split) | told))
-    elif orders is not None:
+    elif count is not None:
         from equipoise.terminal.orders import print_orders
 
-        print_orders(analysis, orders, zero)
+        print_orders(analysis, count, zero)
     else:
         from equipoise.terminal.analysis import print_analysis
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
@@ -46,6 +47,22 @@ def quantity(option: str, text: str, dimension: str) -> float:
         return parse(text, dimension)  # type: ignore[arg-type]
     except UsageError as error:
         raise UsageError(f"{option}: {error}") from error
+
+
+def whole(option: str, text: str, least: int, most: int) -> int:
+    """A whole number between two others."""
+    if not re.fullmatch("[+-]?[0-9]{1,9}", text) or not least <= int(text) <= most:
+        raise UsageError(f"{option}: got {text!r}; give a whole number from {least} to {most}")
+    return int(text)
+
+
+def check_folder(option: str, path: str) -> None:
+    """Pictures need a folder, or a place where one can be made."""
+    above = os.path.abspath(path)
+    while not os.path.lexists(above) and os.path.dirname(above) != above:
+        above = os.path.dirname(above)
+    if not path or not os.path.isdir(above):
+        raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
 
 
 def check_target(

@@ -10,7 +10,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import check_belonging, check_target, naming, quantity
+from equipoise.cli.options import (
+    check_belonging,
+    check_folder,
+    check_target,
+    naming,
+    quantity,
+)
 from equipoise.cli.results import Kind, draw, write_csv
 from equipoise.errors import UsageError
 
@@ -85,8 +91,8 @@ def plant(
     new = None if fit is None else _new_file(machine, file, out)
     if csv is not None:
         check_target("--csv", csv, file, machine, [name for name in (fit, new) if name])
-    if plot is not None and (not plot or os.path.isfile(plot)):
-        raise UsageError(f"--plot: got {plot!r}; give the name of a folder")
+    if plot is not None:
+        check_folder("--plot", plot)
     rows = _count(angles)
     fitted = None if fit is None or new is None else _fit(machine, file, fit, new, seed)
     with naming(file):

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Annotated, Literal
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import naming, quantity
+from equipoise.cli.options import naming, quantity, whole
 from equipoise.cli.results import Kind, Wanted
 from equipoise.errors import UsageError
 
@@ -27,7 +27,7 @@ def respond(
     *,
     model: Model | None = None,
     speed: Annotated[str | None, SIGNED] = None,
-    speeds: Annotated[int | None, SIGNED] = None,
+    speeds: Annotated[str | None, SIGNED] = None,
     drive: bool = False,
     transient: Annotated[str | None, SIGNED] = None,
     units: str = "",
@@ -74,15 +74,17 @@ def respond(
     ends = [] if speed is None else _speeds(speed)
     if speeds is not None and len(ends) != 2:
         raise UsageError('--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both')
-    if ends:
-        machine = machine.with_drive(speed=ends[-1])
-    with naming(file):
-        if transient is not None:
-            _follow(machine, quantity("--transient", transient, "time"), ends, model, drive, wanted)
-        elif len(ends) == 2:
-            _sweep(machine, (ends[0], ends[1]), model, drive, speeds, shown_in, wanted)
-        else:
-            _answer(machine, model, drive, shown_in, wanted)
+    if transient is not None:
+        duration = _duration(transient, ends, model)
+        with naming(file):
+            _follow(machine, duration, ends[0] if ends else None, drive, shown_in, wanted)
+    elif len(ends) == 2:
+        count = None if speeds is None else whole("--speeds", speeds, 2, 20_000)
+        with naming(file):
+            _sweep(machine, (ends[0], ends[1]), model, drive, count, shown_in, wanted)
+    else:
+        with naming(file):
+            _answer(machine, ends[0] if ends else None, model, drive, shown_in, wanted)
 
 
 @app.command
@@ -141,7 +143,11 @@ def _speeds(text: str) -> list[float]:
         )
     if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
         parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"
-    ends = [quantity("--speed", part, "angular speed") for part in parts]
+    ends = [quantity("--speed", part, "angular speed") for part in parts[::-1]][::-1]
+    if ends == [0.0]:
+        raise UsageError(
+            f"--speed: got {text!r}; a crank that stands still shakes nothing; give another speed"
+        )
     if len(ends) == 2 and (ends[0] * ends[1] <= 0 or abs(ends[0]) >= abs(ends[1])):
         raise UsageError(
             f"--speed: got {text!r}; give a range of speeds of the same sign that are not 0, the "
@@ -150,13 +156,30 @@ def _speeds(text: str) -> list[float]:
     return ends
 
 
+def _duration(text: str, ends: Sequence[float], model: Model | None) -> float:
+    """How long to follow a machine from rest, s."""
+    if len(ends) == 2:
+        raise UsageError("--transient follows the machine at one speed; give one, no range")
+    if model not in {None, "exact"}:
+        raise UsageError(f"--transient is by the model exact; leave out --model {model}")
+    duration = quantity("--transient", text, "time")
+    if duration <= 0:
+        raise UsageError(f"--transient: got {text!r}; give a time of more than 0")
+    return duration
+
+
 def _answer(
-    machine: Machine, model: Model | None, drive: bool, units: Units, wanted: Wanted
+    machine: Machine,
+    speed: float | None,
+    model: Model | None,
+    drive: bool,
+    units: Units,
+    wanted: Wanted,
 ) -> None:
     """The response at one speed."""
     from equipoise.structures.forced import respond as solve
 
-    found = solve(machine, None, model, drive)
+    found = solve(machine, speed, model, drive)
 
     def drawings() -> Mapping[str, Figure]:
         from equipoise.plotting.vibration import response_drawings
@@ -180,7 +203,8 @@ def _others(machine: Machine, found: Response) -> dict[str, Response]:
     others = {}
     for model in models_of(machine):
         try:
-            others[model] = found if model == found.model else solve(machine, None, model)
+            same = model == found.model
+            others[model] = found if same else solve(machine, found.speed, model)
         except EquipoiseError:
             continue
     return {str(model): response for model, response in others.items()}
@@ -219,19 +243,15 @@ def _sweep(
 def _follow(
     machine: Machine,
     duration: float,
-    ends: Sequence[float],
-    model: Model | None,
+    speed: float | None,
     drive: bool,
+    units: Units,
     wanted: Wanted,
 ) -> None:
     """The machine from rest."""
     from equipoise.structures.transient import from_rest
 
-    if len(ends) == 2:
-        raise UsageError("--transient follows the machine at one speed; give one, no range")
-    if model not in {None, "exact"}:
-        raise UsageError(f"--transient is by the model exact; leave out --model {model}")
-    found = from_rest(machine, duration, drive=drive)
+    found = from_rest(machine, duration, speed, drive)
 
     def drawings() -> Mapping[str, Figure]:
         from equipoise.plotting.vibration import transient_drawings
@@ -241,6 +261,6 @@ def _follow(
     def show() -> None:
         from equipoise.terminal.transient import print_transient
 
-        print_transient(found)
+        print_transient(found, units)
 
     wanted.give(found.columns, drawings, found.to_dict, show)

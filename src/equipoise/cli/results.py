@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
-from equipoise.cli.options import check_belonging, check_target
-from equipoise.errors import UsageError
+from equipoise.cli.options import check_belonging, check_folder, check_target
 
 if TYPE_CHECKING:
     import numpy as np
@@ -35,8 +33,8 @@ class Wanted:
         check_belonging("--plot", self.plot, format=self.format)
         if self.csv is not None:
             check_target("--csv", self.csv, file, machine, others)
-        if self.plot is not None and (not self.plot or os.path.isfile(self.plot)):
-            raise UsageError(f"--plot: got {self.plot!r}; give the name of a folder")
+        if self.plot is not None:
+            check_folder("--plot", self.plot)
 
     def give(
         self,

@@ -30,7 +30,7 @@ def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Lin
 
     drive : whether the crank's speed follows from the motor.
     """
-    torque = torque_on_crank(machine.drive) if drive else None
+    torque = torque_on_crank(machine.drive, speed) if drive else None
     if machine.support is None:
         assert torque is not None
         return Coupled.on_ground(machine, speed, torque), None
@@ -41,6 +41,14 @@ def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Lin
 def turns_of(machine: Machine) -> int:
     """Turns of the crank in a period."""
     return assemble(machine).cycle.turns
+
+
+def swings_in_a_turn(linear: Linear | None, speed: float) -> float:
+    """How often the fastest mode swings while the crank turns once."""
+    if linear is None:
+        return 0.0
+    fastest = max((mode.damped_frequency for mode in linear.modes if mode.swings), default=0.0)
+    return fastest / abs(speed)
 
 
 def conditions_of(system: Coupled) -> Conditions:
@@ -63,23 +71,33 @@ def conditions_of(system: Coupled) -> Conditions:
     return Conditions(begin, end, value)
 
 
-def from_linear(system: Coupled, linear: Linear | None, s: Array) -> Array:
-    """States of the linear response, with the crank's speed constant."""
+def from_linear(
+    system: Coupled, linear: Linear | None, setting: tuple[float, float] | None, s: Array
+) -> Array:
+    """States of the linear response, with the crank's speed constant.
+
+    setting : with a motor, mean speed and shift of its curve.
+    """
     states = []
     if linear is not None:
         whole, theta = linear.motion(system.speed), system.sense * s
         moved = Periodic(whole.amplitudes[:, : ROUGH * whole.turns + 1], whole.turns)
         states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
-    if system.torque is None:
+    if setting is None:
         return np.stack(states)
-    motor = system.machine.drive.motor
-    assert motor is not None
-    mean = np.sign(system.speed) * _mean_torque(system.machine, system.speed) / motor.ratio
-    own = speed_at(motor, mean)
-    speed, shift = system.speed, motor.ratio * abs(system.speed) - own
-    if motor.mean_speed == "free":
-        speed, shift = np.sign(system.speed) * own / motor.ratio, 0.0
+    speed, shift = setting
     return np.stack([*states, np.full_like(s, speed), s / abs(speed), np.full_like(s, shift)])
+
+
+def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
+    """Mean speed of the crank and shift of the motor's curve, rad/s, if the speed were constant."""
+    motor = machine.drive.motor
+    assert motor is not None
+    sense = float(np.sign(speed))
+    own = speed_at(motor, sense * _mean_torque(machine, speed) / motor.ratio)
+    if motor.mean_speed == "free":
+        return sense * own / motor.ratio, 0.0
+    return speed, motor.ratio * abs(speed) - own
 
 
 def _mean_torque(machine: Machine, speed: float) -> float:

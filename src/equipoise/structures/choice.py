@@ -8,6 +8,11 @@ from equipoise.structures.body import MISSING
 from equipoise.structures.excitation import Step
 from equipoise.structures.response import MODELS, Model
 
+STANDSTILL = "a crank that stands still shakes nothing; give another speed"
+FREE = (
+    'it is "free", so that the speed follows from the motor and cannot be asked for; leave the '
+    'speed out, or make it "held"'
+)
 STEP_OF: dict[str, Step] = {
     "linear": "linear",
     "torque": "torque",
@@ -40,6 +45,23 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
     if model is not None:
         return model
     return "exact" if drive else usual_step(machine)
+
+
+def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
+    """Speed of the crank asked for, rad/s; refused where it cannot be had.
+
+    Raises
+    ------
+    ModelError, UsageError : it is 0, or the motor sets it.
+    """
+    if machine.drive.speed == 0 and speed is None:
+        raise ModelError("drive.speed", f"got 0; {STANDSTILL}")
+    if speed == 0:
+        raise UsageError(f"got a speed of 0; {STANDSTILL}")
+    motor = machine.drive.motor
+    if drive and speed is not None and motor is not None and motor.mean_speed == "free":
+        raise ModelError("drive.motor.mean_speed", FREE)
+    return machine.drive.speed if speed is None else float(speed)
 
 
 def usual_step(machine: Machine, model: str | None = None) -> Step:

@@ -22,6 +22,8 @@ STAGES = 8
 """Nodes in an interval: of order 16 at its ends."""
 COMPLEX_STEP = 1e-30
 MOST_ROUNDS = 40
+NOTHING = 1e-10
+"""Size of a state (m, rad and their rates) below which it is rounding."""
 CLOSE = 1e-12
 """Change of the solution, beside its largest value, at which Newton's method stops."""
 
@@ -163,7 +165,7 @@ def solve(
             if new <= 2 * misfit or share < 1 / 32 or not np.isfinite(misfit):
                 break
             share /= 4
-        scale = np.maximum(np.max(np.abs(tried), axis=(1, 2)), 1e-300)
+        scale = np.maximum(np.max(np.abs(tried), axis=(1, 2)), NOTHING)
         change = float(np.max(np.abs(step.starts) / scale[:, None]))
         if not np.isfinite(change):
             return replace(orbit, change=np.inf)
@@ -180,7 +182,7 @@ def _slopes(rates: Rates, states: Array) -> Array:
 
 def _misfit(orbit: Orbit, states: Array, conditions: Conditions) -> float:
     """How far from a solution, each state beside its own size."""
-    scale = np.maximum(np.max(np.abs(states), axis=(1, 2)), 1e-300)
+    scale = np.maximum(np.max(np.abs(states), axis=(1, 2)), NOTHING)
     inner = np.abs(orbit.states - states).max(axis=(1, 2))
     across = np.abs(orbit.starts[:, 1:] - _ends(orbit)).max(axis=1)
     return float(np.max(np.maximum(inner, across) / scale))

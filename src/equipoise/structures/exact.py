@@ -19,13 +19,21 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.reactions import Pass
 from equipoise.signals import Periodic
-from equipoise.structures.beginning import conditions_of, equations, from_linear, turns_of
+from equipoise.structures.beginning import (
+    conditions_of,
+    equations,
+    from_linear,
+    motor_setting,
+    swings_in_a_turn,
+    turns_of,
+)
 from equipoise.structures.body import Body
 from equipoise.structures.carried import Ride, joint_forces
 from equipoise.structures.coupled import Coupled
 from equipoise.structures.following import settled
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.linkages import Sums, rows_of
+from equipoise.structures.motor import fastest
 from equipoise.structures.readings import PITCH, Reading
 from equipoise.structures.response import (
     DriveSignals,
@@ -34,14 +42,13 @@ from equipoise.structures.response import (
     Joint,
     MountForce,
     Response,
+    told_of,
 )
 from equipoise.structures.small_motion import force_amplitudes, mount_force
 from equipoise.structures.steady import SAMPLES, Guess, Steady, steady
 
 Array = np.ndarray[Any, Any]
 
-NEUTRAL = 1e-9
-"""How near to 1 a multiplier is told as 1."""
 LEANING = 10.0
 """deg, from which on it is told how far from the drawn position the support has come to rest."""
 
@@ -61,10 +68,12 @@ def solve_exact(
     """
     system, linear = equations(machine, speed, drive)
     guesses: list[Guess] = [] if near is None else [near]
-    guesses.append(partial(from_linear, system, linear))
+    setting = motor_setting(machine, speed) if drive else None
+    guesses.append(partial(from_linear, system, linear, setting))
     if system.torque is None:
         guesses.append(partial(settled, system))
-    found = steady(system, guesses, turns_of(machine), conditions_of(system))
+    swings = swings_in_a_turn(linear, speed)
+    found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
     return ExactSolution(system, linear, found)
 
 
@@ -170,11 +179,15 @@ class ExactSolution:
 
     def _notes(self, multipliers: Array) -> Iterator[str]:
         """What a reader has to know of the solution."""
-        largest = abs(multipliers[0]) if multipliers.size else 0.0
-        if largest > 1 + NEUTRAL:
-            yield "this steady state is not stable: a disturbance does not die out"
-        elif largest >= 1 - NEUTRAL:
-            yield "a disturbance neither grows nor dies out: something is undamped"
+        yield from told_of(multipliers)
+        motor = self.machine.drive.motor
+        if self.system.torque is not None and motor is not None:
+            shift, own = float(self.states[-1, 0]), fastest(motor)
+            if abs(shift) > own:
+                yield (
+                    f"to hold the mean speed, the motor's curve is shifted by {shift:.4g} rad/s, "
+                    f"more than its own {own:.4g} rad/s: it is too weak or slow for this machine"
+                )
         lean = float(np.degrees(np.mean(self.ride.place[PITCH])))
         if abs(lean) > LEANING:
             yield f"the support leans by {lean:.1f} deg from the drawn position in the mean"

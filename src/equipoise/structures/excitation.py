@@ -27,7 +27,7 @@ Step = Literal["linear", "torque", "moment"]
 STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
 
 ANGLES = 720
-"""Crank angles in a turn from which orders are taken."""
+"""Crank angles in a turn from which orders are taken; more where loads may set in at once."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,9 @@ class Excitation:
 
     @cached_property
     def motion(self) -> Motion:
-        return move(self.machine, ANGLES, acceleration=0.0)
+        planting = self.machine.planting
+        sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
+        return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
 
     @cached_property
     def pivot(self) -> complex:
@@ -110,6 +112,10 @@ class Excitation:
             total = here if total is None else total + here
         assert total is not None
         return total
+
+    def of_one(self, speed: float) -> Periodic:
+        """The same of one linkage alone, as the file has it."""
+        return self._of_row(speed, Row())
 
     def _of_row(self, speed: float, row: Row) -> Periodic:
         force_and_moment = self._on_pivot(speed).amplitudes

@@ -17,6 +17,8 @@ Array = np.ndarray[Any, Any]
 
 KNOTS = 1440
 """Crank angles in a turn between which the linkages' sums are interpolated by cubic splines."""
+MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
+"""Of the equations, in all; and for a guess."""
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
 SETTLING_TURNS = 40
 
@@ -50,14 +52,28 @@ class Table:
         return Sums(self.mass, *found)
 
 
-def follow(system: Coupled, time: Array, begin: Array, shift: float = 0.0) -> Array:
+def follow(
+    system: Coupled,
+    time: Array,
+    begin: Array,
+    shift: float = 0.0,
+    evaluations: int = MOST_EVALUATIONS,
+) -> Array:
     """States (D + D + 2, M) at times (M,): displacements, velocities, crank's speed and angle."""
     from scipy.integrate import solve_ivp
 
     table = Table(system)
     d = len(system.free)
+    left = evaluations
 
     def rates(_: float, y: Array) -> Array:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise ResponseError(
+                f"the motion over {time[-1]:g} s takes more than {evaluations} evaluations to "
+                "follow; give a shorter time, or softer mounts with less damping"
+            )
         driven = [] if system.torque is None else [y[2 * d], 0.0, shift]
         states = np.array([*y[: 2 * d], *driven])
         found = system.accelerations(table.at(y[2 * d + 1]), states)
@@ -89,7 +105,7 @@ def settled(system: Coupled, s: Array) -> Array:
     instants = (start + s[order]) / system.speed
     begin = np.zeros(2 * len(system.free) + 2)
     begin[-2] = system.speed
-    states = follow(system, np.concatenate([[0.0], np.abs(instants)]), begin)
+    states = follow(system, np.concatenate([[0.0], np.abs(instants)]), begin, 0.0, TO_SETTLE)
     found = np.empty((2 * len(system.free), len(s)))
     found[:, order] = states[: 2 * len(system.free), 1:]
     return found

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import cast, get_args
 
-from equipoise.errors import MassError, UsageError
+from equipoise.errors import MassError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.choice import chosen_model
+from equipoise.structures.choice import chosen_model, steady_speed
 from equipoise.structures.exact import respond_exact
 from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
@@ -36,9 +36,7 @@ def respond(
     model = chosen_model(machine, model, drive)
     if missing := massless(machine):
         raise MassError(missing)
-    speed = machine.drive.speed if speed is None else float(speed)
-    if speed == 0:
-        raise UsageError("got a speed of 0; a crank that stands still shakes nothing")
+    speed = steady_speed(machine, speed, drive)
     if model in get_args(Step):
         return respond_linear(Linear.of(machine, cast(Step, model)), speed)
     if model == "coupled":

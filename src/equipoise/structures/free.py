@@ -23,18 +23,19 @@ Array = np.ndarray[Any, Any]
 
 @dataclass(frozen=True, eq=False)
 class FreeVibration:
-    """Modes of a machine on its support, standing in the mean of a turn."""
+    """Modes of a machine on its support, standing in the mean of a turn.
+
+    linear : the machine as a linear system.  modes : by frequency.
+    preloads : force (N) or torque (N m) of each mount at rest.
+    """
 
     linear: Linear
+    modes: tuple[Mode, ...]
+    preloads: Mapping[str, float]
 
     @property
     def machine(self) -> Machine:
         return self.linear.body.machine
-
-    @property
-    def modes(self) -> tuple[Mode, ...]:
-        """By frequency."""
-        return self.linear.modes
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -47,11 +48,6 @@ class FreeVibration:
         body = self.linear.body
         shapes = np.array([mode.shape for mode in self.modes]).reshape(-1, len(body.free))
         return {n: shapes @ body.row(gauge)[body.free] for n, gauge in gauges_of(body).items()}
-
-    @property
-    def preloads(self) -> Mapping[str, float]:
-        """Force (N) or torque (N m) of each mount at rest."""
-        return self.linear.rest.preload
 
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units; shapes as real and imaginary parts."""
@@ -88,4 +84,5 @@ def vibrate_freely(machine: Machine, model: str | None = None) -> FreeVibration:
         raise ModelError("support", MISSING)
     if missing := massless(machine):
         raise MassError(missing)
-    return FreeVibration(Linear.of(machine, usual_step(machine, model)))
+    linear = Linear.of(machine, usual_step(machine, model))
+    return FreeVibration(linear, linear.modes, linear.rest.preload)

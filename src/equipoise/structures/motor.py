@@ -15,11 +15,14 @@ from equipoise.structures.coupled import Torque
 Array = np.ndarray[Any, Any]
 
 
-def torque_on_crank(drive: Drive) -> Torque:
-    """Torque on the crank, N m, at its speed and a shift of the motor's curve, both rad/s."""
+def torque_on_crank(drive: Drive, way: float) -> Torque:
+    """Torque on the crank, N m, at its speed and a shift of the motor's curve, both rad/s.
+
+    way : with the sign of the speed at which the motor is to turn the crank.
+    """
     motor = drive.motor
     assert motor is not None
-    sense = copysign(1.0, drive.speed)
+    sense = copysign(1.0, way)
     speeds, torques = _rows(motor)
     slopes = np.diff(torques) / np.diff(speeds)
 
@@ -38,6 +41,11 @@ def _rows(motor: Motor) -> tuple[Array, Array]:
         return np.array(motor.table.speed), np.array(motor.table.torque)
     assert motor.no_load_speed is not None and motor.stall_torque is not None
     return np.array([0.0, motor.no_load_speed]), np.array([motor.stall_torque, 0.0])
+
+
+def fastest(motor: Motor) -> float:
+    """Highest speed of a motor's curve, rad/s."""
+    return float(_rows(motor)[0][-1])
 
 
 def speed_at(motor: Motor, torque: float) -> float:

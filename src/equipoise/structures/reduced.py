@@ -22,7 +22,7 @@ from equipoise.structures.collocation import Conditions, Rates
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.linkages import rows_of
 from equipoise.structures.readings import IN_PLANE, PITCH
-from equipoise.structures.response import GaugeSignals, Response
+from equipoise.structures.response import GaugeSignals, Response, told_of
 from equipoise.structures.small_motion import linear_mounts, respond_linear
 from equipoise.structures.steady import SAMPLES, steady
 
@@ -130,11 +130,14 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
         )
         for name, (row, axis) in rows.items()
     }
+    multipliers = found.multipliers(system.count)
+    plain = respond_linear(linear, speed)
     return replace(
-        respond_linear(linear, speed),
+        plain,
         model="coupled",
         gauges=gauges,
         mounts=linear_mounts(linear, parts[0], parts[1], speed)[0],
         residual=found.residual,
-        multipliers=found.multipliers(system.count),
+        multipliers=multipliers,
+        notes=(*plain.notes, *told_of(multipliers)),
     )

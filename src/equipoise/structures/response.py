@@ -15,6 +15,8 @@ from equipoise.structures.table import Values, by_order, mode_values
 
 Array = np.ndarray[Any, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
+NEUTRAL = 1e-9
+"""How near to 1 a multiplier is told as 1."""
 MODELS: tuple[Model, ...] = ("linear", "torque", "moment", "coupled", "exact")
 EQUATIONS: dict[Model, str] = {
     "linear": "(59): shaking force at the drive's pivot",
@@ -129,10 +131,10 @@ class Response:
 
     @property
     def stable(self) -> bool | None:
-        """Whether small disturbances die out; None where no multipliers tell."""
+        """Whether small disturbances do not grow; None where no multipliers tell."""
         if self.multipliers is None or not self.multipliers.size:
             return None
-        return bool(np.abs(self.multipliers[0]) < 1)
+        return bool(np.abs(self.multipliers[0]) <= 1 + NEUTRAL)
 
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units."""
@@ -196,6 +198,16 @@ class Response:
             values["fluctuation"] = self.drive.fluctuation
             values["curve_shift"] = self.drive.shift
         return values
+
+
+def told_of(multipliers: Array) -> list[str]:
+    """What to say of multipliers that are not below 1, the largest of them first."""
+    largest = abs(multipliers[0]) if multipliers.size else 0.0
+    if largest > 1 + NEUTRAL:
+        return ["this steady state is not stable: a disturbance does not die out"]
+    if largest >= 1 - NEUTRAL:
+        return ["a disturbance neither grows nor dies out: something is undamped"]
+    return []
 
 
 def _gauge(gauge: GaugeSignals) -> Values:

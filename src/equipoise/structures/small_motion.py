@@ -88,9 +88,12 @@ def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForc
 
 
 def force_amplitudes(linear: Linear, speed: float) -> Array:
-    """Amplitude (K + 1,) of the force of all linkages on the frame, by order."""
-    wrench = linear.excitation.at(speed).amplitudes
-    return np.asarray(np.sqrt(np.sum(np.abs(wrench[:3]) ** 2, axis=0)))
+    """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where rows cancel."""
+    whole = linear.excitation.at(speed)
+    one = linear.excitation.of_one(speed)
+    sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in (whole, one))
+    rounding = 1e-10 * len(rows_of(linear.body.machine)) * np.max(single[1:], initial=0.0)
+    return np.where(sizes > rounding, sizes, 0.0)
 
 
 def _torque(linear: Linear, speed: float) -> Periodic:

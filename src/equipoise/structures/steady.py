@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from math import pi
+from math import ceil, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.structures.collocation import (
+    NOTHING,
     RULE,
     Conditions,
     Orbit,
@@ -25,7 +26,7 @@ SAMPLES = 720
 """In a turn, at which a solution is read off."""
 INTERVALS = 36
 """In a turn, to begin with."""
-MOST_INTERVALS = 4000
+MOST_INTERVALS, MOST_SWINGS = 4000, 2000
 FINE = 1e-11
 """Residual of an interval at which it is left as it is."""
 ROUNDS = 14
@@ -55,19 +56,33 @@ class Steady:
         return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
 
 
-def steady(system: System, guesses: Iterable[Guess], turns: int, conditions: Conditions) -> Steady:
+def steady(
+    system: System,
+    guesses: Iterable[Guess],
+    turns: int,
+    conditions: Conditions,
+    swings: float = 0.0,
+) -> Steady:
     """Find the periodic solution on a mesh that is refined where the equations are not met.
 
     Parameters
     ----------
     guesses : states (n, M) against the crank's turning (M,), rad; the next is tried where one leads
         nowhere, or to a solution that is not stable, such as a support balanced on its head.
+    swings : how often the support swings freely in a turn; the mesh has to follow that.
 
     Raises
     ------
     ResponseError : there is none that Newton's method could find.
     """
-    points = np.linspace(0.0, 2 * pi * turns, INTERVALS * turns + 1)
+    if not swings <= MOST_SWINGS:
+        raise ResponseError(
+            f"the support swings freely {swings:.3g} times in a turn of the crank, more often than "
+            f"the {MOST_SWINGS} that the exact equations follow; for so slow a crank choose the "
+            "model moment"
+        )
+    intervals = (INTERVALS + ceil(swings)) * turns
+    points = np.linspace(0.0, 2 * pi * turns, intervals + 1)
     orbit = None
     for guess in guesses:
         found = _tried(system, points, guess, conditions)
@@ -83,7 +98,7 @@ def steady(system: System, guesses: Iterable[Guess], turns: int, conditions: Con
     error = _residuals(system, orbit)
     for _ in range(ROUNDS):
         coarse = error > FINE
-        if not np.any(coarse) or len(orbit.points) > MOST_INTERVALS * turns:
+        if not np.any(coarse) or len(orbit.points) > 2 * intervals + MOST_INTERVALS * turns:
             break
         finer = _tried(system, _cut(orbit.points, coarse), orbit.at, conditions)
         if finer is None:
@@ -97,7 +112,7 @@ def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) 
     with np.errstate(all="ignore"):
         try:
             orbit = solve(system, points, guess, conditions)
-        except np.linalg.LinAlgError:
+        except (np.linalg.LinAlgError, ResponseError):  # the second by a guess that takes too long
             return None
     return orbit if orbit.change < LOOSE else None
 
@@ -110,7 +125,7 @@ def _dies_out(orbit: Orbit) -> bool:
 def _residuals(system: System, orbit: Orbit) -> Array:
     """How far each interval (K,) is from the equations, beside the largest rate of each state."""
     steps = np.diff(orbit.points)
-    scale = np.maximum(np.max(np.abs(orbit.slopes), axis=(1, 2)), 1e-300)
+    scale = np.maximum(np.max(np.abs(orbit.slopes), axis=(1, 2)), NOTHING)
     worst = np.zeros(len(steps))
     for share in (RULE.nodes[0] / 2, 0.5, 1 - RULE.nodes[0] / 2):
         s = orbit.points[:-1] + share * steps

@@ -14,7 +14,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.body import MISSING
 from equipoise.structures.branches import Progress, follow_speeds
-from equipoise.structures.choice import chosen_model, usual_step
+from equipoise.structures.choice import chosen_model, steady_speed, usual_step
 from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
 from equipoise.structures.modes import Mode
@@ -101,7 +101,8 @@ class Sweep:
         for name, mount in self.mounts.items():
             unit = "N m" if mount.torsional else "N"
             found += [(f"mounts.{name}.{key}", unit, getattr(mount, key)) for key in TOLD]
-            found.append((f"mounts.{name}.transmissibility", "1", mount.transmissibility))
+            if not mount.torsional:
+                found.append((f"mounts.{name}.transmissibility", "1", mount.transmissibility))
         return found
 
     def to_dict(self) -> Values:
@@ -170,6 +171,7 @@ def sweep_speed(
         raise MassError(missing)
     if machine.support is None:
         raise ModelError("support", MISSING)
+    steady_speed(machine, fastest, drive)
     if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
         raise UsageError(
             f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are "

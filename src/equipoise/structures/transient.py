@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import MassError, UsageError
+from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.beginning import equations
+from equipoise.structures.beginning import equations, motor_setting
 from equipoise.structures.body import Body
-from equipoise.structures.choice import chosen_model
+from equipoise.structures.choice import chosen_model, steady_speed
 from equipoise.structures.coupled import Coupled
 from equipoise.structures.exact import solve_exact
 from equipoise.structures.following import follow
@@ -119,7 +119,7 @@ def from_rest(
     chosen_model(machine, "exact", drive)
     if missing := massless(machine):
         raise MassError(missing)
-    speed = machine.drive.speed if speed is None else float(speed)
+    speed = steady_speed(machine, speed, drive)
     turns = abs(speed) * duration / (2 * pi)
     if not 0 < turns <= MOST_TURNS:
         raise UsageError(
@@ -144,4 +144,7 @@ def _shift(machine: Machine, speed: float) -> float:
     assert motor is not None
     if motor.mean_speed == "free":
         return 0.0
-    return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+    try:
+        return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+    except ResponseError:  # then as if the speed were constant
+        return motor_setting(machine, speed)[1]

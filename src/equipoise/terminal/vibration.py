@@ -189,7 +189,7 @@ def _drive(response: Response, units: Units) -> str:
     if speed is None:
         return text
     line = f"\nspeed fluctuates by {100 * response.drive.fluctuation:.3g} % of its mean"
-    if response.drive.shift:
+    if abs(response.drive.shift) > 1e-9 * abs(response.speed):
         shift = speed_shown(response.drive.shift, units)
         line += f"; the motor's curve is shifted by {shift} to hold the mean"
     return text + line

@@ -1,0 +1,546 @@
+"""`equipoise respond` and `modes` as a user runs them: tables, JSON, CSV and pictures."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import re
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from surface.running import equipoise, example_text, process, succeeded
+
+PLANAR = ("yamashita-rig", "yamashita-rig-counterweight", "walking-transplanter")
+MODELS = ("linear", "torque", "moment", "coupled", "exact")
+CASES = [
+    *((name, model) for name in PLANAR for model in MODELS),
+    *(("riding-transplanter", model) for model in MODELS[:3]),
+]
+GAUGES = {
+    "yamashita-rig": {"gauge"},
+    "yamashita-rig-counterweight": {"gauge"},
+    "walking-transplanter": {"planting_part", "pitch", "handle_along"},
+    "riding-transplanter": {"left_end", "right_end", "roll", "yaw"},
+}
+RIG = "yamashita-rig"
+RPM = math.tau / 60
+OPPOSED = """
+[[rows]]
+lateral = "-150 mm"
+
+[[rows]]
+lateral = "150 mm"
+phase = "180 deg"
+"""
+FIGURES = {"mean", "peak_to_peak", "max", "min", "rms", "orders", "harmonics", "phases"}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in an empty folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def no_constant(text: str) -> None:
+    raise AssertionError(f"{text} is not JSON")
+
+
+def read(*words: str | Path) -> dict[str, Any]:
+    """What a command prints with --json, which is one line and nothing else."""
+    result = equipoise(*words, "--json")
+    assert result.err == ""
+    assert result.out.count("\n") == 1
+    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
+
+
+def answer(*words: str | Path) -> dict[str, Any]:
+    return read("respond", RIG, *words)
+
+
+def peak(content: dict[str, Any], gauge: str = "gauge") -> float:
+    """Peak to peak at a gauge, mm."""
+    return 1e3 * float(content["gauges"][gauge]["peak_to_peak"])
+
+
+def cells(text: str, label: str) -> list[str]:
+    """The numbers of the first row with this label."""
+    (row, *_) = (line for line in text.splitlines() if line.startswith(f"{label}  "))
+    return row.removeprefix(label).split()
+
+
+def table(path: str) -> tuple[list[str], np.ndarray[Any, Any]]:
+    """Header and values of a CSV file."""
+    with open(path, encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    return header, np.array(rows, float)
+
+
+# -- one speed: tables and JSON --------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", GAUGES)
+def test_tables_of_an_example(name: str) -> None:
+    result = equipoise("respond", name)
+    text = succeeded(result)
+    assert result.err == ""
+    assert text.splitlines()[0] == eq.load(name).title
+    for title in ("Natural frequencies", "Gauges; range", "Gauges by order", "Gauges by each model",
+                  "Mounts; force on the support", "Drive, all rows together"):  # fmt: skip
+        assert re.search(f"^{title}", text, re.MULTILINE), title
+    assert not re.search(r"\b(nan|inf|None)\b", text)
+    assert all(cells(text, gauge) for gauge in GAUGES[name])
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_tables_of_a_model(model: str) -> None:
+    text = succeeded(equipoise("respond", RIG, "--model", model))
+    assert f"\nmodel {model}, " in text
+    assert ("periodic solution: residual" in text) == (model in {"coupled", "exact"})
+    assert ("energy in a period" in text) == (model == "exact")
+
+
+def test_all_models_are_compared() -> None:
+    text = succeeded(equipoise("respond", RIG))
+    (header,) = (line for line in text.splitlines() if line.split() == list(MODELS))
+    assert header
+    part = text[text.index("Gauges by each model") :]
+    assert cells(part, "gauge") == ["12.62", "12.61", "12.00", "12.61", "12.00", "mm"]
+    spatial = succeeded(equipoise("respond", "riding-transplanter"))
+    assert any(line.split() == list(MODELS[:3]) for line in spatial.splitlines())
+
+
+@pytest.mark.parametrize(("name", "model"), CASES)
+def test_json_has_the_documented_shape(name: str, model: str) -> None:
+    content = read("respond", name, "--model", model)
+    machine = eq.load(name)
+    assert machine.support is not None
+    assert content["model"] == model
+    assert content["title"] == machine.title
+    assert content["speed"] == pytest.approx(machine.drive.speed, rel=1e-15)
+    assert set(content["gauges"]) == GAUGES[name]
+    assert set(content["mounts"]) == set(machine.support.mounts)
+    assert len(content["modes"]) == len(machine.support.coordinates)
+    for gauge in content["gauges"].values():
+        for signal in (gauge, gauge["velocity"], gauge["acceleration"]):
+            assert set(signal) >= FIGURES
+            assert len(signal["orders"]) == len(signal["harmonics"]) == len(signal["phases"])
+            assert signal["orders"][:11] == list(range(11))
+            assert signal["peak_to_peak"] == pytest.approx(signal["max"] - signal["min"])
+            varying = np.linalg.norm(signal["harmonics"][1:]) / math.sqrt(2)
+            assert signal["rms"] == pytest.approx(varying, rel=1e-8)
+    for mount in content["mounts"].values():
+        assert set(mount) >= {*FIGURES, "transmissibility", "lifts_off"}
+    assert set(content["drive"]) == {"torque"}
+    periodic = {"residual", "multipliers", "stable"} & set(content)
+    assert bool(periodic) == (model in {"coupled", "exact"})
+    assert ("energy" in content) == (model == "exact")
+
+
+@pytest.mark.parametrize("name", PLANAR)
+def test_the_exact_solution_proves_itself(name: str) -> None:
+    """Residual at the solver's bound, power lost is power fed in, and disturbances die out."""
+    content = read("respond", name, "--model", "exact")
+    assert content["residual"] < 1e-10
+    assert content["stable"] is True
+    sizes = [abs(complex(*multiplier)) for multiplier in content["multipliers"]]
+    assert sizes == sorted(sizes, reverse=True) and 0 < sizes[0] < 1
+    assert content["energy"]["fed_in"] == pytest.approx(content["energy"]["lost"], rel=1e-8)
+
+
+FIGURES_OF_THE_RIG = {"linear": 12.62, "torque": 12.613, "moment": 12.00, "exact": 12.003}
+"""mm at the gauge; the last digit of each is rounded."""
+
+
+@pytest.mark.parametrize(("model", "wanted"), FIGURES_OF_THE_RIG.items())
+def test_figures_of_the_rig(model: str, wanted: float) -> None:
+    assert peak(answer("--model", model)) == pytest.approx(wanted, abs=0.005)
+
+
+def test_the_counterweight_takes_most_of_it() -> None:
+    assert peak(read("respond", "yamashita-rig-counterweight")) == pytest.approx(0.54, abs=0.005)
+
+
+def test_the_usual_model_fits_the_support() -> None:
+    assert answer()["model"] == "linear"
+    assert read("respond", "riding-transplanter")["model"] == "moment"
+
+
+def test_json_of_a_process_is_all_of_its_output() -> None:
+    result = process("respond", RIG, "--json")
+    assert (result.status, result.err) == (0, "")
+    assert json.loads(result.out) == answer()
+
+
+# -- speeds ----------------------------------------------------------------------------------------
+
+EQUAL_SPEEDS = ("193 rpm", " 193  rpm", "20.210912738 rad/s", "3.21666666667 turn/s", "1158 deg/s")
+
+
+@pytest.mark.parametrize("speed", EQUAL_SPEEDS)
+def test_one_speed_in_any_unit(speed: str) -> None:
+    content = answer("--speed", speed)
+    assert content["speed"] == pytest.approx(193 * RPM, rel=1e-9)
+    assert peak(content) == pytest.approx(12.62, abs=0.005)
+
+
+def test_a_crank_that_turns_the_other_way() -> None:
+    """The shaking force of a constant speed does not know the sense; the response nearly."""
+    content = answer("--speed", "-193 rpm")
+    assert content["speed"] == pytest.approx(-193 * RPM)
+    assert peak(content) == pytest.approx(12.62, abs=0.02)
+    assert "crank driven at -193.0 rpm (-20.21 rad/s)" in succeeded(
+        equipoise("respond", RIG, "--speed", "-193 rpm")
+    )
+
+
+EQUAL_RANGES = ("20 rpm : 300 rpm", "20:300 rpm", "20 rpm:300 rpm", "20 : 300 rpm",
+                "2.0943951023932 rad/s : 300 rpm")  # fmt: skip
+
+
+@pytest.mark.parametrize("speeds", EQUAL_RANGES)
+def test_a_range(speeds: str) -> None:
+    content = answer("--speed", speeds, "--speeds", "10")
+    speed = content["speed"]
+    assert speed[0] == pytest.approx(20 * RPM) and speed[-1] == pytest.approx(300 * RPM)
+    assert speed == sorted(speed)
+    found = content["resonances"]
+    np.testing.assert_allclose(found, [12.42, 6.21, 4.14, 3.10, 2.48], atol=0.006)
+    assert set(np.searchsorted(speed, found)) <= set(range(1, len(speed)))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_json_of_a_range(model: str) -> None:
+    content = answer("--model", model, "--speed", "120:140 rpm", "--speeds", "4")
+    assert set(content) >= {"title", "model", "speed", "gauges", "mounts", "modes", "resonances",
+                            "resonance_map", "notes"}  # fmt: skip
+    count = len(content["speed"])
+    gauge = content["gauges"]["gauge"]
+    arrays = [
+        *(part[key] for part in (gauge, gauge["velocity"], gauge["acceleration"])
+          for key in ("peak_to_peak", "rms")),
+        gauge["harmonics"],
+        *(mount[key] for mount in content["mounts"].values() for key in ("peak_to_peak", "rms")),
+    ]  # fmt: skip
+    assert all(len(values) == count for values in arrays)
+    assert np.all(np.isfinite(np.array(gauge["peak_to_peak"], float)))
+    assert ("stable" in content) == (model in {"coupled", "exact"})
+    alone = answer("--model", model, "--speed", f"{content['speed'][1]!r} rad/s")
+    # Peaks are sought between samples: the same to their rounding.
+    assert gauge["peak_to_peak"][1] == pytest.approx(1e-3 * peak(alone), rel=1e-6)
+
+
+def test_resonances_of_a_range() -> None:
+    content = answer("--speed", "20:300 rpm", "--speeds", "2")
+    (first, *_) = content["resonance_map"]
+    assert first["speed"] == content["resonances"][0] == pytest.approx(12.415, abs=5e-4)
+    assert (first["order"], first["mode"], first["share"]) == (1, 1, 1)
+    assert first["avoid"][0] < first["speed"] < first["avoid"][1]
+    text = succeeded(equipoise("respond", RIG, "--speed", "20:300 rpm", "--speeds", "2"))
+    assert "crank driven at 20.00 to 300.0 rpm" in text
+    assert "96.81 to 136.9" in text
+    assert "no resonance in this range" in succeeded(
+        equipoise("respond", RIG, "--speed", "150:200 rpm", "--speeds", "2")
+    )
+
+
+def test_a_range_of_the_other_sense() -> None:
+    content = answer("--speed", "-20:-300 rpm", "--speeds", "5")
+    assert content["speed"] == sorted(content["speed"], reverse=True)
+    forwards = answer("--speed", "20:300 rpm", "--speeds", "5")
+    np.testing.assert_allclose(content["resonances"], np.negative(forwards["resonances"]))
+
+
+def test_speeds_of_a_range_in_space() -> None:
+    words = ("respond", "riding-transplanter", "--speed", "230:250 rpm", "--speeds", "3")
+    assert set(read(*words)["gauges"]) == GAUGES["riding-transplanter"]
+    assert "Resonances; share of the loudest" in succeeded(equipoise(*words))
+
+
+# -- the motor, and from rest ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("name", ["yamashita-rig", "walking-transplanter"])
+def test_the_motor_holds_the_mean_speed(name: str, sense: int) -> None:
+    content = read("respond", name, "--drive", "--speed", f"{sense * 190} rpm")
+    speed = content["drive"]["speed"]
+    assert content["model"] == "exact"
+    assert content["speed"] == pytest.approx(sense * 190 * RPM, rel=1e-9)
+    assert speed["mean"] == pytest.approx(content["speed"], rel=1e-9)
+    fluctuation = content["drive"]["fluctuation"]
+    assert fluctuation > 1e-3
+    assert fluctuation == pytest.approx(speed["peak_to_peak"] / abs(speed["mean"]), rel=1e-9)
+    assert content["energy"]["fed_in"] == pytest.approx(content["energy"]["lost"], rel=1e-7)
+
+
+def test_tables_with_the_motor() -> None:
+    text = succeeded(equipoise("respond", RIG, "--drive"))
+    assert "rad/s), speed by the motor" in text
+    assert "speed fluctuates by" in text
+    assert "Gauges by each model" not in text
+    assert cells(text, "crank speed")[0] == "193.0"
+
+
+def test_the_motor_over_a_range() -> None:
+    content = answer("--drive", "--speed", "180:200 rpm", "--speeds", "3")
+    assert len(content["fluctuation"]) == len(content["speed"])
+    assert min(content["fluctuation"]) > 0
+
+
+@pytest.mark.parametrize("extra", [(), ("--drive",), ("--speed", "-193 rpm")])
+def test_from_rest(extra: tuple[str, ...]) -> None:
+    content = answer("--transient", "0.5 s", *extra)
+    time = content["time"]
+    assert (time[0], time[-1]) == (0, 0.5)
+    series = [content["crank_angle"], content["crank_speed"], content["gauges"]["gauge"],
+              *content["mounts"].values()]  # fmt: skip
+    for values in series:
+        (numbers,) = values.values() if isinstance(values, dict) else (values,)
+        assert len(numbers) == len(time)
+        assert np.all(np.isfinite(numbers))
+    assert content["gauges"]["gauge"]["displacement"][0] == 0
+    if "--drive" in extra:
+        assert content["crank_speed"][0] == 0
+    text = succeeded(equipoise("respond", RIG, "--transient", "500 ms", *extra))
+    assert "\nfrom rest for 0.5000 s, " in text
+    assert cells(text, "crank speed") and cells(text, "spring")
+
+
+# -- CSV and units ---------------------------------------------------------------------------------
+
+CSV = {
+    "one speed": ((), 360, ["time [s]", "crank_angle [rad]"]),
+    "motor": (("--drive",), 360, ["time [s]", "gauges.gauge.displacement [m]"]),
+    "range": (("--speed", "150:200 rpm", "--speeds", "7"), 7, ["speed [rad/s]"]),
+    "from rest": (("--transient", "0.2 s"), 2001,
+                  ["time [s]", "crank_angle [rad]", "crank_speed [rad/s]"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("words", "count", "first"), CSV.values(), ids=CSV)
+def test_csv(words: tuple[str, ...], count: int, first: list[str]) -> None:
+    result = equipoise("respond", RIG, *words, "--csv", "out.csv")
+    assert succeeded(result)
+    assert result.err == "wrote out.csv\n"
+    header, values = table("out.csv")
+    assert header[: len(first)] == first
+    assert len(set(header)) == len(header) > 3
+    assert all(re.fullmatch(r"[a-z_.]+ \[[^\]]+\]", name) for name in header)
+    assert values.shape == (count, len(header))
+    # A mount that turns the support back hands on no force.
+    told = [k for k, name in enumerate(header) if name != "mounts.bearing.transmissibility [1]"]
+    assert np.all(np.isfinite(values[:, told]))
+
+
+@pytest.mark.parametrize("words", [(), ("--speed", "-193 rpm"), ("--model", "exact"),
+                                   ("--speed", "-193 rpm", "--drive")])  # fmt: skip
+def test_columns_are_derivatives_of_each_other_by_time(words: tuple[str, ...]) -> None:
+    """Whichever way the crank turns; both ends of the bound are the solver's own."""
+    succeeded(equipoise("respond", RIG, *words, "--csv", "out.csv"))
+    header, values = table("out.csv")
+    columns = dict(zip(header, values.T, strict=True))
+    time = columns["time [s]"]
+    order = 1j * np.fft.rfftfreq(len(time), time[1]) * math.tau
+    signals = [columns[f"gauges.gauge.{name}"] for name in
+               ("displacement [m]", "velocity [m/s]", "acceleration [m/s^2]")]  # fmt: skip
+    for signal, rate in pairwise(signals):
+        found = np.fft.irfft(order * np.fft.rfft(signal), len(signal))
+        np.testing.assert_allclose(found, rate, rtol=0, atol=1e-8 * np.max(np.abs(rate)))
+
+
+def test_csv_and_json_together() -> None:
+    result = equipoise("respond", RIG, "--csv", "out.csv", "--json")
+    content = json.loads(result.out)
+    assert result.err == "wrote out.csv\n"
+    header, values = table("out.csv")
+    moved = values[:, header.index("gauges.gauge.displacement [m]")]
+    assert np.ptp(moved) == pytest.approx(1e-3 * peak(content), rel=1e-3)
+
+
+def test_csv_of_a_range_is_the_json_of_it() -> None:
+    words = ("respond", RIG, "--speed", "150:200 rpm", "--speeds", "4", "--csv", "out.csv")
+    content = json.loads(succeeded(equipoise(*words, "--json")))
+    header, values = table("out.csv")
+    columns = dict(zip(header, values.T.tolist(), strict=True))
+    assert columns["speed [rad/s]"] == content["speed"]
+    gauge = content["gauges"]["gauge"]
+    assert columns["gauges.gauge.peak_to_peak [m]"] == gauge["peak_to_peak"]
+    assert columns["gauges.gauge.velocity_rms [m/s]"] == gauge["velocity"]["rms"]
+    assert columns["mounts.spring.rms [N]"] == content["mounts"]["spring"]["rms"]
+
+
+def test_units_of_the_tables() -> None:
+    text = succeeded(equipoise("respond", RIG, "--units", "um, rad/s, cm/s, gn, kgf"))
+    assert "\ncrank driven at 20.21 rad/s\n" in text
+    *numbers, one, two, three = cells(text, "gauge")
+    assert [one, two, three] == ["um,", "cm/s,", "gn"]
+    figures = answer()["gauges"]["gauge"]
+    wanted = [
+        signal[key] / unit
+        for signal, unit in ((figures, 1e-6), (figures["velocity"], 0.01),
+                             (figures["acceleration"], 9.80665))
+        for key in ("peak_to_peak", "rms")
+    ]  # fmt: skip
+    assert list(map(float, numbers)) == pytest.approx(wanted, rel=5e-4)
+    spring = answer()["mounts"]["spring"]["mean"] / 9.80665
+    assert float(cells(text, "spring")[0]) == pytest.approx(spring, rel=5e-4)
+    assert answer("--units", "um, rad/s") == answer()
+    words = ("--speed", "20:300 rpm", "--speeds", "2", "--units", "rad/s, cm")
+    text = succeeded(equipoise("respond", RIG, *words))
+    assert "crank driven at 2.094 to 31.42 rad/s" in text
+    assert "cm  " in text
+    pitch = succeeded(equipoise("respond", "walking-transplanter", "--units", "rad"))
+    assert cells(pitch, "pitch")[-3:] == ["rad,", "rad/s,", "rad/s^2"]
+
+
+def test_units_of_the_tables_from_rest() -> None:
+    words = ("respond", RIG, "--transient", "0.5 s")
+    usual = float(cells(succeeded(equipoise(*words)), "gauge")[1])
+    text = succeeded(equipoise(*words, "--units", "um, rad/s"))
+    assert float(cells(text, "gauge")[1]) == pytest.approx(1000 * usual, rel=1e-3)
+    assert cells(text, "crank speed")[-1] == "rad/s"
+
+
+# -- rows ------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("model", MODELS[:3])
+def test_rows_in_opposite_phase_leave_even_orders_only(model: str) -> None:
+    """Order n of the second row is turned by n times 180 deg."""
+    text = example_text("walking-transplanter")
+    begin, end = text.index("[[rows]]"), text.index("[support]")
+    Path("rows.toml").write_text(text[:begin] + OPPOSED + text[end:], encoding="utf-8")
+    sizes = np.array(read("respond", "rows.toml", "--model", model)["gauges"]["pitch"]["harmonics"])
+    assert np.max(sizes[1::2]) < 1e-12 * np.max(sizes[2::2])
+    together = read("respond", "walking-transplanter", "--model", model)
+    np.testing.assert_allclose(sizes[2:12:2], together["gauges"]["pitch"]["harmonics"][2:12:2])
+
+
+def test_rows_in_opposite_phase_on_a_float() -> None:
+    """What is left shakes less, and the float stays on the ground."""
+    text = example_text("walking-transplanter").replace('lateral = "150 mm"', 'phase = "180 deg"')
+    Path("rows.toml").write_text(text, encoding="utf-8")
+    content = read("respond", "rows.toml", "--model", "exact")
+    together = read("respond", "walking-transplanter", "--model", "exact")
+    assert peak(content, "planting_part") < 0.2 * peak(together, "planting_part")
+    assert content["mounts"]["float"]["lifts_off"] == 0 < together["mounts"]["float"]["lifts_off"]
+
+
+# -- modes -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", GAUGES)
+def test_modes(name: str) -> None:
+    machine = eq.load(name)
+    assert machine.support is not None
+    content = read("modes", name)
+    count = len(machine.support.coordinates)
+    assert set(content) >= {"title", "model", "coordinates", "modes", "preloads"}
+    assert content["coordinates"] == list(machine.support.coordinates)
+    assert len(content["modes"]) == count
+    assert set(content["preloads"]) == set(machine.support.mounts)
+    for key in ("mass", "damping", "stiffness"):
+        assert np.shape(content[key]) == (count, count)
+    for mode in content["modes"]:
+        assert mode["natural_frequency"] == pytest.approx(math.tau * mode["hertz"])
+        assert len(mode["shape"]) == count
+        assert set(mode["gauges"]) == GAUGES[name]
+    text = succeeded(equipoise("modes", name))
+    for title in ("Natural frequencies", "Crank speeds that meet a mode, rpm", "Shapes;",
+                  "Shapes at the gauges", "Mounts at rest"):  # fmt: skip
+        assert re.search(f"^{title}", text, re.MULTILINE), title
+
+
+def test_modes_of_the_rig() -> None:
+    (mode,) = read("modes", RIG)["modes"]
+    assert mode["natural_frequency"] == pytest.approx(12.415, abs=5e-4)
+    assert mode["gauges"]["gauge"] == pytest.approx([1.5, 0])  # m in a rad: 1.5 m from the pivot
+    assert cells(succeeded(equipoise("modes", RIG)), "1")[:4] == ["12.42", "1.976", "118.6",
+                                                                  "0.006232"]  # fmt: skip
+    (spread,) = read("modes", RIG, "--model", "moment")["modes"]
+    assert 1e-3 < abs(spread["natural_frequency"] / mode["natural_frequency"] - 1) < 0.01
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_modes_of_a_model_are_those_beside_its_response(model: str) -> None:
+    assert answer("--model", model)["modes"] == [
+        {key: value for key, value in mode.items() if key != "gauges"}
+        for mode in read("modes", RIG, "--model", model)["modes"]
+    ]
+
+
+# -- analyze by order ------------------------------------------------------------------------------
+
+TABLES = (
+    *("Common centre of mass, acceleration along x", "Common centre of mass, acceleration along y"),
+    *("Shaking force along x", "Shaking force along y", "Shaking moment", "Drive torque"),
+)
+
+
+def test_orders_of_analyze() -> None:
+    """Table 4 of Yamashita and others counts from the frame's line, at -83 deg."""
+    words = ("analyze", "yamashita-1", "--orders", "5", "--crank-zero", "-83 deg")
+    text = succeeded(equipoise(*words))
+    assert "theta: crank angle from -83.0 deg" in text
+    assert all(title in text for title in TABLES)
+    assert len(re.findall("^1  ", text, re.MULTILINE)) == len(TABLES)
+    assert cells(text[text.index("acceleration along y") :], "1")[3] == "111.0"
+    parts = read(*words)["by_order"]
+    assert {len(values) for part in parts.values() for values in part.values()} == {6}
+    whole = read("analyze", "yamashita-1")
+    angle = np.array(whole["crank_angle"]) - math.radians(-83)
+    for name, values in (
+        ("shaking_force.x", whole["shaking_force"]["x"]),
+        ("shaking_moment", whole["shaking_moment"]),
+        ("drive_torque", whole["drive_torque"]),
+    ):
+        for n in range(1, 6):
+            for key, wave in (("a", np.cos), ("b", np.sin)):
+                wanted = 2 * np.mean(np.array(values) * wave(n * angle))
+                assert parts[name][key][n] == pytest.approx(wanted, abs=1e-12)
+
+
+def test_orders_beside_json_and_csv() -> None:
+    words = ("analyze", "yamashita-1", "--orders", "3")
+    assert "by_order" not in read("analyze", "yamashita-1")
+    by_x, turned = (read(*words, *more)["by_order"] for more in ((), ("--crank-zero", "90 deg")))
+    for name, part in by_x.items():
+        np.testing.assert_allclose(part["harmonics"], turned[name]["harmonics"], atol=1e-13)
+    assert equipoise(*words, "--csv", "out.csv").err == "wrote out.csv\n"
+    assert len(table("out.csv")[1]) == 360
+
+
+# -- pictures --------------------------------------------------------------------------------------
+
+PICTURES = {
+    "one speed": (("respond", RIG), {"drive", "gauge-gauge", "mounts", "spectrum"}),
+    "range": (
+        ("respond", RIG, "--speed", "100:140 rpm", "--speeds", "5"),
+        {"response", "velocity", "acceleration", "resonance-map", "mounts"},
+    ),
+    "from rest": (("respond", RIG, "--transient", "0.2 s"), {"gauges", "mounts"}),
+    "modes": (("modes", RIG), {"mode-1"}),
+}
+
+
+@pytest.mark.parametrize(("words", "names"), PICTURES.values(), ids=PICTURES)
+def test_pictures(words: tuple[str, ...], names: set[str]) -> None:
+    result = equipoise(*words, "--plot", "new/pictures")
+    succeeded(result)
+    assert result.err == f"wrote {len(names)} pictures to new/pictures\n"
+    assert {path.name for path in Path("new/pictures").iterdir()} == {f"{n}.svg" for n in names}
+    assert all(b"<svg" in path.read_bytes()[:600] for path in Path("new/pictures").iterdir())
+
+
+@pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_kinds_of_pictures(kind: str, begin: bytes) -> None:
+    result = equipoise("modes", RIG, "--plot", ".", "--format", kind, "--json")
+    assert json.loads(succeeded(result))
+    assert Path(f"mode-1.{kind}").read_bytes().startswith(begin)
