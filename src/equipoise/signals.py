@@ -109,6 +109,10 @@ class Periodic:
         """How many amplitudes there are up to an order, the mean included."""
         return int(min(order * self.turns + 1, self.amplitudes.shape[-1]))
 
+    def upto(self, order: int) -> Periodic:
+        """The signal without its orders above this one."""
+        return Periodic(self.amplitudes[..., : self.count_to(order)], self.turns)
+
     @property
     def period(self) -> float:
         """Crank angle of one period, rad."""

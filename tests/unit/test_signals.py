@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.signals import figures, harmonics, synthesis
+from equipoise.errors import UsageError
+from equipoise.signals import Periodic, figures, harmonics, synthesis
 
 THETA = 2 * pi * np.arange(24) / 24
 
@@ -93,3 +94,230 @@ def test_harmonics_of_a_machine_converge(name: str) -> None:
     one, two = (harmonics(found.shaking_force.x, 6) for found in (coarse, fine))
     np.testing.assert_allclose(one, two, rtol=0, atol=1e-10 * np.max(np.abs(two)))
     assert abs(one[0]) < 1e-12 * np.max(np.abs(two))
+
+
+# -- periodic signals by their orders --------------------------------------------------------------
+
+
+def periodic(
+    seed: int = 0, orders: int = 9, turns: int = 1, shape: tuple[int, ...] = ()
+) -> Periodic:
+    """Make a signal of random orders that fall off, and so has one highest point."""
+    rng = np.random.default_rng(seed)
+    size = (*shape, orders + 1)
+    amplitudes = (rng.normal(size=size) + 1j * rng.normal(size=size)) / 1.5 ** np.arange(orders + 1)
+    amplitudes[..., 0] = amplitudes[..., 0].real
+    return Periodic(amplitudes, turns)
+
+
+def same(found: Periodic, wanted: Periodic, tolerance: float = 1e-13) -> None:
+    """Compare signals order by order, where one may have fewer."""
+    assert found.turns == wanted.turns
+    orders = max(found.amplitudes.shape[-1], wanted.amplitudes.shape[-1])
+    theta = found.period * np.arange(2 * orders + 1) / (2 * orders + 1)
+    np.testing.assert_allclose(found.values(theta), wanted.values(theta), rtol=0, atol=tolerance)
+
+
+SHAPES = pytest.mark.parametrize("shape", [(), (3,), (2, 3)])
+TURNS = pytest.mark.parametrize("turns", [1, 2, 3])
+
+
+@SHAPES
+@TURNS
+@pytest.mark.parametrize("count", [19, 20, 64])
+def test_samples_and_back(shape: tuple[int, ...], turns: int, count: int) -> None:
+    """19 samples just hold 9 orders apart."""
+    signal = periodic(turns=turns, shape=shape)
+    samples = signal.samples(count)
+    theta = np.arange(count) * 2 * pi * turns / count
+    np.testing.assert_allclose(samples, signal.values(theta), rtol=0, atol=1e-13)
+    same(Periodic.of(samples, turns), signal)
+
+
+def test_fewer_samples_than_orders_are_still_values() -> None:
+    signal = periodic(orders=9)
+    for count in (1, 2, 5, 18):
+        theta = np.arange(count) * 2 * pi / count
+        np.testing.assert_allclose(signal.samples(count), signal.values(theta), atol=1e-13)
+
+
+def test_orders_of_several_turns_are_fractions() -> None:
+    """An event in one of three turns has order 1/3."""
+    theta = np.arange(300) * 6 * pi / 300
+    signal = Periodic.of(2 * np.cos(theta / 3) + np.sin(theta) + 0.5 * np.cos(4 * theta / 3), 3)
+    assert signal.period == pytest.approx(6 * pi)
+    np.testing.assert_allclose(signal.orders, np.arange(5) / 3)
+    np.testing.assert_allclose(signal.sizes, [0, 2, 0, 1, 0.5], atol=1e-13)
+
+
+def test_rounding_is_left_out() -> None:
+    """Orders of 1e-16 of the largest are what the transform leaves; one of 1e-12 is not."""
+    assert Periodic.of(3 + np.cos(2 * THETA)).amplitudes.shape == (3,)
+    assert Periodic.of(3 + np.cos(2 * THETA) + 1e-12 * np.cos(7 * THETA)).amplitudes.shape == (8,)
+    assert Periodic.of(np.zeros(24)).amplitudes == pytest.approx([0])
+
+
+def test_an_order_counts_if_any_signal_of_a_stack_has_it() -> None:
+    found = Periodic.of(np.stack([np.cos(THETA), np.sin(5 * THETA)]))
+    np.testing.assert_allclose(found.sizes, [[0, 1, 0, 0, 0, 0], [0, 0, 0, 0, 0, 1]], atol=1e-14)
+
+
+def test_order_at_half_the_number_of_samples_is_left_out() -> None:
+    """24 samples of sin 12 theta are all zero: what they tell of order 12 is not its amplitude."""
+    found = Periodic.of(np.cos(THETA) + 0.7 * np.cos(12 * THETA))
+    assert found.amplitudes.shape[-1] <= 12
+    np.testing.assert_allclose(found.sizes[:2], [0, 1], atol=1e-14)
+
+
+@pytest.mark.parametrize("phase", [0.3, -2.0, 40.0])
+@TURNS
+def test_shift(phase: float, turns: int) -> None:
+    signal, theta = periodic(turns=turns, shape=(2,)), np.linspace(-3, 9, 17)
+    np.testing.assert_allclose(
+        signal.shifted(phase).values(theta), signal.values(theta + phase), rtol=0, atol=1e-12
+    )
+    assert signal.shifted(phase).turns == turns
+    np.testing.assert_allclose(signal.shifted(phase).rms_by_order, signal.rms_by_order)
+
+
+@TURNS
+def test_shift_by_a_period_changes_nothing(turns: int) -> None:
+    signal = periodic(turns=turns)
+    for periods in (1, -1, 5):
+        same(signal.shifted(periods * signal.period), signal)
+
+
+def test_shift_by_one_of_two_turns_is_none_by_a_period() -> None:
+    signal = Periodic(np.array([0.0, 1.0 + 0j]), 2)
+    same(signal.shifted(2 * pi), -signal)
+
+
+@pytest.mark.parametrize("units", [2, 3, 4])
+def test_units_with_equal_phases_between_them(units: int) -> None:
+    """Of n units one behind the other only every n-th order is left, n times as large."""
+    signal = periodic(orders=12)
+    total = periodic() * 0.0
+    for k in range(units):
+        total = total + signal.shifted(2 * pi * k / units)
+    left = total.amplitudes
+    kept = np.arange(13) % units == 0
+    np.testing.assert_allclose(left[kept], units * signal.amplitudes[kept], rtol=1e-13)
+    assert np.max(np.abs(left[~kept])) < 1e-13
+
+
+def test_units_in_phase() -> None:
+    signal = periodic()
+    same(signal + signal, 2 * signal)
+    same(signal - signal, 0.0 * signal)
+    same(signal + -signal, signal * 0.0)
+
+
+def test_sum_of_signals_with_other_numbers_of_orders() -> None:
+    one, other, theta = periodic(1, orders=3), periodic(2, orders=8), np.linspace(0, 6, 11)
+    for total in (one + other, other + one):
+        np.testing.assert_allclose(total.values(theta), one.values(theta) + other.values(theta))
+
+
+def test_signals_of_other_numbers_of_turns_do_not_add_up() -> None:
+    with pytest.raises(UsageError, match="signals of 1 and 2 turns cannot be added"):
+        periodic() + periodic(turns=2)
+
+
+@TURNS
+@SHAPES
+def test_derivatives_against_differences(turns: int, shape: tuple[int, ...]) -> None:
+    """Central differences over h miss by h^2 / 6 of the third derivative, here up to some 1e3."""
+    signal, theta, h = periodic(turns=turns, shape=shape), np.linspace(0, 12, 23), 1e-4
+    for times in (1, 2):
+        before, after = (signal.derivative(times - 1).values(theta + d) for d in (-h, h))
+        found = signal.derivative(times).values(theta)
+        np.testing.assert_allclose(found, (after - before) / (2 * h), rtol=0, atol=1e-5)
+    same(signal.derivative(2), signal.derivative().derivative(), 1e-11)
+
+
+@TURNS
+def test_integral_undoes_the_derivative_but_for_the_mean(turns: int) -> None:
+    signal = periodic(turns=turns)
+    back = signal.derivative().derivative(-1)
+    theta = np.linspace(0, 6, 11)
+    np.testing.assert_allclose(back.values(theta), signal.values(theta) - signal.mean, atol=1e-13)
+    same(signal.derivative(-2), signal.derivative(-1).derivative(-1))
+    same(signal.derivative(0), signal)
+
+
+@SHAPES
+@TURNS
+def test_rms_by_order_adds_up(shape: tuple[int, ...], turns: int) -> None:
+    """Parseval: squares of the orders' RMS add up to the mean square."""
+    signal = periodic(turns=turns, shape=shape)
+    samples = signal.samples(50)
+    np.testing.assert_allclose(signal.rms, np.sqrt(np.mean(samples**2, axis=-1)))
+    np.testing.assert_allclose(signal.vibration_rms, np.std(samples, axis=-1))
+    np.testing.assert_allclose(signal.mean, np.mean(samples, axis=-1), rtol=0, atol=1e-14)
+    assert np.shape(signal.rms) == shape
+
+
+def test_phases_are_those_of_sines() -> None:
+    signal = periodic()
+    theta = np.linspace(0, 7, 31)
+    n = np.arange(10)[:, None]
+    sines = signal.sizes[:, None] * np.sin(n * theta + signal.phases[:, None])
+    np.testing.assert_allclose(np.sum(sines, axis=0), signal.values(theta), rtol=0, atol=1e-13)
+    sine = Periodic.of(4 * np.sin(3 * THETA + 0.8))
+    assert sine.phases[3] == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize("seed", range(12))
+@TURNS
+def test_extremes_against_dense_sampling(seed: int, turns: int) -> None:
+    """200 000 samples in a period miss a top by half of (step / 2)^2 times the curvature, 1e-8."""
+    signal = periodic(seed, turns=turns)
+    theta = np.arange(200_000) * signal.period / 200_000
+    samples = signal.values(theta)
+    for sign, extreme, at in (
+        (1, np.max(samples), theta[np.argmax(samples)]),
+        (-1, np.min(samples), theta[np.argmin(samples)]),
+    ):
+        value, angle = signal.extreme(sign)
+        assert -1e-12 < sign * (value - extreme) < 1e-7
+        away = (angle - at + signal.period / 2) % signal.period - signal.period / 2
+        assert abs(away) < 1e-3
+        assert 0 <= angle < signal.period
+        assert signal.values(np.array([angle]))[0] == pytest.approx(float(value), abs=1e-12)
+    found = signal.peak_to_peak
+    assert found == pytest.approx(np.max(samples) - np.min(samples), abs=1e-7)
+
+
+@SHAPES
+def test_extremes_of_a_stack_are_those_of_each(shape: tuple[int, ...]) -> None:
+    stack = periodic(shape=shape)
+    value, at = stack.extreme(1)
+    assert np.shape(value) == np.shape(at) == shape
+    for index in np.ndindex(shape):
+        one = Periodic(stack.amplitudes[index])
+        assert (value[index], at[index]) == pytest.approx(tuple(map(float, one.extreme(1))))
+
+
+def test_extremes_of_a_sine_to_the_digit() -> None:
+    signal = Periodic.of(1 + 3 * np.sin(THETA - 0.2345))
+    assert signal.extreme(1) == pytest.approx((4, pi / 2 + 0.2345), abs=1e-14)
+    assert signal.extreme(-1) == pytest.approx((-2, 3 * pi / 2 + 0.2345), abs=1e-14)
+
+
+@pytest.mark.parametrize("value", [2.5, 0.0, -2.5])
+def test_extremes_of_a_constant(value: float) -> None:
+    signal = Periodic.of(np.full(24, value))
+    assert (float(signal.extreme(1)[0]), float(signal.extreme(-1)[0])) == (value, value)
+    assert signal.peak_to_peak == 0
+    assert signal.vibration_rms == 0
+
+
+def test_extremes_of_a_flat_top() -> None:
+    """At the top of cos t - cos 2 t / 4 the second derivative vanishes: Newton's method stalls."""
+    signal = Periodic(np.array([0, 1, -0.25 + 0j]))
+    assert float(signal.extreme(1)[0]) == pytest.approx(0.75, abs=1e-14)
+
+
+def test_amplitudes_up_to_an_order() -> None:
+    signal = periodic(orders=9, turns=2)
+    assert [signal.count_to(order) for order in (0, 1, 4, 9)] == [1, 3, 9, 10]

@@ -11,7 +11,6 @@ from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
-from equipoise.signals import Periodic
 from equipoise.structures.collocation import Conditions
 from equipoise.structures.coupled import Coupled
 from equipoise.structures.linear import Linear
@@ -80,8 +79,7 @@ def from_linear(
     """
     states = []
     if linear is not None:
-        whole, theta = linear.motion(system.speed), system.sense * s
-        moved = Periodic(whole.amplitudes[:, : ROUGH * whole.turns + 1], whole.turns)
+        moved, theta = linear.motion(system.speed).upto(ROUGH), system.sense * s
         states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
     if setting is None:
         return np.stack(states)

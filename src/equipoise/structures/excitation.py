@@ -15,6 +15,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.mechanism.dynamics import Forces, forces
+from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import Row
@@ -113,36 +114,48 @@ class Excitation:
         assert total is not None
         return total
 
+    def samples(self, theta: Array, speed: float) -> Array:
+        """The same (6, P) at crank angles (P,), rad, not by orders."""
+        total: Array = np.zeros((6, len(theta)))
+        for row in rows_of(self.machine):
+            motion = move(self.machine, theta + row.phase, speed, 0.0)
+            total = total + self._about_reference(self._signals(motion), row)
+        return total
+
     def of_one(self, speed: float) -> Periodic:
         """The same of one linkage alone, as the file has it."""
         return self._of_row(speed, Row())
 
     def _of_row(self, speed: float, row: Row) -> Periodic:
-        force_and_moment = self._on_pivot(speed).amplitudes
-        force = np.zeros((force_and_moment.shape[1], 3), complex)
-        force[:, :2] = force_and_moment[:2].T
+        wrench = self._about_reference(self._on_pivot(speed).amplitudes, row)
+        return Periodic(wrench, self.motion.turns)
+
+    def _about_reference(self, on_pivot: Array, row: Row) -> Array:
+        """Force along x and y and moment about the pivot, (3, N), as a wrench (6, N)."""
+        force = np.zeros((on_pivot.shape[1], 3), on_pivot.dtype)
+        force[:, :2] = on_pivot[:2].T
         wrench = self.body.wrench(force, self._pivot_of(row))
-        wrench[:, 5] += force_and_moment[2]
-        return Periodic(wrench.T, self.motion.turns)
+        wrench[:, 5] += on_pivot[2]
+        return wrench.T
 
     def _on_pivot(self, speed: float) -> Periodic:
         """Force along x and y, and moment about the pivot, of one linkage; (3, K + 1)."""
         planting = self.machine.planting
         if planting is not None and planting.soil is not None:
-            return Periodic.of(self._signals(speed), self.motion.turns)
+            return Periodic.of(self._signals(self.motion.at(speed)), self.motion.turns)
         still, moving = self._parts
         return Periodic(still + speed**2 * moving, self.motion.turns)
 
     @cached_property
     def _parts(self) -> tuple[Array, Array]:
         """What does not depend on the speed, and what grows with its square."""
-        still = self._signals(0.0)
-        both = Periodic.of(np.stack([still, self._signals(1.0) - still]), self.motion.turns)
+        still, moving = (self._signals(self.motion.at(speed)) for speed in (0.0, 1.0))
+        both = Periodic.of(np.stack([still, moving - still]), self.motion.turns)
         return both.amplitudes[0], both.amplitudes[1]
 
-    def _signals(self, speed: float) -> Array:
+    def _signals(self, motion: Motion) -> Array:
         """Force along x and y, and moment about the pivot, (3, N)."""
-        found = forces(self.motion.at(speed), self.pivot)
+        found = forces(motion, self.pivot)
         force = found.frame_force.value - found.weight.value
         return np.stack([force.real, force.imag, self._moment(found)])
 
@@ -151,5 +164,11 @@ class Excitation:
             return np.zeros(len(found.motion.crank_angle))
         if self.step == "torque":
             return -found.drive_torque
-        varying: Array = found.frame_moment - np.mean(found.weight_moment)
+        varying: Array = found.frame_moment - self._mean_weight_moment
         return varying
+
+    @cached_property
+    def _mean_weight_moment(self) -> float:
+        """About the pivot, N m: what the mounts carry at rest."""
+        gravity = complex(*self.machine.gravity)
+        return self._links_mass * float(cross(self._mean_center - self.pivot, gravity))

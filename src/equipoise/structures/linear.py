@@ -83,6 +83,11 @@ class Linear:
         amplitudes[:, 0] += self.rest.unbalance[self.body.free]
         return Periodic(amplitudes, found.turns)
 
+    def wrench_at(self, theta: Array, speed: float) -> Array:
+        """The same (D, P) at crank angles (P,), rad, not by orders."""
+        found = self.excitation.samples(theta, speed)[self.body.free]
+        return np.asarray(found + self.rest.unbalance[self.body.free, None])
+
     def motion(self, speed: float) -> Periodic:
         """Displacements of the free coordinates (D, K + 1), m and rad, at a speed, rad/s.
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from equipoise.mechanism.motion import move
 from equipoise.signals import Periodic
+from equipoise.structures.beginning import ROUGH
 from equipoise.structures.collocation import Conditions, Rates
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.linkages import rows_of
@@ -51,7 +52,7 @@ class Reduced:
     def rates(self, s: Array) -> Rates:
         """Derivatives of the states by s, the crank's turning, at s (P,)."""
         theta = self.sense * s
-        wrench = self.linear.wrench(self.speed).values(theta)
+        wrench = self.linear.wrench_at(theta, self.speed)
         pull, inward = self._coupling(theta)
 
         def rates(states: Array) -> Array:
@@ -68,7 +69,7 @@ class Reduced:
 
     def accelerations(self, theta: Array, states: Array) -> Array:
         """Of the free coordinates (D, P) at crank angles (P,), m/s2 and rad/s2."""
-        wrench = self.linear.wrench(self.speed).values(theta)
+        wrench = self.linear.wrench_at(theta, self.speed)
         return self._accelerations(wrench, *self._coupling(theta), states)
 
     def _accelerations(self, wrench: Array, pull: Array, inward: Array, states: Array) -> Array:
@@ -109,8 +110,8 @@ def respond_coupled(linear: Linear, speed: float) -> Response:
     moved = linear.motion(speed)
 
     def guess(s: Array) -> Array:
-        theta = system.sense * s
-        return np.concatenate([moved.values(theta), (moved.derivative() * speed).values(theta)])
+        theta, rough = system.sense * s, moved.upto(ROUGH)
+        return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
 
     turns = moved.turns
     found = steady(system, [guess], turns, Conditions.periodic(system.count))
