@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import pi
 from typing import Any
 
@@ -81,8 +82,11 @@ def from_linear(
     if linear is not None:
         moved, theta = linear.motion(system.speed).upto(ROUGH), system.sense * s
         states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
-    if setting is None:
-        return np.stack(states)
+    return np.stack(states) if setting is None else with_motor(states, setting, s)
+
+
+def with_motor(states: Iterable[Array], setting: tuple[float, float], s: Array) -> Array:
+    """States of the support with those of a motor that runs evenly."""
     speed, shift = setting
     return np.stack([*states, np.full_like(s, speed), s / abs(speed), np.full_like(s, shift)])
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.model import HUGE, Machine
 from equipoise.structures.body import MISSING
 from equipoise.structures.excitation import Step
 from equipoise.structures.response import MODELS, Model
@@ -54,6 +54,8 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
     ------
     ModelError, UsageError : it is 0, or the motor sets it.
     """
+    if speed is not None and not abs(speed) < HUGE:
+        raise UsageError(f"got {speed!r} for speed; give a finite number in SI units")
     if machine.drive.speed == 0 and speed is None:
         raise ModelError("drive.speed", f"got 0; {STANDSTILL}")
     if speed == 0:

@@ -83,16 +83,14 @@ class Orbit:
         """States (n, M) at any s (M,) of the period."""
         k = np.clip(np.searchsorted(self.points, s, side="right") - 1, 0, len(self.points) - 2)
         step = np.diff(self.points)[k]
-        share = (s - self.points[k]) / step
-        weights = np.vander(share, STAGES + 1, increasing=True)[:, 1:] @ RULE.integrals
+        weights = RULE.integrals((s - self.points[k]) / step)
         return np.asarray(
             self.starts[:, k] + step * np.einsum("ml,nml->nm", weights, self.slopes[:, k])
         )
 
     def slopes_at(self, share: float) -> Array:
         """Derivatives (n, K) of the polynomials at a share of each interval."""
-        lagrange = np.power(share, np.arange(STAGES)) @ RULE.lagrange
-        return np.asarray(self.slopes @ lagrange)
+        return np.asarray(self.slopes @ RULE.values(np.array([share]))[0])
 
     def integral(self, values: Array) -> float:
         """Integral over the period of values (K, m) at the nodes."""
@@ -101,28 +99,39 @@ class Orbit:
 
 @dataclass(frozen=True, eq=False)
 class Rule:
-    """Gauss's rule on [0, 1].
+    """Gauss's rule on [0, 1], by Legendre's polynomials, which keep it exact to rounding.
 
-    nodes, weights : (m,).  inner : (m, m), integrals of Lagrange's polynomials to each node.
-    integrals : (m, m), coefficients of the powers t ... t^m in those integrals, a column each.
-    lagrange : (m, m), coefficients of the powers 1 ... t^(m-1) in the polynomials, a column each.
+    nodes, weights : (m,).
+    legendre : (m, m), coefficients of Lagrange's polynomials, a column each.
     """
 
     nodes: Array
     weights: Array
-    inner: Array
-    integrals: Array
-    lagrange: Array
+    legendre: Array
 
     @classmethod
     def of(cls, stages: int) -> Rule:
         x, w = np.polynomial.legendre.leggauss(stages)
-        nodes = (x + 1) / 2
-        powers = np.vander(nodes, stages, increasing=True)
-        lagrange = np.linalg.inv(powers)
-        integrals = lagrange / np.arange(1, stages + 1)[:, None]
-        inner = np.vander(nodes, stages + 1, increasing=True)[:, 1:] @ integrals
-        return cls(nodes, w / 2, inner, integrals, lagrange)
+        orders = np.arange(stages)
+        values = np.polynomial.legendre.legvander(x, stages - 1)
+        return cls((x + 1) / 2, w / 2, (orders + 0.5)[:, None] * values.T * w)
+
+    def values(self, share: Array) -> Array:
+        """Lagrange's polynomials (M, m) at shares (M,) of an interval."""
+        stages = len(self.nodes)
+        return np.polynomial.legendre.legvander(2 * share - 1, stages - 1) @ self.legendre
+
+    def integrals(self, share: Array) -> Array:
+        """Their integrals (M, m) from the begin of an interval."""
+        stages = len(self.nodes)
+        legendre = np.polynomial.legendre.legvander(2 * share - 1, stages)
+        below = np.concatenate([-np.ones((len(share), 1)), legendre[:, : stages - 1]], axis=1)
+        return np.asarray((legendre[:, 1:] - below) / (4 * np.arange(stages) + 2) @ self.legendre)
+
+    @cached_property
+    def inner(self) -> Array:
+        """(m, m), integrals to each node."""
+        return self.integrals(self.nodes)
 
 
 RULE = Rule.of(STAGES)

@@ -26,6 +26,7 @@ from equipoise.structures.beginning import (
     motor_setting,
     swings_in_a_turn,
     turns_of,
+    with_motor,
 )
 from equipoise.structures.body import Body
 from equipoise.structures.carried import Ride, joint_forces
@@ -70,11 +71,19 @@ def solve_exact(
     guesses: list[Guess] = [] if near is None else [near]
     setting = motor_setting(machine, speed) if drive else None
     guesses.append(partial(from_linear, system, linear, setting))
-    if system.torque is None:
+    if setting is None:
         guesses.append(partial(settled, system))
+    elif linear is not None:
+        guesses.append(partial(_at_constant_speed, machine, setting))
     swings = swings_in_a_turn(linear, speed)
     found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
     return ExactSolution(system, linear, found)
+
+
+def _at_constant_speed(machine: Machine, setting: tuple[float, float], s: Array) -> Array:
+    """States of a machine with a motor, from those at constant speed."""
+    states = solve_exact(machine, setting[0], False).found.orbit.at(s)
+    return with_motor(states, setting, s)
 
 
 @dataclass(frozen=True, eq=False)

@@ -64,18 +64,23 @@ def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...
     system[count:, count:] = -np.linalg.solve(mass, damping)
     values, vectors = np.linalg.eig(system)
     least = STILL * float(np.max(np.abs(values), initial=0.0))
-    found = []
-    free = 0
+    # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
+    # tells free motions apart.
+    found = [Mode(0j, _scaled(shape)) for shape in _free(stiffness)]
     for value, vector in zip(values, vectors.T, strict=True):
-        if abs(value) <= least:  # each free motion has two: standing and drifting
-            free += 1
-            if free % 2:
-                found.append(Mode(0j, _scaled(vector[:count])))
-        elif value.imag > STILL * abs(value):
+        if abs(value) <= least:
+            continue
+        if value.imag > STILL * abs(value):
             found.append(Mode(complex(value), _scaled(vector[:count])))
         elif abs(value.imag) <= STILL * abs(value):
             found.append(Mode(complex(value.real), _scaled(vector[:count])))
     return tuple(sorted(found, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
+
+
+def _free(stiffness: Array) -> Array:
+    """Motions (F, D), complex, that no spring holds."""
+    _, sizes, shapes = np.linalg.svd(stiffness)
+    return np.asarray(shapes[sizes <= STILL**2 * np.max(sizes, initial=0.0)], dtype=complex)
 
 
 def _scaled(shape: Array) -> Array:

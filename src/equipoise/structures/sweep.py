@@ -171,7 +171,8 @@ def sweep_speed(
         raise MassError(missing)
     if machine.support is None:
         raise ModelError("support", MISSING)
-    steady_speed(machine, fastest, drive)
+    for end in (slowest or fastest, fastest):  # a range that begins at 0 is told as such below
+        steady_speed(machine, end, drive)
     if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
         raise UsageError(
             f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are "

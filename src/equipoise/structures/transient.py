@@ -25,7 +25,7 @@ from equipoise.structures.readings import Reading
 Array = np.ndarray[Any, Any]
 
 MOST_TURNS = 2000
-LEAST_SAMPLES, SAMPLES_PER_TURN = 2000, 72
+LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,6 +120,8 @@ def from_rest(
     if missing := massless(machine):
         raise MassError(missing)
     speed = steady_speed(machine, speed, drive)
+    if samples is not None and not 2 <= samples <= MOST_SAMPLES:
+        raise UsageError(f"got {samples!r} for samples; give 2 to {MOST_SAMPLES}")
     turns = abs(speed) * duration / (2 * pi)
     if not 0 < turns <= MOST_TURNS:
         raise UsageError(
@@ -132,7 +134,7 @@ def from_rest(
     begin = np.zeros(states_of + 2)
     begin[states_of] = 0.0 if drive else speed
     count = max(LEAST_SAMPLES, round(SAMPLES_PER_TURN * turns)) if samples is None else samples
-    time = np.linspace(0.0, duration, count + 1)
+    time = np.linspace(0.0, duration, count)
     states = follow(system, time, begin, shift)
     moved, crank_speed, crank_angle = np.split(states, [states_of, states_of + 1])
     return Transient(machine, system, time, moved, crank_angle[0], crank_speed[0])

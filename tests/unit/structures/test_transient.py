@@ -38,7 +38,7 @@ def test_it_dies_out_into_the_steady_state(speed: float) -> None:
 
 
 def test_it_begins_at_rest_with_the_crank_turning() -> None:
-    found = from_rest(rig(), 1.0, samples=10)
+    found = from_rest(rig(), 1.0, samples=11)
     np.testing.assert_allclose(found.time, np.linspace(0, 1, 11))
     np.testing.assert_array_equal(found.states[:, 0], 0)
     np.testing.assert_allclose(found.crank_speed, SPEED)
@@ -120,7 +120,7 @@ def test_a_one_sided_mount_never_pulls() -> None:
 
 
 def test_told_values() -> None:
-    found = from_rest(rig(), 0.5, samples=8)
+    found = from_rest(rig(), 0.5, samples=9)
     values = found.to_dict()
     assert len(values["time"]) == 9
     assert set(values["gauges"]) == {"gauge"}
@@ -153,3 +153,9 @@ def test_refusals() -> None:
         from_rest(rig(), 1.0, drive=True)
     with pytest.raises(ModelError, match="for motion in the plane of the drawing"):
         from_rest(cart(), 1.0)
+
+
+@pytest.mark.parametrize("samples", [1, 0, -3])
+def test_too_few_samples(samples: int) -> None:
+    with pytest.raises(UsageError, match=f"got {samples} for samples; give 2"):
+        from_rest(rig(), 0.5, samples=samples)
