@@ -393,7 +393,7 @@ def test_bad_arguments(folder: Path, words: list[str], said: str) -> None:
     ("words", "said"),
     [
         (["analyse", FOUR_BAR], 'Unknown command "analyse". Did you mean "analyze"?'),
-        (["qqq"], "Available commands: analyze, examples, check"),
+        (["qqq"], "Available commands: analyze, decay, examples, check"),
         (["--qqq"], "--qqq"),
         (["analyze"], "FILE requires an argument"),
         (["check"], "FILE requires an argument"),

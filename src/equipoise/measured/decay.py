@@ -236,6 +236,6 @@ def _on_fit(turns: Turns, whole: WholeFit) -> Iterator[str]:
         )
     if whole.correlated > MUCH_CORRELATED:
         yield (
-            f"what the fit of the whole record leaves is correlated over {whole.correlated:.2g} "
+            f"what the fit of the whole record leaves is correlated over {whole.correlated:.0f} "
             "points; its intervals are widened for that"
         )

@@ -11,6 +11,9 @@ import numpy as np
 from equipoise.errors import UsageError
 
 Array = np.ndarray[Any, Any]
+
+LARGEST_SWING = 1.0
+"""rad: far more than a gauge's displacement over its arm can stand for."""
 Kind = Literal["length", "angle"]
 
 LEAST_SAMPLES = 12
@@ -74,7 +77,14 @@ class Record:
         """
         if self.kind == "angle":
             raise UsageError("arm: the record is one of angles, which need no arm; leave it out")
-        return Record(self.time, self.displacement / positive("arm", arm), "angle")
+        angle = self.displacement / positive("arm", arm)
+        swing = float(np.ptp(angle)) / 2
+        if swing > LARGEST_SWING:
+            raise UsageError(
+                f"arm: got {arm:g} m, by which the record swings {np.degrees(swing):.3g} deg to "
+                "either side; that is no small angle, give the distance from the pivot to the gauge"
+            )
+        return Record(self.time, angle, "angle")
 
 
 def positive(name: str, value: float) -> float:

@@ -14,6 +14,7 @@ from equipoise.mechanism.frozen import Frozen
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
+UNITS = {"no_load_speed": " rad/s", "stall_torque": " N m", "ratio": ""}
 MEAN_SPEEDS = ("held", "free")
 
 
@@ -81,8 +82,7 @@ def wrong_motor(machine: Machine) -> Iterator[ModelError]:
     for key in ("no_load_speed", "stall_torque", "ratio"):
         value = getattr(motor, key)
         if value is not None and value <= 0:
-            unit = "" if key == "ratio" else " in SI units"
-            yield ModelError(f"{where}.{key}", f"got {value:g}{unit}; give more than 0")
+            yield ModelError(f"{where}.{key}", f"got {value:g}{UNITS[key]}; give more than 0")
     if motor.inertia < 0:
         yield ModelError(
             f"{where}.inertia",

@@ -26,8 +26,16 @@ Direction = float | tuple[float, float, float]
 PLANAR = ("surge", "heave", "pitch")
 FREEDOMS = ("surge", "heave", "sway", "roll", "yaw", "pitch")
 """Along x, y, z and about x, y, z: the order of coordinates in `equipoise.structures`."""
+HELD = ("surge", "heave", "sway")
+"""What a pivot takes away."""
 AXES = ("roll", "yaw", "pitch")
 UP = pi / 2
+UNITS = {
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "torsional_stiffness": "N m/rad",
+    "torsional_damping": "N m s/rad",
+}
 MOST = {"mounts": 200, "gauges": 200, "rows": 200}
 
 
@@ -189,6 +197,11 @@ def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
     for number, name in enumerate(support.freedoms, 1):
         if name not in FREEDOMS:
             yield ModelError(f"support.freedoms[{number}]", unknown(name, FREEDOMS, "freedom"))
+        elif support.pivot is not None and name in HELD:
+            yield ModelError(
+                f"support.freedoms[{number}]",
+                f"the pivot is a pin in the ground, which leaves no {name}; leave out one of them",
+            )
         elif name in support.freedoms[: number - 1]:
             yield ModelError(f"support.freedoms[{number}]", f"{name!r} is given twice")
 
@@ -241,7 +254,11 @@ def _wrong_moments(support: Support) -> Iterator[ModelError]:
         minors = (xx * yy - xy**2, yy * zz - yz**2, zz * xx - zx**2)
         whole = xx * minors[1] - xy * (xy * zz + yz * zx) - zx * (xy * yz + yy * zx)
         if min(*minors, whole) <= 0:
-            yield ModelError("support.products", "no body has products as large as these")
+            yield ModelError(
+                "support.products",
+                f"got {xy:g}, {yz:g} and {zx:g} kg m^2 beside an inertia of {xx:g}, {yy:g} and "
+                f"{zz:g}; no body has that, give smaller ones",
+            )
 
 
 def _wrong_pivot_inertia(support: Support) -> Iterator[ModelError]:
@@ -273,7 +290,7 @@ def _wrong_mount(where: str, mount: Mount) -> Iterator[ModelError]:
     own, other = (along, about) if mount.axis is None else (about, along)
     for key, value in own.items():
         if value < 0:
-            yield ModelError(f"{where}.{key}", f"got {value:g} in SI units; give 0 or more")
+            yield ModelError(f"{where}.{key}", f"got {value:g} {UNITS[key]}; give 0 or more")
     if not any(own.values()):
         yield ModelError(where, f"give at least one of {' and '.join(own)}")
     place = "a point" if mount.axis is None else "an axis"

@@ -202,7 +202,7 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
     if not any(rates.values()):
         if known or not np.any(left):
             return {**dict.fromkeys(mounts, 0.0), **known}
-        raise ModelError("support.mounts", _uncarried(body, left, load))
+        raise ModelError("support.mounts", _uncarried(body, left))
     touching = dict(rates)
     for _ in range(len(rates) + 1):
         stiffness = sum(
@@ -217,16 +217,16 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
         touching = kept
     over = left - stiffness @ settled
     if np.linalg.norm(over) > LOOSE * (np.linalg.norm(load) + np.linalg.norm(left)):
-        raise ModelError("support.mounts", _uncarried(body, over, load))
+        raise ModelError("support.mounts", _uncarried(body, over))
     return {**{name: found.get(name, 0.0) for name in mounts}, **known}
 
 
-def _uncarried(body: Body, over: Array, load: Array) -> str:
-    scale = max(float(np.max(np.abs(load))), 1e-30)
+def _uncarried(body: Body, over: Array) -> str:
+    largest = float(np.max(np.abs(over)))
     loose = [
         name
         for name, value in zip(body.support.coordinates, over, strict=True)
-        if abs(value) > LOOSE * scale
+        if abs(value) > 0.05 * largest
     ]
     return (
         f"they do not carry the weight in {' and '.join(loose)}; add a mount there, or give the "

@@ -7,15 +7,20 @@ one of them, run down on the other.  So the range is then gone through both ways
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from equipoise.errors import ResponseError
 from equipoise.mechanism.model import Machine
 from equipoise.structures.exact import solve_exact
 from equipoise.structures.response import Response
+from equipoise.structures.steady import NO_STEADY_STATE
+from equipoise.structures.table import range_shown
 
 Progress = Callable[[int, int], None]
 Answers = list[Response | None]
 
+APPROACHES = ((1.0,), (0.8, 0.84, 0.88, 0.92, 0.96, 1.0), (1.2, 1.16, 1.12, 1.08, 1.04, 1.0))
+"""Shares of a speed through which it is come to: at once, from below and from above."""
 DIFFERENT = 1e-3
 """Share by which two steady states differ at least at some gauge."""
 
@@ -26,7 +31,7 @@ def follow_speeds(
     """Response at every speed, the louder one where there are two; and what to say of that."""
     count = len(speeds)
     upward = _along(machine, speeds, drive, lambda done: progress(done, count))
-    if drive or not any(_lifts_off(answer) for answer in upward):
+    if not any(_lifts_off(answer) for answer in upward):
         return upward, []
     downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
     louder, both = [], []
@@ -38,8 +43,49 @@ def follow_speeds(
     return louder, _told(both, count)
 
 
+def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
+    """Response by the exact equations; where mounts let go, the louder of what may be two.
+
+    Raises
+    ------
+    ResponseError : no steady state was found.
+    """
+    support = machine.support
+    if support is None or not any(mount.one_sided for mount in support.mounts.values()):
+        return solve_exact(machine, speed, drive).response()
+    found: list[Response] = []
+    for reach in APPROACHES:
+        speeds = [speed * share for share in reach]
+        answers = _along(machine, speeds, drive, lambda done: None, brief=False)
+        last = answers[-1]
+        if last is not None and all(abs(_ratio(last, other) - 1) > DIFFERENT for other in found):
+            found.append(last)
+    if not found:
+        raise ResponseError(NO_STEADY_STATE)
+    louder = max(found, key=_loudness)
+    notes = [_other(louder, other) for other in found if other is not louder]
+    return replace(louder, notes=(*louder.notes, *notes))
+
+
+def _loudness(answer: Response) -> float:
+    """Sum of what the gauges read, for comparing answers of one machine."""
+    return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
+
+
+def _other(louder: Response, other: Response) -> str:
+    share = 100 * _ratio(louder, other)
+    return (
+        f"another steady state at this speed shakes {share:.0f} % as much; which of them the "
+        "machine takes depends on the speeds it comes from"
+    )
+
+
 def _along(
-    machine: Machine, speeds: list[float], drive: bool, progress: Callable[[int], None]
+    machine: Machine,
+    speeds: list[float],
+    drive: bool,
+    progress: Callable[[int], None],
+    brief: bool = True,
 ) -> Answers:
     """Response at every speed, one after the other; None where no steady state was found."""
     answers: Answers = []
@@ -51,8 +97,8 @@ def _along(
             near = None
             answers.append(None)
         else:
-            near = None if drive else found.found.orbit.at
-            answers.append(found.response(brief=True))
+            near = found.found.orbit.at
+            answers.append(found.response(brief))
         progress(len(answers))
     return answers
 
@@ -80,7 +126,6 @@ def _told(both: list[tuple[float, float]], count: int) -> list[str]:
     speeds = [speed for speed, _ in both]
     least = min(ratio for _, ratio in both)
     return [
-        f"two steady states at {len(both)} of {count} speeds, from {speeds[0]:.4g} to "
-        f"{speeds[-1]:.4g} rad/s; the louder one is told, the other shakes down to "
-        f"{100 * least:.0f} % of it"
+        f"two steady states at {len(both)} of {count} speeds, {range_shown(speeds)}; the louder "
+        f"one is told, the other shakes down to {100 * least:.0f} % of it"
     ]

@@ -66,6 +66,13 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
     return machine.drive.speed if speed is None else float(speed)
 
 
+def left_out(machine: Machine) -> list[str]:
+    """What the model file gives that a steady vibration cannot have."""
+    if not machine.drive.acceleration:
+        return []
+    return ["the drive's acceleration is left out: a crank that speeds up has no steady vibration"]
+
+
 def usual_step(machine: Machine, model: str | None = None) -> Step:
     """The linear step that fits the support, or that goes with a model."""
     if model is not None and model not in MODELS:

@@ -26,6 +26,8 @@ NOTHING = 1e-10
 """Size of a state (m, rad and their rates) below which it is rounding."""
 CLOSE = 1e-12
 """Change of the solution, beside its largest value, at which Newton's method stops."""
+SETTLED = 1e-7
+"""Change below which it stops too once a round brings less than a half."""
 
 
 class System(Protocol):
@@ -161,7 +163,7 @@ def solve(
     starts, states = guess(points), guess(nodes.ravel()).reshape(-1, *nodes.shape)
     slopes = _slopes(rates, states)
     orbit = Orbit(points, starts, slopes, np.eye(len(starts)), np.inf, 0)
-    misfit = np.inf
+    misfit, last = np.inf, np.inf
     for number in range(1, MOST_ROUNDS + 1):
         step = _newton(rates, orbit, states, conditions)
         share = 1.0
@@ -180,8 +182,9 @@ def solve(
             return replace(orbit, change=np.inf)
         starts, states, misfit = found.starts, tried, new
         orbit = replace(found, monodromy=step.monodromy, change=change, rounds=number)
-        if change < CLOSE and share == 1.0:
-            break
+        if share == 1.0 and (change < CLOSE or (change > last / 2 and last < SETTLED)):
+            break  # there, or as near as rounding lets it come
+        last = change
     return orbit
 
 

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.errors import ResponseError
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
@@ -37,6 +38,7 @@ from equipoise.structures.linkages import Sums, rows_of
 from equipoise.structures.motor import fastest
 from equipoise.structures.readings import PITCH, Reading
 from equipoise.structures.response import (
+    NEUTRAL,
     DriveSignals,
     Energy,
     GaugeSignals,
@@ -46,17 +48,12 @@ from equipoise.structures.response import (
     told_of,
 )
 from equipoise.structures.small_motion import force_amplitudes, mount_force
-from equipoise.structures.steady import SAMPLES, Guess, Steady, steady
+from equipoise.structures.steady import NO_STEADY_STATE, SAMPLES, Guess, Steady, steady
 
 Array = np.ndarray[Any, Any]
 
 LEANING = 10.0
 """deg, from which on it is told how far from the drawn position the support has come to rest."""
-
-
-def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
-    """Response by the exact equations."""
-    return solve_exact(machine, speed, drive).response()
 
 
 def solve_exact(
@@ -77,7 +74,10 @@ def solve_exact(
         guesses.append(partial(_at_constant_speed, machine, setting))
     swings = swings_in_a_turn(linear, speed)
     found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
-    return ExactSolution(system, linear, found)
+    solution = ExactSolution(system, linear, found)
+    if solution.toppled:
+        raise ResponseError(NO_STEADY_STATE)
+    return solution
 
 
 def _at_constant_speed(machine: Machine, setting: tuple[float, float], s: Array) -> Array:
@@ -101,6 +101,23 @@ class ExactSolution:
     @cached_property
     def turns(self) -> int:
         return turns_of(self.machine)
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """Of displacements, velocities and the crank's speed; the largest first."""
+        count = 2 * len(self.system.free) + (self.system.torque is not None)
+        return self.found.multipliers(count)
+
+    @property
+    def lean(self) -> float:
+        """Mean rotation of the support from the drawn position, deg."""
+        return float(np.degrees(np.mean(self.ride.place[PITCH])))
+
+    @property
+    def toppled(self) -> bool:
+        """Whether this is no state of the machine, but one balanced far from where it stands."""
+        unstable = self.multipliers.size and abs(self.multipliers[0]) > 1 + NEUTRAL
+        return bool(unstable) and abs(self.lean) > LEANING
 
     @cached_property
     def turned(self) -> Array:
@@ -167,9 +184,6 @@ class ExactSolution:
 
     def response(self, brief: bool = False) -> Response:
         """Everything that is told of it; `brief` leaves out the joint forces."""
-        system = self.system
-        count = 2 * len(system.free) + (system.torque is not None)
-        multipliers = self.found.multipliers(count)
         return Response(
             self.machine,
             "exact",
@@ -181,14 +195,14 @@ class ExactSolution:
             self._drive(),
             {} if brief else self._joints(),
             self.found.residual,
-            multipliers,
+            self.multipliers,
             self.energy(),
-            tuple(self._notes(multipliers)),
+            tuple(self._notes()),
         )
 
-    def _notes(self, multipliers: Array) -> Iterator[str]:
+    def _notes(self) -> Iterator[str]:
         """What a reader has to know of the solution."""
-        yield from told_of(multipliers)
+        yield from told_of(self.multipliers)
         motor = self.machine.drive.motor
         if self.system.torque is not None and motor is not None:
             shift, own = float(self.states[-1, 0]), fastest(motor)
@@ -197,9 +211,8 @@ class ExactSolution:
                     f"to hold the mean speed, the motor's curve is shifted by {shift:.4g} rad/s, "
                     f"more than its own {own:.4g} rad/s: it is too weak or slow for this machine"
                 )
-        lean = float(np.degrees(np.mean(self.ride.place[PITCH])))
-        if abs(lean) > LEANING:
-            yield f"the support leans by {lean:.1f} deg from the drawn position in the mean"
+        if abs(self.lean) > LEANING:
+            yield f"the support leans by {self.lean:.1f} deg from the drawn position in the mean"
 
     def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
         ride = self.ride

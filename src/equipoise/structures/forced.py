@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import cast, get_args
 
 from equipoise.errors import MassError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.choice import chosen_model, steady_speed
-from equipoise.structures.exact import respond_exact
+from equipoise.structures.branches import respond_exact
+from equipoise.structures.choice import chosen_model, left_out, steady_speed
 from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
 from equipoise.structures.reduced import respond_coupled
@@ -38,7 +39,9 @@ def respond(
         raise MassError(missing)
     speed = steady_speed(machine, speed, drive)
     if model in get_args(Step):
-        return respond_linear(Linear.of(machine, cast(Step, model)), speed)
-    if model == "coupled":
-        return respond_coupled(Linear.of(machine, "torque"), speed)
-    return respond_exact(machine, speed, drive)
+        found = respond_linear(Linear.of(machine, cast(Step, model)), speed)
+    elif model == "coupled":
+        found = respond_coupled(Linear.of(machine, "torque"), speed)
+    else:
+        found = respond_exact(machine, speed, drive)
+    return replace(found, notes=(*left_out(machine), *found.notes))

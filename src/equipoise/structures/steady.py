@@ -22,17 +22,23 @@ from equipoise.structures.collocation import (
 Array = np.ndarray[Any, Any]
 Guess = Callable[[Array], Array]
 
+NO_STEADY_STATE = (
+    "no steady state was found; the machine may not settle into one. Look at it from rest "
+    "(--transient), or try another speed or more damping"
+)
 SAMPLES = 720
 """In a turn, at which a solution is read off."""
 INTERVALS = 36
 """In a turn, to begin with."""
-MOST_INTERVALS, MOST_SWINGS = 4000, 2000
+MOST_INTERVALS, MOST_SWINGS = 4000, 400
 FINE = 1e-11
 """Residual of an interval at which it is left as it is."""
 ROUNDS = 14
 """Of refinement: where a contact opens or a load sets in, intervals are cut in four."""
 NEUTRAL = 1 + 1e-6
 """Multiplier up to which nothing grows, whatever rounding says."""
+PROGRESS, PATIENCE = 0.7, 3
+"""Share of the residual above which a finer mesh has brought nothing, and how often in a row."""
 LOOSE = 1e-6
 """Change of the solution above which Newton's method has not found one."""
 
@@ -91,20 +97,20 @@ def steady(
         if orbit is not None and _dies_out(orbit):
             break
     if orbit is None:
-        raise ResponseError(
-            "no steady state was found; the machine may not settle into one. Look at it from rest "
-            "(--transient), or try another speed or more damping"
-        )
-    error = _residuals(system, orbit)
+        raise ResponseError(NO_STEADY_STATE)
+    error, idle = _residuals(system, orbit), 0
     for _ in range(ROUNDS):
-        coarse = error > FINE
+        coarse = error > max(FINE, orbit.change)  # below its last change the solution is rounding
         if not np.any(coarse) or len(orbit.points) > 2 * intervals + MOST_INTERVALS * turns:
             break
         finer = _tried(system, _cut(orbit.points, coarse), orbit.at, conditions)
         if finer is None:
             break
-        orbit = finer
+        before, orbit = float(np.max(error)), finer
         error = _residuals(system, orbit)
+        idle = idle + 1 if np.max(error) > PROGRESS * before else 0
+        if idle == PATIENCE:  # what is left is rounding
+            break
     return Steady(orbit, float(np.max(error)))
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, cast, get_args
@@ -14,7 +15,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.body import MISSING
 from equipoise.structures.branches import Progress, follow_speeds
-from equipoise.structures.choice import chosen_model, steady_speed, usual_step
+from equipoise.structures.choice import chosen_model, left_out, steady_speed, usual_step
 from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
 from equipoise.structures.modes import Mode
@@ -22,7 +23,7 @@ from equipoise.structures.reduced import respond_coupled
 from equipoise.structures.resonance import Resonance, resonances
 from equipoise.structures.response import Model, Response
 from equipoise.structures.small_motion import respond_linear
-from equipoise.structures.table import Values, mode_values
+from equipoise.structures.table import Values, mode_values, range_shown
 
 Array = np.ndarray[Any, Any]
 
@@ -189,7 +190,8 @@ def sweep_speed(
         answers, notes = follow_speeds(machine, grid.tolist(), drive, told)
     else:
         answers, notes = _by_orders(linear, model, grid.tolist(), told), []
-    return _gathered(machine, model, grid, answers, linear, met, (*notes, *_missing(grid, answers)))
+    notes = [*left_out(machine), *notes, *_missing(grid, answers)]
+    return _gathered(machine, model, grid, answers, linear, met, tuple(notes))
 
 
 def _speeds(
@@ -227,10 +229,20 @@ def _missing(grid: Array, answers: list[Response | None]) -> list[str]:
         raise ResponseError("no steady state was found at any of these speeds")
     if not lost:
         return []
-    return [
-        f"no steady state was found at {len(lost)} of {len(grid)} speeds, "
-        f"from {lost[0]:.4g} to {lost[-1]:.4g} rad/s"
-    ]
+    return [f"no steady state was found at {len(lost)} of {len(grid)} speeds, {range_shown(lost)}"]
+
+
+def _noted(grid: Array, answers: list[Response | None]) -> Iterator[str]:
+    """What is to be said of the responses, each with the speeds of which it holds."""
+    where: dict[str, list[tuple[float, str]]] = {}
+    for speed, answer in zip(grid.tolist(), answers, strict=True):
+        for note in () if answer is None else answer.notes:
+            # Notes that differ in a number only are one.
+            where.setdefault(re.sub(r"-?[0-9.]+", "", note), []).append((speed, note))
+    for found in where.values():
+        speeds = [speed for speed, _ in found]
+        everywhere = len(found) == len(grid)
+        yield found[0][1] if everywhere else f"{range_shown(speeds)}: {found[0][1]}"
 
 
 def _gathered(
@@ -243,7 +255,6 @@ def _gathered(
     notes: tuple[str, ...],
 ) -> Sweep:
     first = next(answer for answer in answers if answer is not None)
-    told = dict.fromkeys(note for a in answers if a is not None for note in a.notes)
     return Sweep(
         machine,
         model,
@@ -254,7 +265,7 @@ def _gathered(
         tuple(met),
         np.array([np.nan if a is None else a.drive.fluctuation for a in answers]),
         np.array([a is not None and a.stable is not False for a in answers]),
-        (*notes, *told),
+        (*notes, *_noted(grid, answers)),
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import pi
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,14 @@ Values = dict[str, Any]
 LEAST_ORDERS = 10
 SMALL = 1e-9
 """Share of the largest amplitude below which higher orders are left out."""
+
+
+def range_shown(speeds: Sequence[float]) -> str:
+    """From which to which speed, rad/s, as a text."""
+    first, last = (
+        f"{speed * 30 / pi:.4g} rpm ({speed:.4g} rad/s)" for speed in (speeds[0], speeds[-1])
+    )
+    return f"at {first}" if len(speeds) == 1 else f"from {first} to {last}"
 
 
 def by_order(signal: Periodic) -> Values:

@@ -126,7 +126,7 @@ def from_rest(
     if not 0 < turns <= MOST_TURNS:
         raise UsageError(
             f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
-            f"than 0 and at most {MOST_TURNS} turns"
+            f"than 0 and at most {MOST_TURNS} turns, {MOST_TURNS * 2 * pi / abs(speed):.4g} s"
         )
     system, _ = equations(machine, speed, drive)
     shift = _shift(machine, speed) if drive else 0.0

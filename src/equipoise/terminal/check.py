@@ -6,8 +6,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import degrees
 from typing import TYPE_CHECKING
 
+from equipoise.errors import ModelError
 from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
+from equipoise.structures.body import Body, at_rest
+from equipoise.structures.excitation import Excitation
 from equipoise.terminal.tables import PER_RPM, number
 
 if TYPE_CHECKING:
@@ -33,9 +37,19 @@ def print_check(machine: Machine) -> None:
     print(f"the crank turns fully; the motion repeats after {turns}")
     for row in [*_drive_train(machine), *_support(machine)]:
         print(row)
-    for remark in [*remarks(linkage), *_idle(machine)]:
+    for remark in [*remarks(linkage), *_idle(machine), *_uncarried(machine)]:
         print(f"note: {remark}")
     print("ready to be analysed")
+
+
+def _uncarried(machine: Machine) -> Iterator[str]:
+    """Why the mounts do not hold the machine, if they do not."""
+    if machine.support is None or massless(machine):
+        return
+    try:
+        at_rest(Body(machine), Excitation(Body(machine), "moment").weights)
+    except ModelError as error:
+        yield f"{error}; respond and modes need that"
 
 
 HOW = {

@@ -75,4 +75,4 @@ def _rest(free: FreeVibration) -> str:
         rest = "does not touch" if not free.linear.rest.carries(name, mounts[name]) else ""
         scale = max(abs(value) for value in free.preloads.values())
         rows.append((name, number(force, scale), unit, rest))
-    return table("Mounts at rest; force on the support", ("", "", "", ""), rows)
+    return table("Mounts at rest", ("", "force on the support", "", ""), rows)

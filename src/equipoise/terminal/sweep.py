@@ -33,7 +33,7 @@ def print_sweep(sweep: Sweep, units: Units) -> None:
     print(modes_table(sweep.modes))
     print(_resonances(sweep, units))
     print(_gauges(sweep, units))
-    for note in _notes(sweep):
+    for note in sweep.notes:
         print(f"note: {note}")
 
 
@@ -52,7 +52,9 @@ def _resonances(sweep: Sweep, units: Units) -> str:
         return "\nno resonance in this range"
     unit = units.name("angular speed")
     header = (unit, "rad/s", "order", "mode", "share", f"keep away from, {unit}")
-    title = "Resonances; share of the loudest, amplified more than three times where to keep away"
+    small = " of small motion" if sweep.model == "exact" else ""
+    what = "share of the loudest, amplified more than three times where to keep away"
+    title = f"Resonances{small}; {what}"
     return table(title, header, rows, words=0)
 
 
@@ -75,11 +77,3 @@ def _gauges(sweep: Sweep, units: Units) -> str:
         rows.append((name, unit, lowest, told or "none"))
     title = f"Gauges; peak to peak, at {units.name('angular speed')}"
     return table(title, ("", "", "smallest", "peaks, the largest first"), rows, words=4)
-
-
-def _notes(sweep: Sweep) -> list[str]:
-    notes = list(sweep.notes)
-    unstable = int(np.sum(~sweep.stable & np.isfinite(sweep.fluctuation)))
-    if unstable:
-        notes.append(f"not stable at {unstable} of {len(sweep.speed)} speeds")
-    return notes

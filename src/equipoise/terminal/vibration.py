@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from equipoise.structures.modes import Mode
     from equipoise.structures.response import GaugeSignals, Response
 
+NOTHING = 1e-12
+"""m, rad and their rates."""
 MOST_ORDERS = 8
 """Columns of the table of orders."""
 
 
-def print_response(response: Response, others: Mapping[str, Response], units: Units) -> None:
+def print_response(response: Response, others: Mapping[str, Response | None], units: Units) -> None:
     """Tables of gauges, orders, mounts and drive; and the gauges by the other models."""
     machine = response.machine
     print(machine.title)
@@ -112,7 +114,9 @@ def _unit(gauge: GaugeSignals, units: Units) -> str:
 
 
 def _number(value: object, scale: float = 1.0) -> str:
-    return number(float(value) * scale)  # type: ignore[arg-type]
+    """A value in SI units times a scale; what is smaller than atoms is rounding."""
+    size = float(value)  # type: ignore[arg-type]
+    return "0" if abs(size) < NOTHING else number(size * scale)
 
 
 def _orders(response: Response, units: Units) -> str:
@@ -133,7 +137,9 @@ def _orders(response: Response, units: Units) -> str:
         sizes = np.pad(gauge.displacement.sizes, (0, count))
         largest = float(np.max(sizes[1:], initial=0.0)) * scale
         unit = units.name("angle" if gauge.rotation else "length")
-        rows.append((name, *(number(sizes[k] * scale, 1e3 * largest) for k in columns), unit))
+        told = (number(sizes[k] * scale, 1e3 * largest) for k in columns)
+        quiet = largest < NOTHING * scale
+        rows.append((name, *("0" if quiet else size for size in told), unit))
     header = ("order", *(_order(k / response.turns) for k in columns), "")
     return table("Gauges by order; amplitude", header, rows)
 
@@ -142,13 +148,17 @@ def _order(order: float) -> str:
     return f"{order:.4g}"
 
 
-def _by_model(response: Response, others: Mapping[str, Response], units: Units) -> str:
+def _by_model(response: Response, others: Mapping[str, Response | None], units: Units) -> str:
     """Peak to peak at each gauge, by every model that costs little."""
     rows: list[Row] = []
     for name, gauge in response.gauges.items():
         scale = _scales(gauge, units)[0]
-        readings = (other.gauges[name].displacement for other in others.values())
-        told = (_number(reading.peak_to_peak, scale) for reading in readings)
+        told = (
+            "none"
+            if other is None
+            else _number(other.gauges[name].displacement.peak_to_peak, scale)
+            for other in others.values()
+        )
         rows.append((name, *told, units.name("angle" if gauge.rotation else "length")))
     return table("Gauges by each model; peak to peak", ("", *others, ""), rows)
 
@@ -165,10 +175,11 @@ def _mounts(response: Response, units: Units) -> str:
             mount.smallest,
             float(force.vibration_rms),
         )
-        scale = 10 * max(map(abs, values))
+        scale = 100 * max(map(abs, values))
         cells = [units.shown(value, dimension, scale) for value in values]  # type: ignore[arg-type]
         ratio = "" if np.isnan(mount.whole) else number(mount.whole, 1.0)
-        off = [f"{100 * mount.lifts_off:.0f} %"] if lifting else []
+        in_the_air = f"{100 * mount.lifts_off:.0f} %" if mount.least == 0 else ""
+        off = [in_the_air] if lifting else []
         rows.append((name, *cells, ratio, *off, units.name(dimension)))  # type: ignore[arg-type]
     header = ["", "mean", "largest", "smallest", "RMS", "transmissibility"]
     header += ["in the air"] if lifting else []

@@ -72,8 +72,8 @@ REFUSED = {
 }  # fmt: skip
 """What both the reader and the schema refuse."""
 BEYOND_THE_SCHEMA = {
-    "negative speed": ('"3000 rpm"', '"-1 rad/s"', ".no_load_speed", "got -1 in SI units; give"),
-    "no torque": ('"2 N m"', '"0 N m"', ".stall_torque", "got 0 in SI units; give more than 0"),
+    "negative speed": ('"3000 rpm"', '"-1 rad/s"', ".no_load_speed", "got -1 rad/s; give"),
+    "no torque": ('"2 N m"', '"0 N m"', ".stall_torque", "got 0 N m; give more than 0"),
     "negative inertia": (SPEED, f'{SPEED}\ninertia = "-1 kg m^2"', ".inertia",
                          "got -1 kg m^2; no body has a negative moment of inertia"),
 }  # fmt: skip

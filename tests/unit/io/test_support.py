@@ -231,12 +231,12 @@ BEYOND_THE_SCHEMA = {
     "no body": (INERTIA, 'inertia = ["1 kg m^2", "9 kg m^2", "1 kg m^2"]', "support.inertia",
                 "got 9 kg m^2 beside 1 and 1; no body has one moment of inertia above the sum"),
     "large products": (INERTIA, f"inertia = {THREE}\nproducts = {THREE}", "support.products",
-                       "no body has products as large as these"),
+                       "no body has that, give smaller ones"),
     "small pivot_inertia": (INERTIA, 'pivot = ["0 m", "0 m"]\npivot_inertia = "1 kg m^2"',
                             "support.pivot_inertia",
                             "got 1 kg m^2; mass and center_of_mass alone make 5.4, give more"),
     "negative stiffness": (STIFF, 'stiffness = "-1 N/m"', f"{M}.stiffness",
-                           "got -1 in SI units; give 0 or more"),
+                           "got -1 N/m; give 0 or more"),
     "soft mount": (STIFF, 'stiffness = "0 N/m"', M, "give at least one of stiffness and damping"),
     "no direction": (WAY, "direction = [0, 0, 0]", f"{G}.direction",
                      "got [0, 0, 0]; give a direction"),
@@ -365,8 +365,9 @@ rows = st.builds(Row, phase=number, lateral=number, offset=st.tuples(number, num
 @st.composite
 def bodies(draw: Any) -> dict[str, Any]:
     """Inertia, pivot and freedoms that go together."""
-    spatial = st.lists(st.sampled_from(FREEDOMS), unique=True).map(tuple)
     pivot = draw(st.none() | st.tuples(number, number))
+    left = FREEDOMS if pivot is None else AXES  # a pin leaves rotations only
+    spatial = st.lists(st.sampled_from(left), unique=True).map(tuple)
     if draw(st.booleans()):
         moment = draw(size)
         products = draw(st.just(()) | st.tuples(*[st.floats(1e-3, 0.3)] * 3))

@@ -62,10 +62,12 @@ def refused(where: str, words: str, support: Support) -> None:
         ({"inertia": (1.0, 1.0, 1.0), "products": (0.1,)}, ".products",
          "give three values, of x y, y z and z x"),
         ({"inertia": (1.0, 1.0, 1.0), "products": (1.0, 0.0, 0.0)}, ".products",
-         "no body has products as large as these"),
+         "got 1, 0 and 0 kg m^2 beside an inertia of 1, 1 and 1; no body has that, give smaller "
+         "ones"),
         # Each pair alone would do.
         ({"inertia": (1.0, 1.0, 1.0), "products": (0.6, 0.6, 0.6)}, ".products",
-         "no body has products as large as these"),
+         "got 0.6, 0.6 and 0.6 kg m^2 beside an inertia of 1, 1 and 1; no body has that, give "
+         "smaller ones"),
         ({"freedoms": ("pich",)}, ".freedoms[1]",
          "no freedom is called 'pich'; did you mean 'pitch'?"),
         ({"freedoms": ("surge", "pitch", "surge")}, ".freedoms[3]", "'surge' is given twice"),
@@ -141,9 +143,9 @@ def test_numbers_are_finite(where: str, make: Any, value: float) -> None:
         (Mount((0.0, 0.0), preload=5.0), "", "give at least one of stiffness and damping"),
         (Mount(axis="roll"), "",
          "give at least one of torsional_stiffness and torsional_damping"),
-        (replace(MOUNT, damping=-3.0), ".damping", "got -3 in SI units; give 0 or more"),
+        (replace(MOUNT, damping=-3.0), ".damping", "got -3 N s/m; give 0 or more"),
         (replace(TURN, torsional_stiffness=-3.0), ".torsional_stiffness",
-         "got -3 in SI units; give 0 or more"),
+         "got -3 N m/rad; give 0 or more"),
         (replace(MOUNT, torsional_damping=3.0), ".torsional_damping",
          "has no place in a mount with a point"),
         (replace(TURN, stiffness=3.0), ".stiffness", "has no place in a mount with an axis"),

@@ -10,7 +10,7 @@ from scipy.spatial.transform import Rotation
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.support import FREEDOMS, unit_vector
+from equipoise.mechanism.support import unit_vector
 from equipoise.structures.body import (
     Body,
     at_rest,
@@ -63,7 +63,7 @@ def test_mass_matrix_is_that_of_kinetic_energy(seed: int) -> None:
         center_of_mass=tuple(center),
         inertia=tuple(np.diag(inertia)),
         products=(-inertia[0, 1], -inertia[1, 2], -inertia[2, 0]),
-        freedoms=FREEDOMS,
+        freedoms=("roll", "yaw", "pitch"),
         pivot=tuple(rng.normal(size=2)),
     )
     assert body.reference[2] == 0

@@ -142,7 +142,7 @@ def test_wrong_durations(duration: float) -> None:
         from_rest(rig(), duration)
     assert str(caught.value) == (
         f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more than "
-        "0 and at most 2000 turns"
+        f"0 and at most 2000 turns, {4000 * pi / abs(SPEED):.4g} s"
     )
 
 
