@@ -544,3 +544,38 @@ def test_kinds_of_pictures(kind: str, begin: bytes) -> None:
     result = equipoise("modes", RIG, "--plot", ".", "--format", kind, "--json")
     assert json.loads(succeeded(result))
     assert Path(f"mode-1.{kind}").read_bytes().startswith(begin)
+
+
+# -- more than one steady state --------------------------------------------------------------------
+
+WALKING = "walking-transplanter"
+
+
+@pytest.mark.parametrize("drive", [[], ["--drive"]])
+def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
+    """A float that lets go softens its machine, which then jumps below its resonance."""
+    two = read("respond", WALKING, "--model", "exact", "--speed", "168 rpm", *drive)
+    assert two["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(26.2e-3, abs=0.1e-3)
+    assert any("another steady state" in note for note in two["notes"])
+    one = read("respond", WALKING, "--model", "exact", "--speed", "172 rpm", *drive)
+    assert one["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(25.7e-3, abs=0.1e-3)
+    assert one["stable"]
+    assert one["notes"] == []
+
+
+def test_both_branches_of_a_range() -> None:
+    found = read("respond", WALKING, "--model", "exact", "--speed", "160:175 rpm", "--speeds", "16")
+    readings = found["gauges"]["planting_part"]["peak_to_peak"]
+    assert max(readings) == pytest.approx(26.2e-3, abs=0.3e-3)
+    assert any(re.search("two steady states at .* rpm", note) for note in found["notes"])
+
+
+def test_what_does_nothing_is_told(tmp_path: Path) -> None:
+    text = example_text("yamashita-rig").replace(
+        'speed = "193 rpm"', 'speed = "193 rpm"\nacceleration = "5 rad/s^2"'
+    )
+    path = tmp_path / "model.toml"
+    path.write_text(f'{text}\n[support.gauges.roll]\naxis = "roll"\n', encoding="utf-8")
+    notes = read("respond", path)["notes"]
+    assert any("gauges.roll does nothing: the support cannot roll" in note for note in notes)
+    assert any("acceleration is left out" in note for note in notes)

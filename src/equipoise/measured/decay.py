@@ -19,6 +19,8 @@ Array = np.ndarray[Any, Any]
 
 MUCH_CORRELATED = 3.0
 """Points over which a residual is correlated, from where on it is told."""
+FAR = 0.26
+"""rad, at which displacement over arm is 1 % from the angle."""
 POOR = 2.0
 """Residual over the noise of the samples, from where on the model is doubted."""
 MOST_ROUNDING = 1e-6
@@ -120,6 +122,7 @@ def identify_decay(
     by_line = line.quantities(record.kind, stiffness)
     by_record = whole.constants.quantities(record.kind, stiffness)
     notes = (
+        *_on_arm(record, arm),
         *_on_window(record, turns),
         *_on_terms(by_line, by_record),
         *_on_both(by_record, turns),
@@ -148,6 +151,16 @@ def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) ->
 
 
 # -- notes -----------------------------------------------------------------------------------------
+
+
+def _on_arm(record: Record, arm: float | None) -> Iterator[str]:
+    """Whether a displacement over its arm is still an angle."""
+    largest = float(np.ptp(record.displacement)) / 2
+    if arm is not None and largest > FAR:
+        yield (
+            f"the record swings by {np.degrees(largest):.0f} deg to either side, where the "
+            "displacement over the arm is no longer the angle"
+        )
 
 
 def _on_window(record: Record, turns: Turns) -> Iterator[str]:

@@ -312,3 +312,14 @@ def _wrong_reading(where: str, item: Mount | Gauge) -> Iterator[ModelError]:
         yield ModelError(f"{where}.direction", "goes with a point, not with an axis")
     if isinstance(item.direction, tuple) and hypot(*item.direction) == 0:
         yield ModelError(f"{where}.direction", "got [0, 0, 0]; give a direction")
+
+
+def idle_parts(machine: Machine) -> Iterator[str]:
+    """Mounts and gauges about axes about which the support does not turn."""
+    support = machine.support
+    if support is None:
+        return
+    for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
+        for name, item in items.items():
+            if item.axis is not None and item.axis not in support.coordinates:
+                yield f"support.{kind}.{name} does nothing: the support cannot {item.axis}"

@@ -13,7 +13,6 @@ from equipoise.errors import ResponseError
 from equipoise.mechanism.model import Machine
 from equipoise.structures.exact import solve_exact
 from equipoise.structures.response import Response
-from equipoise.structures.steady import NO_STEADY_STATE
 from equipoise.structures.table import range_shown
 
 Progress = Callable[[int, int], None]
@@ -31,13 +30,14 @@ def follow_speeds(
     """Response at every speed, the louder one where there are two; and what to say of that."""
     count = len(speeds)
     upward = _along(machine, speeds, drive, lambda done: progress(done, count))
-    if not any(_lifts_off(answer) for answer in upward):
+    if not any(answer is None or _lifts_off(answer) for answer in upward):
         return upward, []
     downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
     louder, both = [], []
     for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
         ratio = _ratio(up, down)
-        louder.append(down if up is None or (down is not None and ratio > 1) else up)
+        found = down if up is None or (down is not None and ratio > 1) else up
+        louder.append(found or _patiently(machine, speed, drive))
         if up is not None and down is not None and abs(ratio - 1) > DIFFERENT:
             both.append((speed, min(ratio, 1 / ratio)))
     return louder, _told(both, count)
@@ -61,7 +61,7 @@ def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
         if last is not None and all(abs(_ratio(last, other) - 1) > DIFFERENT for other in found):
             found.append(last)
     if not found:
-        raise ResponseError(NO_STEADY_STATE)
+        return solve_exact(machine, speed, drive).response()
     louder = max(found, key=_loudness)
     notes = [_other(louder, other) for other in found if other is not louder]
     return replace(louder, notes=(*louder.notes, *notes))
@@ -92,7 +92,7 @@ def _along(
     near = None
     for speed in speeds:
         try:
-            found = solve_exact(machine, speed, drive, near)
+            found = solve_exact(machine, speed, drive, near, patient=False)
         except ResponseError:
             near = None
             answers.append(None)
@@ -101,6 +101,14 @@ def _along(
             answers.append(found.response(brief))
         progress(len(answers))
     return answers
+
+
+def _patiently(machine: Machine, speed: float, drive: bool) -> Response | None:
+    """Response at a speed at which neither neighbour nor small motion leads to one."""
+    try:
+        return solve_exact(machine, speed, drive).response(brief=True)
+    except ResponseError:
+        return None
 
 
 def _lifts_off(answer: Response | None) -> bool:

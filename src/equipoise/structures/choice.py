@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.model import HUGE, Machine
+from equipoise.mechanism.support import idle_parts
 from equipoise.structures.body import MISSING
 from equipoise.structures.excitation import Step
 from equipoise.structures.response import MODELS, Model
@@ -67,10 +68,11 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
 
 
 def left_out(machine: Machine) -> list[str]:
-    """What the model file gives that a steady vibration cannot have."""
-    if not machine.drive.acceleration:
-        return []
-    return ["the drive's acceleration is left out: a crank that speeds up has no steady vibration"]
+    """What the model file gives that does nothing in a steady vibration."""
+    found = list(idle_parts(machine))
+    if machine.drive.acceleration:
+        found.append("the drive's acceleration is left out: a steady vibration has a steady crank")
+    return found
 
 
 def usual_step(machine: Machine, model: str | None = None) -> Step:

@@ -57,20 +57,29 @@ LEANING = 10.0
 
 
 def solve_exact(
-    machine: Machine, speed: float, drive: bool, near: Guess | None = None
+    machine: Machine,
+    speed: float,
+    drive: bool,
+    near: Guess | None = None,
+    patient: bool = True,
 ) -> ExactSolution:
     """The periodic solution itself.
 
     near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
         from; the linear response if None.
+    patient : whether to follow the machine from rest where these lead nowhere, which takes seconds.
+
+    Raises
+    ------
+    ResponseError : none was found, or none is near the drawn position.
     """
     system, linear = equations(machine, speed, drive)
     guesses: list[Guess] = [] if near is None else [near]
     setting = motor_setting(machine, speed) if drive else None
     guesses.append(partial(from_linear, system, linear, setting))
-    if setting is None:
+    if patient and setting is None:
         guesses.append(partial(settled, system))
-    elif linear is not None:
+    elif patient and linear is not None and setting is not None:
         guesses.append(partial(_at_constant_speed, machine, setting))
     swings = swings_in_a_turn(linear, speed)
     found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)

@@ -89,19 +89,28 @@ def steady(
         )
     intervals = (INTERVALS + ceil(swings)) * turns
     points = np.linspace(0.0, 2 * pi * turns, intervals + 1)
-    orbit = None
-    for guess in guesses:
-        found = _tried(system, points, guess, conditions)
-        if found is not None and (orbit is None or _dies_out(found)):
-            orbit = found
-        if orbit is not None and _dies_out(orbit):
-            break
-    if orbit is None:
+    orbit = _first(_tried(system, points, guess, conditions) for guess in guesses)
+    return _refined(system, orbit, conditions, 2 * intervals + MOST_INTERVALS * turns)
+
+
+def _first(tried: Iterable[Orbit | None]) -> Orbit:
+    """The first solution that is stable, or else the first."""
+    unstable = None
+    for found in tried:
+        if found is not None and _dies_out(found):
+            return found
+        unstable = unstable or found
+    if unstable is None:
         raise ResponseError(NO_STEADY_STATE)
+    return unstable
+
+
+def _refined(system: System, orbit: Orbit, conditions: Conditions, most: int) -> Steady:
+    """The solution on a mesh of at most so many intervals, or a few more."""
     error, idle = _residuals(system, orbit), 0
     for _ in range(ROUNDS):
         coarse = error > max(FINE, orbit.change)  # below its last change the solution is rounding
-        if not np.any(coarse) or len(orbit.points) > 2 * intervals + MOST_INTERVALS * turns:
+        if not np.any(coarse) or len(orbit.points) > most:
             break
         finer = _tried(system, _cut(orbit.points, coarse), orbit.at, conditions)
         if finer is None:

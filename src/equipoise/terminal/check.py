@@ -10,6 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.advice import remarks
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.support import idle_parts
 from equipoise.structures.body import Body, at_rest
 from equipoise.structures.excitation import Excitation
 from equipoise.terminal.tables import PER_RPM, number
@@ -37,7 +38,7 @@ def print_check(machine: Machine) -> None:
     print(f"the crank turns fully; the motion repeats after {turns}")
     for row in [*_drive_train(machine), *_support(machine)]:
         print(row)
-    for remark in [*remarks(linkage), *_idle(machine), *_uncarried(machine)]:
+    for remark in [*remarks(linkage), *idle_parts(machine), *_uncarried(machine)]:
         print(f"note: {remark}")
     print("ready to be analysed")
 
@@ -152,14 +153,3 @@ def _place(place: Sequence[float]) -> str:
 def _listed(words: Sequence[str]) -> str:
     *others, last = words
     return f"{', '.join(others)} and {last}" if others else last
-
-
-def _idle(machine: Machine) -> Iterator[str]:
-    """Mounts and gauges about axes about which the support does not turn."""
-    support = machine.support
-    if support is None:
-        return
-    for kind, items in (("mounts", support.mounts), ("gauges", support.gauges)):
-        for name, item in items.items():
-            if item.axis is not None and item.axis not in support.coordinates:
-                yield f"support.{kind}.{name} does nothing: the support cannot {item.axis}"
