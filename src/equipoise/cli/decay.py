@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import os
-import sys
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from equipoise.cli.app import SIGNED, app
-from equipoise.cli.options import check_belonging, quantity
+from equipoise.cli.options import check_belonging, check_folder, quantity
+from equipoise.cli.results import Kind, draw
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.measured.decay import Decay
     from equipoise.measured.record import Record
 
-FileKind = Literal["svg", "png", "pdf"]
 RECORD = Parameter(name="CSV", negative="")
 
 
@@ -31,7 +30,7 @@ def decay(
     confidence: Annotated[float, SIGNED] = 0.95,
     json: bool = False,
     plot: str | None = None,
-    format: FileKind | None = None,
+    format: Kind | None = None,
 ) -> None:
     """Frequency, inertia, viscous damping and Coulomb friction from a recorded free decay.
 
@@ -60,8 +59,8 @@ def decay(
     check_belonging("--stiffness", stiffness, **{"spring-arm": spring_arm})
     if not 0 < confidence < 1:
         raise UsageError(f"--confidence: got {confidence:g}; give 0.95, or another between 0 and 1")
-    if plot is not None and (not plot or os.path.isfile(plot)):
-        raise UsageError(f"--plot: got {plot!r}; give the name of a folder")
+    if plot is not None:
+        check_folder("--plot", plot)
     at, spring_at = _length("--arm", arm), _length("--spring-arm", spring_arm)
     stiff, torsional = _stiffness(stiffness)
     record = read_record(csv)
@@ -74,7 +73,10 @@ def decay(
         _check_stiffness(stiffness, torsional, angles, spring_at)
     found = _identified(csv, record, stiff, at, spring_at, confidence)
     if plot is not None:
-        _draw(found, csv, plot, format or "svg")
+        from equipoise.io.files import printable
+        from equipoise.plotting.decay import drawings
+
+        draw(drawings(found, printable(os.path.basename(csv))), plot, format or "svg")
     if json:
         from equipoise.io.output import json_text
 
@@ -150,15 +152,3 @@ def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float
             "--spring-arm belongs to a record of angles; give by --arm how far from the pivot the "
             "lengths were read, or leave it out"
         )
-
-
-def _draw(found: Decay, csv: str, folder: str, kind: FileKind) -> None:
-    from equipoise.io.files import printable
-    from equipoise.io.output import write_all
-    from equipoise.plotting.decay import drawings
-    from equipoise.plotting.style import render
-
-    drawn = drawings(found, printable(os.path.basename(csv)))
-    pictures = {f"{name}.{kind}": render(figure, kind) for name, figure in drawn.items()}
-    write_all(folder, pictures)
-    print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)

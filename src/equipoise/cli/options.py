@@ -6,7 +6,7 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from equipoise.errors import (
     EquipoiseError,
@@ -20,6 +20,9 @@ from equipoise.errors import (
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
+
+Model = Literal["linear", "torque", "moment", "coupled", "exact"]
+"""As in `structures.response`, which would bring NumPy into every start of the command line."""
 
 
 @contextmanager

@@ -1,23 +1,19 @@
-"""The commands `respond` and `modes`."""
+"""The command `respond`."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Annotated, Literal
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import naming, quantity, whole
-from equipoise.cli.results import Kind, Wanted
+from equipoise.cli.options import Model, naming, quantity, whole
+from equipoise.cli.results import Kind, Wanted, vibration
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from equipoise.mechanism.model import Machine
     from equipoise.structures.response import Response
     from equipoise.terminal.units import Units
-
-Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 
 
 @app.command
@@ -87,53 +83,6 @@ def respond(
             _answer(machine, ends[0] if ends else None, model, drive, shown_in, wanted)
 
 
-@app.command
-def modes(
-    file: Annotated[str, FILE],
-    /,
-    *,
-    model: Model | None = None,
-    json: bool = False,
-    plot: str | None = None,
-    format: Kind | None = None,
-) -> None:
-    """Natural frequencies, damping and shapes of a machine on its support.
-
-    Parameters
-    ----------
-    file
-        Path of a model file with a table [support], or the name of a bundled example.
-    model
-        linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
-    json
-        Print one JSON object in SI units, and nothing else.
-    plot
-        Draw every mode into this folder.
-    format
-        With --plot: kind of the pictures, svg if not given.
-    """
-    from equipoise.io.models import load
-    from equipoise.structures.free import vibrate_freely
-
-    machine = load(file)
-    wanted = Wanted(json, None, plot, format)
-    wanted.check(file, machine)
-    with naming(file):
-        found = vibrate_freely(machine, model)
-
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.vibration import mode_drawings
-
-        return mode_drawings(found)
-
-    def show() -> None:
-        from equipoise.terminal.modes import print_modes
-
-        print_modes(found)
-
-    wanted.give(None, drawings, found.to_dict, show)
-
-
 def _speeds(text: str) -> list[float]:
     """One speed, or the two ends of a range; a unit may stand after the second only."""
     parts = [part.strip() for part in text.split(":")]
@@ -181,17 +130,12 @@ def _answer(
 
     found = solve(machine, speed, model, drive)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.vibration import response_drawings
-
-        return response_drawings(found)
-
     def show() -> None:
         from equipoise.terminal.vibration import print_response
 
         print_response(found, {} if drive else _others(machine, found), units)
 
-    wanted.give(found.columns, drawings, found.to_dict, show)
+    wanted.give(found.columns, lambda: vibration().response_drawings(found), found.to_dict, show)
 
 
 QUICK = 40
@@ -203,8 +147,9 @@ def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     from equipoise.errors import EquipoiseError
     from equipoise.structures.choice import models_of
     from equipoise.structures.forced import respond as solve
+    from equipoise.structures.modes import swings_in_a_turn
 
-    swings = max((mode.damped_frequency for mode in found.modes), default=0.0) / abs(found.speed)
+    swings = swings_in_a_turn(found.modes, found.speed)
     others: dict[str, Response | None] = {}
     for model in models_of(machine):
         if model == found.model:
@@ -234,17 +179,12 @@ def _sweep(
     with counted("speed") as progress:
         found = sweep_speed(machine, *ends, model, drive, count, progress)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.vibration import sweep_drawings
-
-        return sweep_drawings(found)
-
     def show() -> None:
         from equipoise.terminal.sweep import print_sweep
 
         print_sweep(found, units)
 
-    wanted.give(found.columns, drawings, found.to_dict, show)
+    wanted.give(found.columns, lambda: vibration().sweep_drawings(found), found.to_dict, show)
 
 
 def _follow(
@@ -260,14 +200,9 @@ def _follow(
 
     found = from_rest(machine, duration, speed, drive)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.vibration import transient_drawings
-
-        return transient_drawings(found)
-
     def show() -> None:
         from equipoise.terminal.transient import print_transient
 
         print_transient(found, units)
 
-    wanted.give(found.columns, drawings, found.to_dict, show)
+    wanted.give(found.columns, lambda: vibration().transient_drawings(found), found.to_dict, show)

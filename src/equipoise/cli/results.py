@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from types import ModuleType
 from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.cli.options import check_belonging, check_folder, check_target
@@ -72,3 +73,10 @@ def draw(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
     pictures = {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()}
     write_all(folder, pictures)
     print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)
+
+
+def vibration() -> ModuleType:
+    """The pictures of vibration; Matplotlib is imported when the first is drawn, not before."""
+    from equipoise.plotting import vibration
+
+    return vibration

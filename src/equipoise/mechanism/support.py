@@ -82,6 +82,16 @@ class Mount(Frozen):
     torsional_stiffness: float = 0.0
     torsional_damping: float = 0.0
 
+    @property
+    def spring(self) -> float:
+        """Stiffness along its line, N/m, or about its axis, N m/rad."""
+        return self.stiffness if self.axis is None else self.torsional_stiffness
+
+    @property
+    def damper(self) -> float:
+        """Damping coefficient along its line, N s/m, or about its axis, N m s/rad."""
+        return self.damping if self.axis is None else self.torsional_damping
+
 
 @dataclass(frozen=True)
 class Gauge(Frozen):

@@ -43,14 +43,6 @@ def turns_of(machine: Machine) -> int:
     return assemble(machine).cycle.turns
 
 
-def swings_in_a_turn(linear: Linear | None, speed: float) -> float:
-    """How often the fastest mode swings while the crank turns once."""
-    if linear is None:
-        return 0.0
-    fastest = max((mode.damped_frequency for mode in linear.modes if mode.swings), default=0.0)
-    return fastest / abs(speed)
-
-
 def conditions_of(system: Coupled) -> Conditions:
     """What closes a period: everything comes back, and the mean speed is held where it is."""
     conditions = Conditions.periodic(system.count)

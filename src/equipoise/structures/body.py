@@ -88,23 +88,6 @@ class Body:
             tensor = tensor - np.array([[0, xy, zx], [xy, 0, yz], [zx, yz, 0]])
         return tensor
 
-    @cached_property
-    def stiffness(self) -> Array:
-        """Stiffness matrix of the mounts, without preloads and gravity."""
-        return self._sum_of_mounts(lambda m: m.stiffness + m.torsional_stiffness)
-
-    @cached_property
-    def damping(self) -> Array:
-        """Damping matrix of the mounts."""
-        return self._sum_of_mounts(lambda m: m.damping + m.torsional_damping)
-
-    def _sum_of_mounts(self, size: Any) -> Array:
-        total = np.zeros((6, 6))
-        for mount in self.support.mounts.values():
-            row = self.row(mount)
-            total += size(mount) * np.outer(row, row)
-        return total
-
 
 def rigid_mass(mass: float, arm: Array, inertia: Array) -> Array:
     """Mass matrix (6, 6) of a rigid body: arm (3,) to its centre of mass, inertia (3, 3) there."""
@@ -195,7 +178,7 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
     mounts = body.support.mounts
     known = {name: m.preload for name, m in mounts.items() if m.preload is not None}
     rows = {name: body.row(mount)[body.free] for name, mount in mounts.items()}
-    rates = {n: m.stiffness + m.torsional_stiffness for n, m in mounts.items() if n not in known}
+    rates = {n: m.spring for n, m in mounts.items() if n not in known}
     left = load[body.free] + sum(
         (force * rows[name] for name, force in known.items()), np.zeros(len(body.free))
     )

@@ -25,7 +25,6 @@ from equipoise.structures.beginning import (
     equations,
     from_linear,
     motor_setting,
-    swings_in_a_turn,
     turns_of,
     with_motor,
 )
@@ -35,6 +34,7 @@ from equipoise.structures.coupled import Coupled
 from equipoise.structures.following import settled
 from equipoise.structures.linear import Linear, gauges_of
 from equipoise.structures.linkages import Sums, rows_of
+from equipoise.structures.modes import swings_in_a_turn
 from equipoise.structures.motor import fastest
 from equipoise.structures.readings import PITCH, Reading
 from equipoise.structures.response import (
@@ -81,7 +81,7 @@ def solve_exact(
         guesses.append(partial(settled, system))
     elif patient and linear is not None and setting is not None:
         guesses.append(partial(_at_constant_speed, machine, setting))
-    swings = swings_in_a_turn(linear, speed)
+    swings = 0.0 if linear is None else swings_in_a_turn(linear.modes, speed)
     found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
     solution = ExactSolution(system, linear, found)
     if solution.toppled:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -52,20 +52,20 @@ class Linear:
     @cached_property
     def damping(self) -> Array:
         """Of the mounts that carry something."""
-        return self._free(self._of_mounts("damping", "torsional_damping"))
+        return self._free(self._of_mounts("damper"))
 
     @cached_property
     def stiffness(self) -> Array:
         """Of the mounts that carry something, of preloads and of weights."""
-        mounts = self._of_mounts("stiffness", "torsional_stiffness")
+        mounts = self._of_mounts("spring")
         return self._free(mounts + self.rest.stiffness)
 
-    def _of_mounts(self, along: str, about: str) -> Array:
+    def _of_mounts(self, part: Literal["spring", "damper"]) -> Array:
         total = np.zeros((6, 6))
         for name, mount in self.body.support.mounts.items():
             if self.rest.carries(name, mount):
                 row = self.body.row(mount)
-                total += (getattr(mount, along) + getattr(mount, about)) * np.outer(row, row)
+                total += getattr(mount, part) * np.outer(row, row)
         return total
 
     def _free(self, matrix: Array) -> Array:

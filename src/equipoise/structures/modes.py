@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import pi
 from typing import Any
@@ -75,6 +76,11 @@ def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...
         elif abs(value.imag) <= STILL * abs(value):
             found.append(Mode(complex(value.real), _scaled(vector[:count])))
     return tuple(sorted(found, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
+
+
+def swings_in_a_turn(modes: Iterable[Mode], speed: float) -> float:
+    """How often the fastest mode swings while the crank turns once at a speed, rad/s."""
+    return max((mode.damped_frequency for mode in modes), default=0.0) / abs(speed)
 
 
 def _free(stiffness: Array) -> Array:

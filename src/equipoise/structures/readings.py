@@ -107,8 +107,8 @@ def contacts_of(body: Body, rest: Rest) -> tuple[Contact, ...]:
             name,
             Reading.of(body, mount),
             rest.preload[name],
-            mount.stiffness + mount.torsional_stiffness,
-            mount.damping + mount.torsional_damping,
+            mount.spring,
+            mount.damper,
             mount.one_sided,
         )
         for name, mount in body.support.mounts.items()

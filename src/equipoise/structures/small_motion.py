@@ -51,9 +51,8 @@ def linear_mounts(
     mounts, notes = {}, []
     for name, mount in linear.body.support.mounts.items():
         row, preload = linear.body.row(mount), linear.rest.preload[name]
-        stiffness = mount.stiffness + mount.torsional_stiffness
-        damping = mount.damping + mount.torsional_damping
-        force = linear.seen_by(row, moved) * -stiffness + linear.seen_by(row, moving) * -damping
+        force = linear.seen_by(row, moved) * -mount.spring
+        force = force + linear.seen_by(row, moving) * -mount.damper
         if not linear.rest.carries(name, mount):
             force, preload = force * 0.0, 0.0
             notes.append(f"{name} does not touch at rest, and is left out")

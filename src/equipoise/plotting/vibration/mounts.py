@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,7 +36,6 @@ from equipoise.plotting.vibration.signals import (
     sampled,
 )
 from equipoise.structures.choice import usual_step
-from equipoise.structures.excitation import Step
 from equipoise.structures.linear import Linear
 
 if TYPE_CHECKING:
@@ -132,9 +131,8 @@ def mounts_figures(response: Response) -> Iterator[Figure]:
 
 def _at_rest(response: Response) -> dict[str, float]:
     """What each mount carries at rest, N or N m; 0 where it does not touch."""
-    machine, model = response.machine, response.model
-    step: Any = model if model in get_args(Step) else usual_step(machine, model)
-    rest = Linear.of(machine, step).rest
+    machine = response.machine
+    rest = Linear.of(machine, usual_step(machine, response.model)).rest
     assert machine.support is not None
     return {
         name: rest.preload[name] if rest.carries(name, mount) else 0.0
