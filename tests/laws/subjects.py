@@ -21,7 +21,7 @@ from support.machines import KINDS, make
 
 Array = NDArray[Any]
 IN_SOIL = "kim-chung-b in soil"
-CAUSES = ("translation", "rotation", "weight", "load")
+CAUSES = ("translation", "rotation", "weight", "load", "spring")
 SEEDS = (0, 1, 2)
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles off the round numbers at which loads may begin or end."""
@@ -40,7 +40,8 @@ def machine_of(name: str) -> eq.Machine:
     if name == IN_SOIL:
         return in_soil()
     kind, _, seed = name.partition(":")
-    return make(kind, int(seed)).machine if seed else eq.load(name)
+    # What may be changed of it does nothing to what is analysed, and its names need not follow.
+    return make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
 
 
 def in_soil() -> eq.Machine:
@@ -94,6 +95,19 @@ def load_power(found: eq.Forces) -> Array:
     for link, point, force, torque in acting(found):
         at = 0.0 if point is None else motion.points[point].velocity
         rows.append(along(at, force) + torque * motion.links[link].angular_velocity)
+    return np.array(rows)
+
+
+def spring_power(found: eq.Forces) -> Array:
+    """Power of the springs, one row a spring: what their energy k (l - l0)^2 / 2 loses."""
+    motion, machine = found.motion, found.motion.machine
+    rows = [np.zeros(len(motion.crank_angle))]
+    for spring in machine.springs:
+        point = motion.points[spring.point]
+        arm = point.place - complex(*machine.frame[spring.to])
+        length = np.abs(arm)
+        growth = along(arm, point.velocity) / np.where(length > 0, length, 1.0)
+        rows.append(-spring.stiffness * (length - spring.free_length) * growth)
     return np.array(rows)
 
 
@@ -167,8 +181,8 @@ def same_outputs(got: eq.Forces, want: eq.Forces, tolerance: float) -> None:
 
 
 def without_loads(machine: eq.Machine) -> eq.Machine:
-    """Take all loads away, the soil among them."""
-    return replace(without_soil(machine), loads=())
+    """Take all loads away, the soil and springs among them."""
+    return replace(without_soil(machine), loads=(), springs=())
 
 
 def without_soil(machine: eq.Machine) -> eq.Machine:

@@ -20,7 +20,7 @@ from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.planting.table import table
 from laws import transforms
-from laws.subjects import along, gravity_power, kinetic_power, load_power
+from laws.subjects import along, gravity_power, kinetic_power, load_power, spring_power
 from laws.transforms import Units
 from support.machines import make
 
@@ -64,6 +64,7 @@ def test_power_fed_in_is_gained_or_left_in_the_soil(name: str, acceleration: flo
     again = along(tip.velocity, soil_force(found.motion))
     np.testing.assert_allclose(again, soil, rtol=0, atol=1e-12 * peak_of_soil)
     rows = [*kinetic_power(found), *-gravity_power(found), *(-load for load in loads), -soil]
+    rows = [*rows, *-spring_power(found)]
     peak = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
     np.testing.assert_allclose(found.power, np.sum(rows, axis=0), rtol=0, atol=1e-12 * peak)
 

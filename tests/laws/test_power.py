@@ -27,6 +27,7 @@ from laws.subjects import (
     same,
     same_outputs,
     sizes,
+    spring_power,
     without_loads,
 )
 
@@ -44,13 +45,14 @@ def test_power_fed_in_is_the_rate_of_change_of_energy(
 ) -> None:
     found = forces_of(name, speed, acceleration)
     rows = [*kinetic_power(found), *-gravity_power(found), *-load_power(found)]
+    rows = [*rows, *-spring_power(found)]
     size = np.max(np.sum(np.abs(rows), axis=0) + np.abs(found.power))
     same(found.power, np.sum(rows, axis=0), TOLERANCE, float(size))
 
 
 @pytest.mark.parametrize("name", sorted(eq.examples()))
 def test_no_work_is_left_after_a_cycle(name: str) -> None:
-    machine = without_loads(machine_of(name))
+    machine = replace(without_loads(machine_of(name)), springs=machine_of(name).springs)
     found = forces(machine, 720, acceleration=0.0)
     assert abs(np.mean(found.power)) < 1e-9 * np.max(np.abs(kinetic_power(found)))
 
@@ -155,6 +157,7 @@ def test_only_inertia_shakes(name: str) -> None:
         causes = split.by_cause(key)
         assert not np.any(causes["weight"])
         assert not np.any(causes["load"])
+        assert not np.any(causes["spring"])
     assert not np.any(np.abs(split.by_cause("shaking_force")["rotation"]))
 
 
@@ -183,7 +186,7 @@ def test_outputs_are_linear_in_the_parameters(name: str) -> None:
     })  # fmt: skip
     rows = dict(split_outputs(regressor))
     for key, value in outputs(found):
-        of_loads = loads[key][CAUSES.index("load")].sum(axis=0)
+        of_loads = loads[key][CAUSES.index("load") :].sum(axis=(0, 1))
         bound = max(scale[is_force(key)], sizes(found)[not is_force(key)])
         same(regressor.values @ rows[key] + of_loads, value, TOLERANCE, bound)
 

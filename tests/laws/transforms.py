@@ -209,6 +209,11 @@ def in_units(machine: eq.Machine, units: Units) -> eq.Machine:
         frame=mapped(machine.frame, longer),
         links={name: link_in_units(link, units) for name, link in machine.links.items()},
         loads=tuple(load_in_units(load, units) for load in machine.loads),
+        springs=tuple(
+            replace(spring, stiffness=spring.stiffness * units.force / length,
+                    free_length=spring.free_length * length)
+            for spring in machine.springs
+        ),
         gravity=vector(lambda z: z * length / units.time**2, machine.gravity),
         position=position,
         planting=planting_in_units(machine.planting, units),
@@ -349,13 +354,17 @@ def renamed(machine: eq.Machine, names: Callable[[str], str]) -> eq.Machine:
                     point=None if load.point is None else names(load.point))
             for load in machine.loads
         ),
+        springs=tuple(
+            replace(spring, link=body(spring.link), point=names(spring.point), to=names(spring.to))
+            for spring in machine.springs
+        ),
         position=position,
         planting=planting,
     )  # fmt: skip
 
 
 def reordered(machine: eq.Machine) -> eq.Machine:
-    """Write links, points, sliders, gears and loads in the opposite order.
+    """Write links, points, sliders, gears, loads and springs in the opposite order.
 
     "left" and "right" are told from the dyad's earlier link to the later one, so they change too.
     """
@@ -371,6 +380,7 @@ def reordered(machine: eq.Machine) -> eq.Machine:
         sliders=machine.sliders[::-1],
         gears=machine.gears[::-1],
         loads=machine.loads[::-1],
+        springs=machine.springs[::-1],
     )
 
 

@@ -26,7 +26,7 @@ from equipoise.structures.forced import respond
 from equipoise.structures.response import Model
 from support import rig_reference
 from support.rig_reference import Rig
-from support.rigs import RPM, in_package, on_feet, one_row, rows_apart, two_rows
+from support.rigs import RPM, in_package, on_feet, one_row, rows_apart, tied, two_rows
 
 Array = NDArray[np.float64]
 
@@ -74,6 +74,9 @@ CASES = {
     "motor, reversed": driven(one_row(), -193 * RPM),
     "motor on two rows": driven(two_rows(), 193 * RPM, flywheel=0.002),
     "motor, free": driven(on_feet(), 193 * RPM),
+    "springs": Case(tied(one_row()), 193 * RPM),
+    "springs on two rows, free": Case(tied(replace(on_feet(), rows=rows_apart().rows)), -120 * RPM),
+    "springs and motor": driven(tied(one_row()), 193 * RPM),
 }
 
 

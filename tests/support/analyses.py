@@ -13,6 +13,7 @@ import equipoise as eq
 from equipoise.errors import MassError
 from equipoise.mechanism.field import Soil, SoilTable
 from equipoise.mechanism.model import Machine
+from support.loads import springs_on_links
 from support.machines import KINDS, Case, make
 from support.poses import Array, Poses, from_motion
 
@@ -115,7 +116,7 @@ def agree(what: str, got: Array, want: Array, tolerance: float, least: float = 0
 
 
 def force_size(machine: Machine, poses: Poses) -> float:
-    """Return the size of the forces in a machine, N: of inertia, weight and loads (not soil)."""
+    """Return the size of the forces in a machine, N: of all but the soil."""
     size = 0.0
     for name, link in machine.links.items():
         change = poses.change(name, link.center_of_mass or (0.0, 0.0))
@@ -124,7 +125,9 @@ def force_size(machine: Machine, poses: Poses) -> float:
     for load in machine.loads:
         columns = () if load.table is None else load.table.values
         size += float(np.max(np.abs([*(load.force or ()), *np.ravel(columns)]), initial=0.0))
-    return size
+    return size + sum(
+        float(np.max(np.abs(force))) for _, _, force, _ in springs_on_links(machine, poses)
+    )
 
 
 def moment_size(machine: Machine, poses: Poses) -> float:

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import chain
 
 import numpy as np
 
 from equipoise.mechanism.model import FRAME, Gear, Machine
-from support.loads import on_links
+from support.loads import on_links, springs_on_links
 from support.poses import Array, Poses, cross, drive_pivot, pin_between, pins, quarter
 
 
@@ -113,7 +114,7 @@ def solve(
 
 
 def equations(machine: Machine, poses: Poses) -> System:
-    """Set up the side that is known: what inertia asks for, less loads and weight."""
+    """Set up the side that is known: what inertia asks for, less loads, springs and weight."""
     rows = {name: 3 * number for number, name in enumerate(machine.links)}
     centers = {}
     known = np.zeros((poses.crank_angle.size, 3 * len(rows)))
@@ -125,7 +126,9 @@ def equations(machine: Machine, poses: Poses) -> System:
         known[:, rows[name] : rows[name] + 2] = asked
         known[:, rows[name] + 2] = inertia * poses.alpha[name]
     system = System(machine, poses, rows, centers, known)
-    for link_name, at, force, torque in on_links(machine, poses):
+    for link_name, at, force, torque in chain(
+        on_links(machine, poses), springs_on_links(machine, poses)
+    ):
         given = np.zeros_like(known)
         system.press(given, link_name, at, force, torque)
         system.known -= given
@@ -243,7 +246,8 @@ def gathered(
         force = tangential.force + apart
         meshed[gear.name] = Reaction(contact.on, contact.by, contact.at, force, tangential.couple)
     torque = unknowns[""][:, 0]
-    force, moment = on_frame(machine, [*held.values(), *meshed.values()])
+    pulls = [pull_on_frame(*acting) for acting in springs_on_links(machine, poses)]
+    force, moment = on_frame(machine, [*held.values(), *meshed.values(), *pulls])
     return FreeBodies(held, meshed, torque, force, moment - torque)
 
 
@@ -256,8 +260,13 @@ def reaction(contact: Contact, unknowns: Array) -> Reaction:
     return Reaction(contact.on, contact.by, contact.at, force, couple)
 
 
+def pull_on_frame(link: str, at: Array, force: Array, couple: Array) -> Reaction:
+    """Return what a spring does to the frame, of which every point of its line is as good."""
+    return Reaction(FRAME, link, at, -force, -couple)
+
+
 def on_frame(machine: Machine, reactions: list[Reaction]) -> tuple[Array, Array]:
-    """Add up the contacts' forces on the frame, with their moment about the drive pivot."""
+    """Add up the contacts' and springs' forces on the frame, with their moment about the pivot."""
     pivot = np.array(machine.frame[drive_pivot(machine)])
     total, moment = np.zeros_like(reactions[0].force), np.zeros(len(reactions[0].force))
     for part in reactions:

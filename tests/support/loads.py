@@ -1,15 +1,16 @@
-"""Loads of a machine, the soil's on a planting tip among them, evaluated anew."""
+"""Loads of a machine, the soil's on a planting tip among them, and its springs, evaluated anew."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import chain
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 import equipoise as eq
 from equipoise.mechanism.field import Planting
-from equipoise.mechanism.model import Load, LoadTable, Machine, Vector
+from equipoise.mechanism.model import Load, LoadTable, Machine, Spring, Vector
 from support.poses import Array, Poses, cross
 
 TURN = 2 * np.pi
@@ -121,10 +122,27 @@ def on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array
         yield link, at, soil_force(machine, at, velocity, machine.drive.speed), 0.0 * at[:, 0]
 
 
+def spring_force(spring: Spring, at: Array, to: Vector) -> Array:
+    """Return what a spring does to a point at some places (N, 2)."""
+    arm = at - np.array(to)
+    length = np.hypot(*arm.T)
+    stretched = (length - spring.free_length) / np.where(length > 0, length, 1.0)
+    return -spring.stiffness * stretched[:, None] * arm
+
+
+def springs_on_links(machine: Machine, poses: Poses) -> Iterator[tuple[str, Array, Array, Array]]:
+    """Yield link, point of attack, force and torque of every spring."""
+    for spring in machine.springs:
+        at = poses.place(spring.link, machine.links[spring.link].points[spring.point])
+        force = spring_force(spring, at, machine.frame[spring.to])
+        yield spring.link, at, force, np.zeros(len(at))
+
+
 def work_per_crank_angle(machine: Machine, poses: Poses) -> Array:
-    """Return the loads' power over the crank's speed."""
+    """Return the power of loads and springs over the crank's speed."""
     power = np.zeros_like(poses.crank_angle)
-    for link, at, force, torque in on_links(machine, poses):
+    acting = chain(on_links(machine, poses), springs_on_links(machine, poses))
+    for link, at, force, torque in acting:
         arm = at - poses.origin[link]
         moment = torque + cross(arm, force)
         power += np.sum(force * poses.velocity[link], -1) + moment * poses.omega[link]

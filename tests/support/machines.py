@@ -2,7 +2,7 @@
 
 Every maker takes a NumPy generator and returns a `Case`.  Link axes are turned and shifted at
 random against the joints, the frame lies anywhere, the crank runs either way and speeds up or
-slows down, gravity points anywhere, and some machines carry loads.
+slows down, gravity points anywhere, and some machines carry loads and springs.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from equipoise.mechanism.model import (
     LoadTable,
     Machine,
     Slider,
+    Spring,
     Vector,
 )
 from support.newton import Side, assembled
@@ -147,6 +148,7 @@ class Draft:
             gears=tuple(self.gears),
             loads=tuple(self._loads()),
             gravity=gravity,
+            springs=tuple(self._springs()),
         )
         return Case(machine, tuple(self.sides))
 
@@ -169,6 +171,22 @@ class Draft:
                 )
             else:
                 yield Load(name, point, table=self._table())
+
+    def _springs(self) -> Iterable[Spring]:
+        """Draw springs to a hook that no point comes near, or of no free length to any pivot."""
+        rng = self.rng
+        moving = [(n, p) for n, link in self.links.items() for p in link.points]
+        moving = [(name, point) for name, point in moving if point not in self.frame]
+        count = int(rng.integers(0, 3))
+        if count:
+            self.ground("hook", 20 * self.size * _unit(rng.uniform(-np.pi, np.pi)))
+        for _ in range(count):
+            name, point = moving[rng.integers(len(moving))]
+            stiffness = float(rng.uniform(1, 20)) / self.size
+            if rng.random() < 0.5:
+                yield Spring(name, point, str(rng.choice(list(self.frame))), stiffness)
+            else:
+                yield Spring(name, point, "hook", stiffness, self.size * float(rng.uniform(1, 30)))
 
     def _table(self) -> LoadTable:
         rows = int(self.rng.integers(2, 8))

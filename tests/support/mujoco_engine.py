@@ -3,6 +3,7 @@
 No joint of the machine exists in this model.  The base may move along x and y and turn about the
 drive pivot; each link hangs on it by two slides and a hinge at its own origin.  MuJoCo's inverse
 dynamics then tells what must act on each link, and, on the base that stands still, on all of them.
+Springs are tendons between links and base, whose pull it takes off.
 """
 
 from __future__ import annotations
@@ -47,12 +48,18 @@ def massive(machine: Machine) -> dict[str, Link]:
     return {name: link for name, link in machine.links.items() if link.mass}
 
 
+def springless(machine: Machine) -> Machine:
+    """Return the machine with those springs only that MuJoCo lacks: on links without mass."""
+    heavy = massive(machine)
+    return machine.with_springs(s for s in machine.springs if s.link not in heavy)
+
+
 def shaking_and_torque(
     demands_at: Mapping[Vector, Demands], machine: Machine, poses: Poses
 ) -> Totals:
     """Turn demands without and with gravity into shaking force, shaking moment and drive torque."""
     bare, heavy = demands_at[0.0, 0.0], demands_at[machine.gravity]
-    work = -work_per_crank_angle(machine, poses)
+    work = -work_per_crank_angle(springless(machine), poses)
     for name, demand in heavy.links.items():
         work += np.sum(demand * rates(poses, name), -1) / machine.drive.speed
     return Totals(-bare.base[:, :2], -bare.base[:, 2], work)
@@ -116,9 +123,10 @@ def mjcf(machine: Machine, gravity: Vector) -> str:
     """Write the model down."""
     x, y = machine.frame[drive_pivot(machine)]
     bodies = "\n".join(
-        f'<body name="{number}">{_joints()}{_inertial(link)}</body>'
-        for number, link in enumerate(massive(machine).values())
+        f'<body name="{number}">{_joints()}{_inertial(link)}{_eyes(machine, name)}</body>'
+        for number, (name, link) in enumerate(massive(machine).items())
     )
+    hooks, tendons = _springs(machine)
     return f"""
     <mujoco>
       <compiler angle="radian" boundmass="0" boundinertia="0" balanceinertia="false"/>
@@ -130,9 +138,36 @@ def mjcf(machine: Machine, gravity: Vector) -> str:
           {_joints()}
           <inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>
           {bodies}
+          {hooks}
         </body>
       </worldbody>
+      <tendon>{tendons}</tendon>
     </mujoco>"""
+
+
+def _eyes(machine: Machine, name: str) -> str:
+    """Where springs are hooked on a link."""
+    sites = []
+    for number, spring in enumerate(machine.springs):
+        if spring.link == name:
+            x, y = machine.links[name].points[spring.point]
+            sites.append(f'<site name="eye {number}" pos="{x!r} {y!r} 0"/>')
+    return "".join(sites)
+
+
+def _springs(machine: Machine) -> tuple[str, str]:
+    """Where springs are hooked on the base, and the springs as tendons."""
+    px, py = machine.frame[drive_pivot(machine)]
+    hooks, tendons = [], []
+    for number, spring in enumerate(machine.springs):
+        if spring.link in massive(machine):
+            x, y = machine.frame[spring.to]
+            hooks.append(f'<site name="hook {number}" pos="{x - px!r} {y - py!r} 0"/>')
+            tendons.append(
+                f'<spatial stiffness="{spring.stiffness!r}" springlength="{spring.free_length!r}">'
+                f'<site site="eye {number}"/><site site="hook {number}"/></spatial>'
+            )
+    return "".join(hooks), "".join(tendons)
 
 
 def _joints() -> str:

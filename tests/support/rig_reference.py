@@ -112,6 +112,20 @@ class Torsion:
 
 
 @dataclass(frozen=True)
+class Tie:
+    """A spring in each row from a bar (0 crank, 1 coupler, 2 rocker) to the support.
+
+    at : on the bar, as its centre of mass is told.  to : on the support, for a row without offset.
+    """
+
+    bar: int
+    at: complex
+    to: complex
+    stiffness: float
+    free_length: float = 0.0
+
+
+@dataclass(frozen=True)
 class Rig:
     """Support, mounts and rows of four-bars, as drawn in the support's axes.
 
@@ -129,6 +143,7 @@ class Rig:
     gravity: complex = -9.80665j
     drive: Callable[[Real], Real] | None = None
     flywheel: float = 0.0
+    ties: tuple[Tie, ...] = ()
 
     @property
     def freedoms(self) -> int:
@@ -374,7 +389,10 @@ def balance(rig: Rig, now: Instant) -> Balance:
     equations = Equations(np.zeros((count, size, size)), np.zeros((count, size)))
     set_support(rig, now, equations)
     for number, row in enumerate(rig.rows):
-        set_row(rig, pose(rig, row, now), now, equations, 3 + 9 * number)
+        posed = pose(rig, row, now)
+        set_row(rig, posed, now, equations, 3 + 9 * number)
+        for tie in rig.ties:
+            set_tie(rig, row, tie, posed, now, equations, 3 + 9 * number)
     found = np.linalg.solve(equations.matrix, equations.known[..., None])[..., 0]
     rows = found[:, 3:-1].reshape(count, len(rig.rows), 9)
     acceleration, pivot = found[:, :3].copy(), found[:, 0] + 1j * found[:, 1]
@@ -452,6 +470,19 @@ def set_row(rig: Rig, posed: Posed, now: Instant, equations: Equations, start: i
     equations.matrix[:, crank + 2, start + 8] -= 1.0
     equations.matrix[:, 2, start + 8] += 1.0
     equations.matrix[:, -1, start + 8] += 1.0
+
+
+def set_tie(
+    rig: Rig, row: Row, tie: Tie, posed: Posed, now: Instant, equations: Equations, start: int
+) -> None:
+    """Let a spring pull a bar and the support together."""
+    held = posed.joints[(0, 1, 3)[tie.bar]] + posed.turning[tie.bar].unit * tie.at
+    hook = np.exp(1j * now.tilt) * (tie.to + row.offset - rig.support.origin)
+    length = np.abs(hook - held)
+    pull = tie.stiffness * (length - tie.free_length) * (hook - held) / length
+    arm = held - posed.centers[tie.bar].place
+    equations.add(start + 3 * tie.bar, pull, cross(arm, pull))
+    equations.add(0, -pull, -cross(hook, pull))
 
 
 # -- mounts ----------------------------------------------------------------------------------------

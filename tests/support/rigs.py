@@ -7,7 +7,8 @@ from dataclasses import replace
 import equipoise as eq
 from equipoise.mechanism import support as package
 from equipoise.mechanism.motor import Motor
-from support.rig_reference import Mount, Rig, Row, Support, Torsion, paper_rig, rig_of
+from equipoise.mechanism.spring import Spring
+from support.rig_reference import Mount, Rig, Row, Support, Tie, Torsion, paper_rig, rig_of
 
 MACHINE = eq.load("yamashita-1")
 RPM = 3.141592653589793 / 30
@@ -42,6 +43,15 @@ def on_feet(one_sided: bool = False, stiffer: float = 1.0, **parts: object) -> R
     return replace(whole, **parts)  # type: ignore[arg-type]
 
 
+BARS = ("crank", "coupler", "rocker")
+TIES = (Tie(2, 0.06 + 0.01j, 0.05 + 0.09j, 900.0, 0.05), Tie(1, -0.16 - 0.04j, -0.1 - 0.2j, 60.0))
+
+
+def tied(rig: Rig) -> Rig:
+    """With springs from rocker and coupler to the support, in each row."""
+    return replace(rig, ties=TIES)
+
+
 def in_package(rig: Rig, motor: Motor | None = None) -> eq.Machine:
     """The rig as a machine of the package; mounts are called 0, 1 ... and torsions t0, t1 ..."""
     body = rig.support
@@ -61,7 +71,19 @@ def in_package(rig: Rig, motor: Motor | None = None) -> eq.Machine:
         mounts=mounts,
         gauges={"gauge": gauge},
     )
+    for number, tie in enumerate(rig.ties):
+        machine = with_tie(machine, f"eye {number}", f"hook {number}", tie)
     return machine.with_drive(flywheel=rig.flywheel, motor=motor)
+
+
+def with_tie(machine: eq.Machine, eye: str, hook: str, tie: Tie) -> eq.Machine:
+    """With one spring; the links of the machine have their first joint in their origin."""
+    link = BARS[tie.bar]
+    points = {**machine.links[link].points, eye: (tie.at.real, tie.at.imag)}
+    frame = {**machine.frame, hook: (tie.to.real, tie.to.imag)}
+    spring = Spring(link, eye, hook, tie.stiffness, tie.free_length)
+    machine = replace(machine.with_link(link, points=points), frame=frame)
+    return machine.with_springs([*machine.springs, spring])
 
 
 def place(point: complex) -> tuple[float, float, float]:

@@ -68,7 +68,7 @@ def test_values_are_those_of_the_analysis() -> None:
 def test_split_is_added_where_asked_for(name: str) -> None:
     values = analysis(name).to_dict(split=True)
     assert "by_cause" not in analysis(name).to_dict()
-    for key, parts in (("by_cause", 4), ("by_link", len(values["links"]))):
+    for key, parts in (("by_cause", 5), ("by_link", len(values["links"]))):
         told = values[key]
         assert told["joints"].keys() == values["joints"].keys()
         assert told["gears"].keys() == values["gears"].keys()

@@ -1,7 +1,7 @@
 """The model file as pydantic models: the door only, left at once by `Document.to_machine`.
 
-Their descriptions end up in the JSON Schema that editors read.  pydantic takes a tenth of a second
-to import, so nothing imports this module before a file is read.
+Their descriptions end up in the JSON Schema that editors read (`schema`).  pydantic takes a tenth
+of a second to import, so nothing imports this module before a file is read.
 """
 
 from __future__ import annotations
@@ -9,14 +9,13 @@ from __future__ import annotations
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import core_schema
 
 from equipoise.errors import ModelError
 from equipoise.io import SCHEMA_VERSION
 from equipoise.io.beside import Beside, table_at
 from equipoise.io.document_motor import Motor
 from equipoise.io.document_planting import Planting
+from equipoise.io.document_spring import Spring
 from equipoise.io.document_support import Row, Support
 from equipoise.io.fields import (
     PAIR,
@@ -223,7 +222,7 @@ class Position(Table):
 
 
 class Document(Table):
-    """A planar linkage with its drive, loads and gravity."""
+    """A planar linkage with its drive, loads, springs and gravity."""
 
     version: Literal[1] = Field(
         alias="schema", description="version of this format", examples=[SCHEMA_VERSION]
@@ -244,15 +243,26 @@ class Document(Table):
     sliders: list[Slider] = Field([], description="sliding joints")
     gears: list[Gear] = Field([], description="pairs of gears")
     loads: list[Load] = Field([], description="forces and torques from outside")
+    springs: list[Spring] = Field([], description="linear springs between links and frame")
     position: Position | None = None
     planting: Planting | None = None
     support: Support | None = None
     rows: list[Row] = Field(
         [], description="equal linkages on one shaft; the one of this file if left out"
     )
+    balance: dict[str, Any] | None = None
+    """Read when the machine is there; few files have it, and its models take time to build."""
 
     def to_machine(self, reader: Beside) -> Machine:
         """Return the machine; `reader` gets its tables by their files' names."""
+        machine = self._without_balance(reader)
+        if self.balance is None:
+            return machine
+        from equipoise.io.document_balance import read_balance
+
+        return machine.with_balance(read_balance(self.balance, machine))
+
+    def _without_balance(self, reader: Beside) -> Machine:
         return Machine(
             title=self.title,
             description=self.description,
@@ -270,29 +280,5 @@ class Document(Table):
             planting=None if self.planting is None else self.planting.to_planting(reader),
             support=None if self.support is None else self.support.to_support(),
             rows=tuple(row.to_row() for row in self.rows),
+            springs=tuple(spring.to_spring() for spring in self.springs),
         )
-
-
-# -- JSON Schema -----------------------------------------------------------------------------------
-
-
-class _Generator(GenerateJsonSchema):
-    """Without what TOML does not know (null) and what helps nobody (titles made from names)."""
-
-    def nullable_schema(self, schema: core_schema.NullableSchema) -> JsonSchemaValue:
-        return self.generate_inner(schema["schema"])
-
-    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
-        # Defaults are given as text with units, by json_schema_extra.
-        return self.generate_inner(schema["schema"])
-
-    def field_title_should_be_set(self, schema: Any) -> bool:
-        return False
-
-
-def json_schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of the model file."""
-    schema = Document.model_json_schema(schema_generator=_Generator)
-    schema["$schema"] = GenerateJsonSchema.schema_dialect
-    schema["title"] = "Equipoise model file"
-    return schema

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, ConfigDict, Discriminator, Field, JsonValue, Tag
+from pydantic import ConfigDict, Discriminator, Field, JsonValue, Tag
 from typing_extensions import TypeAliasType
 
 from equipoise.errors import ModelError
 from equipoise.io.fields import (
+    LIST,
     LIST_TAG,
     PAIR,
     TABLE_TAG,
@@ -26,30 +27,15 @@ from equipoise.io.fields import (
     Torque,
     TorsionalDamping,
     TorsionalStiffness,
-    problem,
+    sized,
     vector,
 )
-from equipoise.io.unit_problems import described
 from equipoise.mechanism import support
 
 Freedom = Literal["surge", "heave", "sway", "roll", "yaw", "pitch"]
 Axis = Literal["roll", "yaw", "pitch"]
 
 # -- lists of other lengths than two ---------------------------------------------------------------
-
-
-def _sized(right: str, *sizes: int, other: type = list) -> BeforeValidator:
-    """Check the size of a list (any but 0 if there are none), and that it is one, or an `other`."""
-
-    def check(given: Any) -> Any:
-        if isinstance(given, list | tuple):
-            if len(given) not in (sizes or range(1, len(given) + 1)):
-                raise problem(f"got {described(given)}; give {right}")
-        elif not isinstance(given, other):
-            raise problem(f"got {described(given)}; give {right}")
-        return given
-
-    return BeforeValidator(check)
 
 
 def _table_or_list(given: Any) -> str:
@@ -60,8 +46,6 @@ def _text_or_list(given: Any) -> str:
     return LIST_TAG if isinstance(given, list | tuple) else TEXT_TAG
 
 
-LIST = Field(strict=False)  # as PAIR
-
 Place = TypeAliasType(
     "Place",
     Annotated[
@@ -70,7 +54,7 @@ Place = TypeAliasType(
         ]
         | Annotated[PolarPoint, Tag(TABLE_TAG)],
         Discriminator(_table_or_list),
-        _sized('["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]', 2, 3, other=dict),
+        sized('["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]', 2, 3, other=dict),
         Field(description="x, y and z; in the plane of the drawing if z is left out"),
     ],
 )
@@ -80,7 +64,7 @@ Direction = TypeAliasType(
         Annotated[Angle, Tag(TEXT_TAG)]
         | Annotated[tuple[float, float, float], LIST, Tag(LIST_TAG)],
         Discriminator(_text_or_list),
-        _sized('an angle such as "90 deg", or three plain numbers such as [0, 1, 0]', 3, other=str),
+        sized('an angle such as "90 deg", or three plain numbers such as [0, 1, 0]', 3, other=str),
         Field(description="angle in the plane of the drawing, or a vector of three plain numbers"),
     ],
 )
@@ -88,17 +72,17 @@ Inertias = Annotated[
     Annotated[Inertia, Tag(TEXT_TAG)]
     | Annotated[tuple[Inertia, Inertia, Inertia], LIST, Tag(LIST_TAG)],
     Discriminator(_text_or_list),
-    _sized("one moment of inertia, or a list of three, about x, y and z", 3, other=object),
+    sized("one moment of inertia, or a list of three, about x, y and z", 3, other=object),
 ]
 Products = Annotated[
     tuple[Inertia, Inertia, Inertia],
     LIST,
-    _sized("a list of three, of x y, y z and z x", 3),
+    sized("a list of three, of x y, y z and z x", 3),
 ]
 Freedoms = Annotated[
     tuple[Freedom, ...],
     Field(strict=False, min_length=1),
-    _sized('a list such as ["heave", "pitch"]; leave it out for the usual ones'),
+    sized('a list such as ["heave", "pitch"]; leave it out for the usual ones'),
 ]
 
 

@@ -22,6 +22,7 @@ from typing_extensions import TypeAliasType
 from equipoise.errors import UsageError
 from equipoise.io import units
 from equipoise.io.points import from_polar
+from equipoise.io.unit_problems import described
 from equipoise.mechanism import model
 from equipoise.mechanism.model import Vector
 
@@ -78,6 +79,7 @@ DampingPerLength = TypeAliasType(
     Annotated[float, _reader("damping per length"), _json("damping per length")],
 )
 
+Density = TypeAliasType("Density", Annotated[float, _reader("density"), _json("density")])
 TorsionalStiffness = TypeAliasType(
     "TorsionalStiffness",
     Annotated[float, _reader("torsional stiffness"), _json("torsional stiffness")],
@@ -88,7 +90,21 @@ TorsionalDamping = TypeAliasType(
 )
 
 # TOML knows lists only, which a strict tuple would refuse; what is in them stays strict.
-PAIR = Field(strict=False)
+PAIR = LIST = Field(strict=False)
+
+
+def sized(right: str, *sizes: int, other: type = list) -> BeforeValidator:
+    """Check the size of a list (any but 0 if there are none), and that it is one, or an `other`."""
+
+    def check(given: Any) -> Any:
+        if isinstance(given, list | tuple):
+            if len(given) not in (sizes or range(1, len(given) + 1)):
+                raise problem(f"got {described(given)}; give {right}")
+        elif not isinstance(given, other):
+            raise problem(f"got {described(given)}; give {right}")
+        return given
+
+    return BeforeValidator(check)
 
 
 class Table(BaseModel):

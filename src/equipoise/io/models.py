@@ -169,7 +169,7 @@ def examples() -> dict[str, str]:
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the model file, for editors."""
-    from equipoise.io.document import json_schema
+    from equipoise.io.schema import json_schema
 
     return json_schema()
 

@@ -22,6 +22,11 @@ def quantities(table: Any, dimensions: Mapping[str, Dimension]) -> dict[str, str
     }
 
 
+def tidy(value: float) -> float:
+    """Return a whole number without its decimal point."""
+    return int(value) if value.is_integer() and abs(value) < 1e6 else value
+
+
 def listed(values: Iterable[float], dimension: Dimension) -> list[str]:
     """Write a list of quantities of one dimension."""
     return [format_exact(value, dimension) for value in values]

@@ -29,14 +29,18 @@ _RIGHT = {
     "bool_type": "give true or false without quotes",
     "float_type": "give a plain number without unit and quotes",
     "finite_number": "give a finite number",
-    "greater_than_equal": "give {ge} or more",
+    "greater_than_equal": "give {ge:g} or more",
     "less_than_equal": "give {le} or less",
 }
 
 
-def translated(error: ValidationError) -> ModelError:
-    """Return the first problem as a `ModelError`, with the number of the others."""
+def translated(error: ValidationError, within: str = "") -> ModelError:
+    """Return the first problem as a `ModelError`, with the number of the others.
+
+    within : the table that was read, where it is not the whole document.
+    """
     first, *others = error.errors(include_url=False)
+    first["loc"] = (*filter(None, [within]), *first["loc"])
     where, what = _place(first), _sentence(first)
     if others:
         what += f" (and {len(others)} more)"
@@ -48,7 +52,7 @@ def _sentence(details: ErrorDetails) -> str:
     if details["type"] == "equipoise":
         return str(context["sentence"])
     if details["type"] == "list_type":
-        right = f"write each as a table under [[{details['loc'][-1]}]]"
+        right = f"write each as a table under [[{_place(details)}]]"
     else:
         # Whatever else pydantic may come up with is better than nothing.
         known = _RIGHT.get(details["type"])

@@ -25,6 +25,8 @@ Dimension = Literal[
     "torsional stiffness",
     "torsional damping",
     "power",
+    "density",
+    "energy",
 ]
 
 
@@ -100,10 +102,14 @@ KINDS: dict[Dimension, Kind] = {
         "3 N m s/rad",
     ),
     "power": _kind("a power", "W, mW, kW", "W", "40 W"),
+    "density": _kind("a density", "kg/m^3, g/cm^3, kg/dm^3, lb/in^3", "kg/m^3", "7850 kg/m^3"),
+    "energy": _kind("an energy", "J, mJ, kJ", "J", "12 J"),
 }
 
 NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
 _SEPARATOR = "(?: | ?[*\N{MIDDLE DOT}] ?)"
+POWERS = {"2": "\N{SUPERSCRIPT TWO}", "3": "\N{SUPERSCRIPT THREE}"}
+"""Exponents in units, and the sign for each that is read too."""
 
 
 def pattern(dimension: Dimension) -> str:
@@ -113,10 +119,15 @@ def pattern(dimension: Dimension) -> str:
 
 
 def _unit_pattern(unit: str) -> str:
-    return unit.replace(" ", _SEPARATOR).replace("^2", "(?:(?:\\^|\\*\\*)2|\N{SUPERSCRIPT TWO})")
+    text = unit.replace(" ", _SEPARATOR)
+    for digit, raised in POWERS.items():
+        text = text.replace(f"^{digit}", f"(?:(?:\\^|\\*\\*){digit}|{raised})")
+    return text
 
 
 def plain_unit(unit: str) -> str:
     """Return the unit as the lists have it."""
-    unit = unit.replace("**", "^").replace("\N{SUPERSCRIPT TWO}", "^2")
+    unit = unit.replace("**", "^")
+    for digit, raised in POWERS.items():
+        unit = unit.replace(raised, f"^{digit}")
     return re.sub(" ?[*\N{MIDDLE DOT}] ?", " ", unit)

@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import re
 
-from equipoise.io.unit_lists import KINDS, NUMBER, Dimension, Kind, pattern, plain_unit
+from equipoise.io.unit_lists import (
+    KINDS,
+    NUMBER,
+    POWERS,
+    Dimension,
+    Kind,
+    pattern,
+    plain_unit,
+)
 
 _NAMES = {
     "\N{DEGREE SIGN}": "deg",
@@ -136,4 +144,6 @@ def _meant(unit: str, kind: Kind) -> str | None:
 
 
 def _bare(unit: str) -> str:
-    return re.sub(r"[^0-9a-z/]", "", unit.replace("\N{SUPERSCRIPT TWO}", "2").lower())
+    for digit, raised in POWERS.items():
+        unit = unit.replace(raised, digit)
+    return re.sub(r"[^0-9a-z/]", "", unit.lower())

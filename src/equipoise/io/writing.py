@@ -10,7 +10,9 @@ from equipoise.io import SCHEMA_VERSION
 from equipoise.io.plain import listed, quantities, unless
 from equipoise.io.points import written
 from equipoise.io.units import Dimension, format_exact
+from equipoise.io.writing_balance import balance_table
 from equipoise.io.writing_support import motor_table, row_table, support_table
+from equipoise.mechanism.balance_checks import LISTS
 from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import (
     FRAME,
@@ -22,6 +24,7 @@ from equipoise.mechanism.model import (
     Machine,
     Position,
     Slider,
+    Spring,
     Vector,
 )
 
@@ -41,7 +44,7 @@ def document_of(machine: Machine, tables: Mapping[str, str]) -> dict[str, Any]:
         _load(load, tables.get(f"loads[{number}].table"))
         for number, load in enumerate(machine.loads, 1)
     ]
-    planting = machine.planting
+    planting, balance = machine.planting, machine.balance
     return {
         "schema": SCHEMA_VERSION,
         "title": machine.title,
@@ -56,16 +59,24 @@ def document_of(machine: Machine, tables: Mapping[str, str]) -> dict[str, Any]:
         **unless(not machine.sliders, sliders=[_slider(slider) for slider in machine.sliders]),
         **unless(not machine.gears, gears=[_gear(gear) for gear in machine.gears]),
         **unless(not loads, loads=loads),
+        **unless(not machine.springs, springs=[_spring(spring) for spring in machine.springs]),
         **({} if machine.position is None else {"position": _position(machine.position)}),
         **({} if planting is None else {"planting": _planting(planting, tables)}),
         **({} if support is None else {"support": support_table(support)}),
         **unless(not machine.rows, rows=[row_table(row) for row in machine.rows]),
+        **({} if balance is None else {"balance": balance_table(balance, machine)}),
     }
 
 
 BY_NAME = {"links", "support.mounts", "support.gauges"}
 """Tables that hold nothing but tables with names."""
-HEADED = {"drive.motor", "support.mounts", "support.gauges"}
+HEADED = {
+    "drive.motor",
+    "support.mounts",
+    "support.gauges",
+    "balance.phases",
+    *(f"balance.{key}" for key in LISTS),
+}
 """Tables inside of others that are written below a header of their own."""
 
 
@@ -89,7 +100,10 @@ def _blocks(name: str, table: Mapping[str, Any]) -> Iterable[str]:
     within = {key: item for key, item in table.items() if f"{name}.{key}" in HEADED}
     yield _block(f"[{name}]", {key: item for key, item in table.items() if key not in within})
     for key, item in within.items():
-        yield from _blocks(f"{name}.{key}", item)
+        if isinstance(item, list):
+            yield from (_block(f"[[{name}.{key}]]", table) for table in item)
+        else:
+            yield from _blocks(f"{name}.{key}", item)
 
 
 def _is_tables(value: Any) -> bool:
@@ -202,6 +216,16 @@ def _load(load: Load, table: str | None) -> dict[str, Any]:
         given["from"] = format_exact(load.start, "angle")
         given["to"] = format_exact(load.stop, "angle")
     return given
+
+
+def _spring(spring: Spring) -> dict[str, Any]:
+    return {
+        "link": spring.link,
+        "point": spring.point,
+        "to": spring.to,
+        "stiffness": format_exact(spring.stiffness, "stiffness"),
+        **quantities(spring, {"free_length": "length"}),
+    }
 
 
 def _position(position: Position) -> dict[str, Any]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from equipoise.io.plain import listed, quantities, unless
+from equipoise.io.plain import listed, quantities, tidy, unless
 from equipoise.io.points import written
 from equipoise.io.units import Dimension, format_exact
 from equipoise.mechanism.motor import Motor
@@ -83,9 +83,5 @@ def _place(place: Place) -> list[str] | dict[str, str]:
 
 def _direction(direction: Direction) -> str | list[float]:
     if isinstance(direction, tuple):
-        return [_tidy(component) for component in direction]
+        return [tidy(component) for component in direction]
     return format_exact(direction, "angle")
-
-
-def _tidy(value: float) -> float:
-    return int(value) if value.is_integer() and abs(value) < 1e6 else value

@@ -44,6 +44,7 @@ def remarks(linkage: Linkage) -> Iterator[str]:
             yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
     lone = [point for point in machine.frame if point not in linkage.joints.pins]
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
+    used |= {spring.to for spring in machine.springs}
     for point in lone:
         if point not in used:
-            yield f"frame.points.{point} is not used by any joint"
+            yield f"frame.points.{point} is not used by any joint or spring"

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
-from math import isfinite, pi
+from math import inf, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.frozen import Frozen
     from equipoise.mechanism.model import (
         Gear,
         Link,
@@ -119,7 +120,14 @@ def _numbers(where: str, value: Any) -> Iterator[tuple[str, float]]:
         for number, item in enumerate(value, 1):
             yield from _numbers(f"{where}[{number}]", item)
     else:
-        yield from _numbers(where, {k: v for k, v in vars(value).items() if k[0] != "_"})
+        yield from _numbers_of(where, value)
+
+
+def _numbers_of(where: str, value: Frozen) -> Iterator[tuple[str, float]]:
+    for key, item in vars(value).items():
+        if key[0] != "_" and not (key in value.endless and item == inf):
+            place = where if key in value.flat else f"{where}.{key}".lstrip(".")
+            yield from _numbers(place, item)
 
 
 def _wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:

@@ -1,15 +1,15 @@
 """What the motion does: shaking force and moment, drive torque, and the force in every joint.
 
-Each link's inertia, weight and loads make a demand, a force and a moment about the link's anchor,
-that its joints must supply; `mechanism.reactions` turns demands into joint forces.  Because that
-pass is linear in the demands, causes, links or parameters are told apart by running it on a stack
-of them.
+Each link's inertia, weight, loads and springs make a demand, a force and a moment about the link's
+anchor, that its joints must supply; `mechanism.reactions` turns demands into joint forces.  Because
+that pass is linear in the demands, causes, links or parameters are told apart by running it on a
+stack of them.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from math import hypot
 from typing import Any
@@ -18,7 +18,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.loads import load_demands
+from equipoise.mechanism.loads import load_demands, spring_demands
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
@@ -48,8 +48,9 @@ __all__ = [
     "split",
 ]
 
-CAUSES = ("translation", "rotation", "weight", "load")
-"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside."""
+CAUSES = ("translation", "rotation", "weight", "load", "spring")
+"""Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
+springs to the frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,8 @@ class Forces:
 
     motion : what they belong to.
     about : point of the frame's plane (m, complex) about which moments are taken.
-    inertia, weights, loads : link -> its demand, by what makes it; loads only where there are.
+    inertia, weights, loads, springs : link -> its demand, by what makes it; loads and springs
+        only where there are.
     """
 
     motion: Motion
@@ -66,6 +68,7 @@ class Forces:
     inertia: Mapping[str, Demand]
     weights: Mapping[str, Demand]
     loads: Mapping[str, Demand]
+    springs: Mapping[str, Demand] = field(default_factory=dict)
 
     @cached_property
     def shaking_force(self) -> VectorSignal:
@@ -100,20 +103,25 @@ class Forces:
     def solved(self) -> Pass:
         """The run over the joints that belongs to all demands together."""
         total = dict(self.inertia)
-        for more in (self.weights, self.loads):
+        for more in (self.weights, self.loads, self.springs):
             for link, (force, moment) in more.items():
                 total[link] = (total[link][0] + force, total[link][1] + moment)
         return reactions(self.motion, total)
 
     @property
     def frame_force(self) -> VectorSignal:
-        """Sum of the forces of all joints on the frame, N: shaking force, weight and loads."""
-        return VectorSignal(self.solved.frame_force)
+        """Sum of the forces of all joints and springs on the frame, N.
+
+        It is the sum of shaking force, weight and loads: springs are between links and frame.
+        """
+        of_springs = sum(force for force, _ in self.springs.values())
+        return VectorSignal(self.solved.frame_force + of_springs)
 
     @property
     def frame_moment(self) -> Array:
-        """Moment of all joints and of the drive on the frame about `about`, N m."""
-        return self.solved.frame_moment(self.about)
+        """Moment of all joints, springs and of the drive on the frame about `about`, N m."""
+        of_springs = self._moment(self.springs, self.about)
+        return np.asarray(self.solved.frame_moment(self.about) + of_springs)
 
     @property
     def drive_torque(self) -> Array:
@@ -157,7 +165,7 @@ class Forces:
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Outputs by cause and link: arrays (4, L, N), causes as in `CAUSES`, links in file order.
+    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
     joints : name -> `JointForce` whose arrays have those axes.  gears : likewise.
@@ -203,6 +211,7 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     Raises
     ------
     MassError : a link has no mass given.
+    ModelError : the ends of a spring with a free length meet.
     UsageError : there is no such point.
     """
     machine = motion.machine
@@ -215,7 +224,8 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
         mass, moment, turning = inertia_about_anchor(motion, link)
         inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
-    return Forces(motion, pole, inertia, weights, load_demands(motion))
+    held = load_demands(motion), spring_demands(motion)
+    return Forces(motion, pole, inertia, weights, *held)
 
 
 def massless(machine: Machine) -> str:
@@ -263,13 +273,15 @@ def split(whole: Forces) -> Split:
             force[c, k], moment[c, k] = f, m
         demands[link] = (force, moment)
     solved = reactions(motion, demands, whole.solved)
-    inertial = np.array([1, 1, 0, 0])[:, None, None]
+    inertial = np.array([1, 1, 0, 0, 0])[:, None, None]
+    # A spring's pull on the frame and what it makes the joints bear there cancel.
+    on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
     return Split(
         links,
         inertial * -sum(force for force, _ in demands.values()),
         inertial * -whole._moment(demands, whole.about),
-        np.broadcast_to(solved.frame_force, shape),
-        np.broadcast_to(solved.frame_moment(whole.about), shape),
+        np.broadcast_to(on_frame * solved.frame_force, shape),
+        np.broadcast_to(on_frame * solved.frame_moment(whole.about), shape),
         solved.drive_torque,
         solved.joints,
         solved.gears,
@@ -288,6 +300,7 @@ def _causes(whole: Forces, link: str) -> list[Demand]:
         demand_of_inertia(motion, link, speed2, 0.0, 0.0, own),
         whole.weights[link],
         whole.loads.get(link, (0j, 0.0)),
+        whole.springs.get(link, (0j, 0.0)),
     ]
 
 

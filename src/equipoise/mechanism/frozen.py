@@ -19,9 +19,13 @@ class Frozen:
         ``direction`` (an angle or three numbers), ``row`` and ``rows`` of numbers, ``names`` (a
         list of texts), ``list``; ``pairs``, ``numbers``, ``texts`` and ``values`` are mappings of
         such.
+    flat : fields whose own values stand beside the others in the model file, not in a table below.
+    endless : numbers that may be infinite, for no limit.
     """
 
     shapes: ClassVar[dict[str, str]]
+    flat: ClassVar[tuple[str, ...]] = ()
+    endless: ClassVar[tuple[str, ...]] = ()
 
     def __post_init__(self) -> None:
         for name, shape in self.shapes.items():

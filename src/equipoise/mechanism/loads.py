@@ -1,8 +1,8 @@
-"""Loads from outside, those against crank angle and the soil's, and what holds them."""
+"""Loads from outside, those against crank angle and the soil's, springs, and what holds them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from math import pi
 from typing import Any
 
@@ -13,9 +13,12 @@ from equipoise.mechanism.model import Load, LoadTable
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Demand
 from equipoise.mechanism.soil import soil_force
+from equipoise.mechanism.spring import spring_force
 from equipoise.mechanism.tip import tip_link
 
 Array = np.ndarray[Any, Any]
+Acting = tuple[str, str | None, Array, Any]
+"""Link, its point or None for a torque, force and torque."""
 
 ROUNDING = 1e-9
 """rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
@@ -23,8 +26,24 @@ ROUNDING = 1e-9
 
 def load_demands(motion: Motion) -> dict[str, Demand]:
     """What holds the loads, for every link that has one."""
+    return demands_of(motion, _loads(motion))
+
+
+def spring_demands(motion: Motion) -> dict[str, Demand]:
+    """What holds the springs, for every link that has one.
+
+    Raises
+    ------
+    ModelError : the ends of a spring with a free length meet.
+    """
+    springs = motion.machine.springs
+    return demands_of(motion, ((s.link, s.point, spring_force(motion, s), 0.0) for s in springs))
+
+
+def demands_of(motion: Motion, acting: Iterable[Acting]) -> dict[str, Demand]:
+    """What holds forces (complex, N) and torques (N m), for every link that has one."""
     result: dict[str, Demand] = {}
-    for link, point, force, torque in _loads(motion):
+    for link, point, force, torque in acting:
         anchor = motion.state[f"p({motion.linkage.anchors[link]})"]
         at = anchor if point is None else motion.points[point].place
         f, m = kernels.load_demand(anchor, at, force, torque)
@@ -33,7 +52,7 @@ def load_demands(motion: Motion) -> dict[str, Demand]:
     return result
 
 
-def _loads(motion: Motion) -> Iterator[tuple[str, str | None, Array, Any]]:
+def _loads(motion: Motion) -> Iterator[Acting]:
     """Link, point, force and torque of each load."""
     machine = motion.machine
     for load in machine.loads:

@@ -11,14 +11,18 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import chain
 from math import hypot, radians
-from typing import Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.checks import FRAME, HUGE, problems, unknown
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.frozen import Frozen
 from equipoise.mechanism.motor import Motor, wrong_motor
+from equipoise.mechanism.spring import Spring, wrong_springs
 from equipoise.mechanism.support import Row, Support, wrong_support
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.balance import Balance
 
 __all__ = [
     "FRAME",
@@ -31,6 +35,7 @@ __all__ = [
     "Machine",
     "Position",
     "Slider",
+    "Spring",
     "Vector",
     "size_of",
     "unknown",
@@ -234,7 +239,7 @@ class Position(Frozen):
 
 @dataclass(frozen=True)
 class Machine(Frozen):
-    """A planar linkage with its drive, loads and gravity.
+    """A planar linkage with its drive, loads, springs and gravity.
 
     Attributes
     ----------
@@ -246,6 +251,8 @@ class Machine(Frozen):
     planting : what a planting finger does in the field, where it is one.
     support : the body that carries the linkage, where the frame does not stand still.
     rows : the linkages on it; one, as the file has it, where there are none.
+    balance : what may be changed to quieten it, and what is to become small.
+    springs : linear springs between its links and the frame.
     """
 
     shapes: ClassVar[dict[str, str]] = {
@@ -253,7 +260,7 @@ class Machine(Frozen):
         "frame": "pairs",
         "links": "values",
         "assembly": "texts",
-        **dict.fromkeys(("sliders", "gears", "loads", "rows"), "list"),
+        **dict.fromkeys(("sliders", "gears", "loads", "rows", "springs"), "list"),
         "gravity": "pair",
         "description": "text",
     }
@@ -272,13 +279,27 @@ class Machine(Frozen):
     planting: Planting | None = None
     support: Support | None = None
     rows: tuple[Row, ...] = ()
+    balance: Balance | None = None
+    springs: tuple[Spring, ...] = ()
 
     def __post_init__(self) -> None:
         super().__post_init__()
         for problem in chain(
-            problems(self), wrong_planting(self), wrong_motor(self), wrong_support(self)
+            problems(self),
+            wrong_springs(self),
+            wrong_planting(self),
+            wrong_motor(self),
+            wrong_support(self),
+            self._wrong_balance(),
         ):
             raise problem
+
+    def _wrong_balance(self) -> Iterable[ModelError]:
+        if self.balance is None:  # most machines have none, and these modules take time to import
+            return ()
+        from equipoise.mechanism.balance_checks import wrong_balance
+
+        return wrong_balance(self)
 
     def with_link(self, name: str, **changes: Any) -> Machine:
         """Return the machine with fields of one link changed."""
@@ -307,6 +328,14 @@ class Machine(Frozen):
     def with_rows(self, rows: Iterable[Row]) -> Machine:
         """Return the machine with other rows of linkages."""
         return self._same_motion(replace(self, rows=tuple(rows)), True)
+
+    def with_springs(self, springs: Iterable[Spring]) -> Machine:
+        """Return the machine with other springs."""
+        return self._same_motion(replace(self, springs=tuple(springs)), True)
+
+    def with_balance(self, balance: Balance | None) -> Machine:
+        """Return the machine with another plan of what may be changed, or with none."""
+        return self._same_motion(replace(self, balance=balance), True)
 
     def _same_motion(self, changed: Machine, same: bool) -> Machine:
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""

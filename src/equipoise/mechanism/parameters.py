@@ -1,9 +1,9 @@
 """Every output is linear in the inertial parameters: the regressor, and the base parameters.
 
 The parameters of a link are its mass, its two first moments and its moment of inertia, the last
-three about the origin of the link's axes.  Without loads an output is ``values @ regressor``.
-Several parameters always act together; the base parameters are the combinations that the outputs
-can tell apart.
+three about the origin of the link's axes.  Without loads and springs an output is
+``values @ regressor``.  Several parameters always act together; the base parameters are the
+combinations that the outputs can tell apart.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Regressor:
     shaking_force, frame_force : (P, N) complex.  shaking_moment, frame_moment, drive_torque :
         (P, N).  joints, gears : name -> force whose arrays are (P, N).
 
-    What loads add is `Forces.split` of cause "load".
+    What loads and springs add is `Forces.split` of causes "load" and "spring".
     """
 
     parameters: tuple[tuple[str, str], ...]
@@ -181,7 +181,7 @@ def base_parameters(
     motion = move(_with_any_masses(machine), angles)
     matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
     scale = np.tile([1.0, size, size, size**2], len(machine.links))
-    kept, grouping = _independent(matrix * scale)
+    kept, grouping = independent_columns(matrix * scale)
     combinations = grouping * scale[kept][:, None] / scale
     complete = all(link.has_mass for link in machine.links.values())
     values = combinations @ parameter_values(machine) if complete else None
@@ -215,7 +215,7 @@ def _rows(motion: Motion, output: str, size: float) -> Array:
     return np.concatenate(parts)
 
 
-def _independent(matrix: Array, tolerance: float = 1e-9) -> tuple[list[int], Array]:
+def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[int], Array]:
     """Columns that are no combination of earlier ones, and all columns in terms of these.
 
     Returns the kept columns' numbers and factors (B, P) with matrix = matrix[:, kept] @ factors.

@@ -1,4 +1,4 @@
-"""A machine drawn at one crank angle: links, joints, gears and the frame's pivots."""
+"""A machine drawn at one crank angle: links, joints, gears, springs and the frame's pivots."""
 
 from __future__ import annotations
 
@@ -29,6 +29,7 @@ class Sketch:
     frame, links : names of points and their places.  pins : points that bodies share.
     circles : pitch circles of gears, as middle and radius.
     guides : sliders as the place of the block and the direction of its line.
+    springs : both ends of each, the frame's last.
     """
 
     frame: dict[str, complex]
@@ -36,6 +37,7 @@ class Sketch:
     pins: frozenset[str]
     circles: tuple[tuple[complex, float], ...]
     guides: tuple[tuple[complex, complex], ...]
+    springs: tuple[tuple[complex, complex], ...]
 
     @property
     def places(self) -> dict[str, complex]:
@@ -81,6 +83,7 @@ def sketch(curve: TipCurve, theta: float) -> Sketch:
         frozenset(joints.pins),
         tuple(circles),
         tuple(guide(slider) for slider in machine.sliders),
+        tuple((links[spring.link][spring.point], frame[spring.to]) for spring in machine.springs),
     )
 
 
@@ -99,6 +102,8 @@ def draw_sketch(axes: Axes, drawn: Sketch, scale: float, inch: float) -> None:
         _draw_link(axes, np.array([*points.values()]) * scale)
     for place, way in drawn.guides:
         _draw_guide(axes, place * scale, way, inch)
+    for one, other in drawn.springs:
+        _draw_spring(axes, one * scale, other * scale, inch)
     for place in drawn.frame.values():
         _draw_pivot(axes, place * scale, inch)
     joints = [place * scale for name, place in drawn.places.items() if name in drawn.pins]
@@ -144,6 +149,15 @@ def _draw_guide(axes: Axes, place: complex, way: complex, inch: float) -> None:
     axes.add_patch(
         Polygon(np.column_stack([box.real, box.imag]), fc="white", ec=LINES, lw=0.9, zorder=2.4)
     )
+
+
+def _draw_spring(axes: Axes, one: complex, other: complex, inch: float) -> None:
+    """A zigzag, straight at both ends."""
+    along = np.concatenate([[0, 0.15], 0.15 + 0.7 * (np.arange(10) + 0.5) / 10, [0.85, 1]])
+    side = np.array([0, 0, *([1, -1] * 5), 0, 0]) * 0.05 * inch
+    across = 1j * (other - one) / (abs(other - one) or 1.0)
+    line = one + (other - one) * along + across * side
+    axes.plot(line.real, line.imag, color=LINES, linewidth=0.9, zorder=2.2)
 
 
 def _draw_pivot(axes: Axes, place: complex, inch: float) -> None:

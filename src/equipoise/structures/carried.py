@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.kernels import cross
-from equipoise.mechanism.loads import load_demands
+from equipoise.mechanism.loads import load_demands, spring_demands
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import Demand, Pass, reactions
@@ -47,12 +47,14 @@ def joint_forces(machine: Machine, ride: Ride, phase: float, offset: complex) ->
     """
     motion = move(machine, ride.crank_angle + phase, acceleration=0.0)
     demands: dict[str, Demand] = {}
-    loads = load_demands(motion)
+    acting = load_demands(motion), spring_demands(motion)
     shift = offset - ride.reference
     for link in machine.links:
         force, moment = _demand(motion, link, ride, shift)
-        held = loads.get(link, (0j, 0.0))
-        demands[link] = (force + held[0], moment + held[1])
+        for held in acting:
+            more = held.get(link, (0j, 0.0))
+            force, moment = force + more[0], moment + more[1]
+        demands[link] = (force, moment)
     return reactions(replace(motion, whole_cycle=False), demands)
 
 

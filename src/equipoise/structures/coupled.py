@@ -8,9 +8,9 @@ s = exp(i phi) S and likewise s', s'', of the linkages and the support together:
     s x Z.. + J phi.. + H theta.. = M - J' theta. phi. - H' theta.^2
     s' . Z.. + H phi.. + E theta.. = T + g . s' - E' theta.^2 / 2 + J' phi.^2 / 2
 
-F and M are weight, mounts and loads, T the drive's torque and that of the loads.  The independent
-variable is the angle that the crank has turned, so that linkages are solved at the nodes once and
-never in between.
+F and M are weight, mounts and loads, T the drive's torque and that of loads and springs.  The
+independent variable is the angle that the crank has turned, so that linkages are solved at the
+nodes once and never in between.
 """
 
 from __future__ import annotations

@@ -286,7 +286,7 @@ class ExactSolution:
 
 
 def _work_of_loads(table: Sums, place: Array, rate: Array, speed: Array) -> Array:
-    """Power of the loads from outside, W."""
+    """Power of the loads from outside and of the springs, W."""
     force = table.load_force * np.exp(1j * place[PITCH])
     carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
     return np.asarray(carried + table.load_torque * speed)

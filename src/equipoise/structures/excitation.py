@@ -8,7 +8,7 @@ mass rides at the drive's pivot, in the third it is spread as it is in the mean 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal
 
@@ -65,7 +65,7 @@ class Excitation:
         if self.step == "moment":
             origin = np.array([*row.offset, row.lateral])
             return moved(self._spread, origin - self.body.reference)
-        arm = self._pivot_of(row) - self.body.reference
+        arm = self.pivot_of(row) - self.body.reference
         return rigid_mass(self._links_mass, arm, np.zeros((3, 3)))
 
     @cached_property
@@ -76,7 +76,7 @@ class Excitation:
     def _links_mass(self) -> float:
         return sum(link.mass or 0.0 for link in self.machine.links.values())
 
-    def _pivot_of(self, row: Row) -> Array:
+    def pivot_of(self, row: Row) -> Array:
         x, y = row.offset
         return np.array([self.pivot.real + x, self.pivot.imag + y, row.lateral])
 
@@ -87,7 +87,7 @@ class Excitation:
         support = self.body.support
         found = [(support.mass * gravity, np.array(support.center_of_mass))]
         for row in rows_of(self.machine):
-            place = self._pivot_of(row)
+            place = self.pivot_of(row)
             if self.step == "moment":
                 center = self._mean_center + complex(*row.offset)
                 place = np.array([center.real, center.imag, row.lateral])
@@ -119,7 +119,7 @@ class Excitation:
         total: Array = np.zeros((6, len(theta)))
         for row in rows_of(self.machine):
             motion = move(self.machine, theta + row.phase, speed, 0.0)
-            total = total + self._about_reference(self._signals(motion), row)
+            total = total + self.about_reference(self._signals(motion), row)
         return total
 
     def of_one(self, speed: float) -> Periodic:
@@ -127,14 +127,14 @@ class Excitation:
         return self._of_row(speed, Row())
 
     def _of_row(self, speed: float, row: Row) -> Periodic:
-        wrench = self._about_reference(self._on_pivot(speed).amplitudes, row)
+        wrench = self.about_reference(self._on_pivot(speed).amplitudes, row)
         return Periodic(wrench, self.motion.turns)
 
-    def _about_reference(self, on_pivot: Array, row: Row) -> Array:
-        """Force along x and y and moment about the pivot, (3, N), as a wrench (6, N)."""
+    def about_reference(self, on_pivot: Array, row: Row) -> Array:
+        """Force along x and y and moment about the pivot of a row, (3, N), as a wrench (6, N)."""
         force = np.zeros((on_pivot.shape[1], 3), on_pivot.dtype)
         force[:, :2] = on_pivot[:2].T
-        wrench = self.body.wrench(force, self._pivot_of(row))
+        wrench = self.body.wrench(force, self.pivot_of(row))
         wrench[:, 5] += on_pivot[2]
         return wrench.T
 
@@ -155,7 +155,8 @@ class Excitation:
 
     def _signals(self, motion: Motion) -> Array:
         """Force along x and y, and moment about the pivot, (3, N)."""
-        found = forces(motion, self.pivot)
+        # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
+        found = replace(forces(motion, self.pivot), springs={})
         force = found.frame_force.value - found.weight.value
         return np.stack([force.real, force.imag, self._moment(found)])
 

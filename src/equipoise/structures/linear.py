@@ -98,11 +98,7 @@ class Linear:
         """
         wrench = self.wrench(speed)
         frequency = wrench.orders * speed
-        impedance = (
-            self.stiffness
-            - frequency[:, None, None] ** 2 * self.mass
-            + 1j * frequency[:, None, None] * self.damping
-        )
+        impedance = self.impedance(frequency)
         loads = wrench.amplitudes.T.copy()
         # A coordinate without a spring has no mean of its own; nothing must push it in the mean.
         mean = self._mean(loads[0].real)
@@ -114,6 +110,12 @@ class Linear:
             )
         moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
         return Periodic(moved.T, wrench.turns)
+
+    def impedance(self, frequency: Array) -> Array:
+        """Wrench for a unit of each displacement (F, D, D) at angular frequencies (F,), rad/s."""
+        frequency = frequency[:, None, None]
+        found: Array = self.stiffness - frequency**2 * self.mass + 1j * frequency * self.damping
+        return found
 
     def _resonant(self, impedance: Array, frequency: Array) -> bool:
         """Whether an order meets a mode that nothing damps, as near as rounding tells."""

@@ -1,4 +1,4 @@
-"""The linkages on a support as one: what their masses and loads amount to at a crank angle.
+"""The linkages on a support as one: what masses, loads and springs amount to at a crank angle.
 
 Written for the support's own axes, from its reference point.  With p the place of a link's centre
 of mass and alpha the link's angle there, a prime for the derivative by crank angle, and sums over
@@ -14,7 +14,7 @@ Kinetic energy, momentum and moment of momentum on any moving support follow fro
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -23,9 +23,10 @@ import numpy as np
 from equipoise.errors import MassError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
-from equipoise.mechanism.loads import load_demands
+from equipoise.mechanism.loads import load_demands, spring_demands
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.reactions import Demand
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
 
@@ -39,7 +40,7 @@ class Sums:
     mass : kg.  first, first_1, first_2 : complex, kg m.
     inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
     load_force (complex, N), load_moment (N m, about the reference point) and load_torque (N m, on
-    the crank) : what loads from outside do.
+    the crank) : what loads from outside do; the torque is that of the springs, too.
     """
 
     mass: float
@@ -129,16 +130,27 @@ def _bodies(motion: Motion, shift: complex) -> Iterator[tuple[Any, ...]]:
 
 
 def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
-    """Force and moment on the support, and torque on the crank, of loads from outside."""
-    zero = np.zeros(len(motion.crank_angle))
-    total, about, on_crank = zero + 0j, zero, zero
-    for link, (held, moment) in load_demands(motion).items():
-        anchor, anchor_1, _ = (motion.state[key] for key in p(motion.linkage.anchors[link]))
-        w = motion.state[u(link)[1]]
+    """Force and moment on the support, and torque on the crank, of loads from outside.
+
+    Springs between links and support turn the crank only: what they do to both cancels.
+    """
+    about = np.zeros(len(motion.crank_angle))
+    total = about + 0j
+    loads = load_demands(motion)
+    for link, (held, moment) in loads.items():
+        anchor = motion.state[p(motion.linkage.anchors[link])[0]]
         total = total - held
         about = about - moment - cross(anchor + shift, held)
-        on_crank = on_crank - dot(anchor_1, held) - w * moment
-    return total, about, on_crank
+    return total, about, -_power(motion, loads) - _power(motion, spring_demands(motion))
+
+
+def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:
+    """Power of demands at a crank speed of 1 rad/s (N,), N m: minus the torque on the crank."""
+    total: Array = np.zeros(len(motion.crank_angle))
+    for link, (force, moment) in demands.items():
+        anchor_1 = motion.state[p(motion.linkage.anchors[link])[1]]
+        total = total + dot(anchor_1, force) + motion.state[u(link)[1]] * moment
+    return total
 
 
 def spread(machine: Machine, theta: Array) -> Array:

@@ -115,6 +115,7 @@ CAUSES = {
     "rotation": "inertia of rotation",
     "weight": "weight",
     "load": "loads",
+    "spring": "springs",
 }
 
 FORCES = (
@@ -145,9 +146,11 @@ def _forces(analysis: Analysis) -> str:
 def _causes(analysis: Analysis) -> str:
     scale = analysis.summary["drive_torque"].peak
     split = analysis.forces.split.by_cause("drive_torque")
+    given = {"load": analysis.forces.loads, "spring": analysis.forces.springs}
+    left_out = {cause for cause, demands in given.items() if not demands}
     rows = []
     for cause, label in CAUSES.items():
-        if cause == "load" and not analysis.forces.loads:
+        if cause in left_out:
             continue
         found = figures(analysis.crank_angle, split[cause])
         values = (found.mean, found.rms, found.max, found.min)

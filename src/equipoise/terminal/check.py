@@ -36,7 +36,7 @@ def print_check(machine: Machine) -> None:
         print(f"  {row}")
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     print(f"the crank turns fully; the motion repeats after {turns}")
-    for row in [*_drive_train(machine), *_support(machine)]:
+    for row in [*_springs(machine), *_drive_train(machine), *_support(machine)]:
         print(row)
     for remark in [*remarks(linkage), *idle_parts(machine), *_uncarried(machine)]:
         print(f"note: {remark}")
@@ -74,6 +74,15 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
 
 MOST_SHOWN = 12
 """Phases of rows in a line."""
+
+
+def _springs(machine: Machine) -> Iterator[str]:
+    for spring in machine.springs:
+        free = f", free at {number(spring.free_length * 1e3)} mm" if spring.free_length else ""
+        yield (
+            f"spring: from {spring.point} of {spring.link} to {spring.to}, "
+            f"{number(spring.stiffness)} N/m{free}"
+        )
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:

@@ -72,6 +72,91 @@ phase = "180 deg"
 lateral = "150 mm"
 offset = ["20 mm", "-5 mm"]
 """
+BALANCE = """
+[balance]
+added_mass = "500 g"
+combine = "squares"
+
+[balance.phases]
+step = "10 deg"
+
+[[balance.moves]]
+link = "crank"
+x = ["-60 mm", "20 mm"]
+y = ["-30 mm", "30 mm"]
+
+[[balance.masses]]
+link = "crank"
+at = "A"
+shape = "sector"
+radius = "60 mm"
+inner_radius = "10 mm"
+thickness = "8 mm"
+material = "steel"
+at_most = "800 g"
+
+[[balance.masses]]
+link = "rocker"
+at = "D"
+mass = "500 g"
+
+[[balance.geared]]
+driver = "rocker"
+ratio = [0.3, 2]
+pitch_radius = "50 mm"
+direction = "0 deg"
+gear_thickness = "8 mm"
+gear_material = "steel"
+clear_of = ["coupler"]
+radius = "40 mm"
+
+[[balance.geared]]
+driver = "crank"
+teeth = [17, 80]
+module = "2 mm"
+axis = ["100 mm", "0 mm"]
+gear_thickness = "8 mm"
+gear_density = "7800 kg/m^3"
+shape = "disc"
+radius = "40 mm"
+thickness = "8 mm"
+density = "7800 kg/m^3"
+name = "other"
+
+[[balance.shafts]]
+order = 2
+axes = [["0 mm", "-60 mm"], ["40 mm", "-60 mm"]]
+radius = "30 mm"
+
+[[balance.springs]]
+link = "rocker"
+point = "C"
+to = "A"
+stiffness = "5000 N/m"
+free_length = ["20 mm", "120 mm"]
+
+[[balance.objectives]]
+output = "shaking_moment"
+measure = "peak"
+orders = [1, 2]
+about = "D"
+weight = 2
+
+[[balance.objectives]]
+output = "gauges.handle"
+speeds = ["150 rpm", "240 rpm"]
+
+[[balance.limits]]
+output = "joints.B"
+measure = "peak"
+at_most = "120 N"
+
+[[balance.limits]]
+output = "shaking_force.x"
+measure = "area"
+at_most = "80 %"
+"""
+"""Needs the gauges of SUPPORT and the rows of ROWS."""
 EVERYTHING = (
     FOUR_BAR.replace(
         '"Four-bar"\n', '"All"\ndescription = "x"\ngravity = ["1 gn", "0 m/s^2"]\n'
@@ -114,6 +199,19 @@ to = "10 deg"
 link = "rocker"
 torque = "1.5 N m"
 
+[[springs]]
+link = "coupler"
+point = "C"
+to = "A"
+stiffness = "2 kN/m"
+free_length = "80 mm"
+
+[[springs]]
+link = "crank"
+point = "B"
+to = "D"
+stiffness = "1 kgf/mm"
+
 [position]
 crank_angle = "30 deg"
 points.B = ["1 mm", "2 mm"]
@@ -128,4 +226,5 @@ mean_speed = "free"
 """
     + SUPPORT
     + ROWS
+    + BALANCE
 )

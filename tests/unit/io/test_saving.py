@@ -66,7 +66,8 @@ def test_random_edits_survive(data: st.DataObject) -> None:
         return new if old > 0 else -new
 
     try:
-        machine = changed(loads(EVERYTHING), draw)
+        # What may be changed hangs together too much; `test_balance_writing` has its own.
+        machine = changed(loads(EVERYTHING).with_balance(None), draw)
     except ModelError as error:  # a window of no width
         assume("from and to must differ" not in str(error))
         raise

@@ -50,6 +50,11 @@ usual = numbers.filter(lambda x: x == 0 or abs(x) > 1e-29)
         ("36 km/h", "speed", 10.0),
         ("50 Hz", "frequency", 50.0),
         ("1 kgf/mm", "stiffness", 9806.65),
+        ("7.85 g/cm^3", "density", 7850.0),
+        ("7.85 kg/dm**3", "density", 7850.0),
+        ("7850 kg/m\N{SUPERSCRIPT THREE}", "density", 7850.0),
+        ("1 lb/in^3", "density", 0.45359237 / 0.0254**3),
+        ("2 kJ", "energy", 2000.0),
     ],
 )
 def test_reads(text: str, dimension: Dimension, value: float) -> None:
@@ -92,6 +97,9 @@ def test_degrees_are_the_nearest_floats() -> None:
         ("50 Hz", "angular speed", 'give "50 turn/s" or "3000 rpm"'),
         ("5 Nm", "torque", 'did you mean "5 N m"?'),
         ("5 kg mm2", "inertia", 'did you mean "5 kg mm^2"?'),
+        ("5 kg/m3", "density", 'did you mean "5 kg/m^3"?'),
+        ("5 kg/m^2", "density", "there is no unit 'kg/m^2' here; a density is wanted: kg/m^3"),
+        ("5 N m", "energy", "N m is the unit of a torque; an energy is wanted: J, mJ"),
         ("5\N{DEGREE SIGN}", "angle", 'did you mean "5 deg"?'),
         ("5 furlong", "length", "there is no unit 'furlong' here"),
         ("1e999 m", "length", "no machine can have"),

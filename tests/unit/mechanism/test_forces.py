@@ -217,7 +217,7 @@ def test_a_good_machine_gives_no_remark() -> None:
         (crank_rocker().with_link("rocker", center_of_mass=(40.0, 0.0)),
          "links.rocker.center_of_mass lies far outside the link; check its unit"),
         (replace(crank_rocker(), frame={"A": ORIGIN, "D": (1.0, 0.0), "Z": (2.0, 2.0)}),
-         "frame.points.Z is not used by any joint"),
+         "frame.points.Z is not used by any joint or spring"),
         (crank_rocker().with_link("rocker", mass=None, center_of_mass=None, inertia=None),
          "missing for rocker"),
     ],

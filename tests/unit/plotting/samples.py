@@ -42,6 +42,13 @@ def engine() -> Machine:
     return eq.load("slider-crank-engine").with_planting(**values)
 
 
+def sprung(machine: Machine) -> Machine:
+    """With springs from the coupler's tip and from the rocker to the frame."""
+    frame = {**machine.frame, "S": (0.05, 0.12)}
+    springs = (eq.Spring("coupler", "P", "S", 100.0, 0.1), eq.Spring("rocker", "C", "S", 200.0))
+    return replace(machine, frame=frame, springs=springs)
+
+
 def odd_machines() -> dict[str, Machine]:
     a = eq.load("kim-chung-a")
     return {
@@ -56,6 +63,7 @@ def odd_machines() -> dict[str, Machine]:
         "shallow": a.with_planting(depth=1e-5),
         "tray": a.with_planting(tray=((-0.24, 0.05), (-0.19, 0.02)), release=4.3),
         "deep": a.with_planting(depth=0.2),
+        "springs": sprung(a),
     }
 
 

@@ -17,11 +17,11 @@ from matplotlib.figure import Figure
 import equipoise as eq
 from equipoise.planting.summary import plant
 from equipoise.plotting.crank import soil_spans
-from equipoise.plotting.linkage import sketch
+from equipoise.plotting.linkage import draw_sketch, sketch
 from equipoise.plotting.paths import Paths
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.style import render
-from unit.plotting.samples import BUNDLED, SOIL, arm, drawn, engine, read_off, words
+from unit.plotting.samples import BUNDLED, SOIL, arm, drawn, engine, read_off, sprung, words
 
 DRY = [
     *("path", "ratio-coupler", "ratio-rocker"),
@@ -233,6 +233,22 @@ def test_gears_touch_and_blocks_sit_on_their_lines() -> None:
     drive = plant(engine())
     ((block, way),) = sketch(drive.curve, 0.5).guides
     assert block.real == pytest.approx(0, abs=1e-12) and abs(way.imag) == pytest.approx(1)
+
+
+def test_springs_reach_from_link_to_frame() -> None:
+    machine = sprung(eq.load("kim-chung-a"))
+    found = sketch(plant(machine).curve, 0.5)
+    motion = eq.move(machine, [0.5])
+    hook = complex(*machine.frame["S"])
+    wanted = [(motion.points[point].place[0], hook) for point in ("P", "C")]
+    np.testing.assert_allclose(found.springs, wanted, atol=1e-12)
+    figure = Figure()
+    axes = figure.add_subplot()
+    draw_sketch(axes, found, 1.0, 0.1)
+    ends = {(complex(x[0], y[0]), complex(x[-1], y[-1]))
+            for x, y in (line.get_data() for line in axes.get_lines())}  # fmt: skip
+    for one, other in found.springs:
+        assert any(abs(one - a) + abs(other - b) < 1e-12 for a, b in ends)
 
 
 def test_without_travel_there_is_no_ground_panel() -> None:

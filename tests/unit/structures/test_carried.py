@@ -103,7 +103,7 @@ def test_a_crank_that_stands_still_in_space_is_not_spun_up() -> None:
 @pytest.mark.parametrize("seed", [0, 1])
 def test_whole_force_is_the_change_of_momentum(name: str, seed: int) -> None:
     """On any motion: force and moment of all joints on the frame, by the sums over the links."""
-    machine = replace(machine_of(name), loads=())
+    machine = replace(machine_of(name), loads=(), springs=())
     rng = np.random.default_rng(seed)
     place, rate, change = rng.normal(size=(3, 3, 24))
     here = replace(ride(rate, change, place, 11.0), crank_speed=rng.normal(size=24))

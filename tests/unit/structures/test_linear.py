@@ -10,7 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, ResponseError
-from equipoise.structures.excitation import STEPS
+from equipoise.structures.body import Body
+from equipoise.structures.excitation import STEPS, Excitation, Step
 from equipoise.structures.forced import respond
 from equipoise.structures.linear import Linear
 from unit.structures.build import SPEED, Gauge, Mount, block, cart, close, rig, springs
@@ -113,6 +114,20 @@ def test_steps_hand_over_force_torque_and_moment() -> None:
         wrench = Linear.of(machine, step).excitation.at(SPEED).values(theta)  # type: ignore[arg-type]
         close(wrench[5], moment, 1e-12)
         close(wrench[:2], [varying.real, varying.imag], 1e-12)
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_springs_to_the_support_do_not_shake_it(step: Step) -> None:
+    """What they do to it directly and through joints and drive cancels."""
+    machine = eq.load("spring-balanced-crank").with_support(
+        mass=20.0, center_of_mass=(0.0, -0.1, 0.0), inertia=(0.5,)
+    )
+    theta = np.linspace(0, 6, 9)
+    found, wanted = (
+        Excitation(Body(given), step).samples(theta, 15.0)
+        for given in (machine, machine.with_springs(()))
+    )
+    close(found, wanted, 1e-12)
 
 
 def test_a_row_aside_excites_roll_and_yaw() -> None:

@@ -166,6 +166,23 @@ def test_work_of_loads() -> None:
     close(carried, power, 1e-13)
 
 
+def test_springs_turn_the_crank_alone() -> None:
+    """In every row by minus the slope of their energy, whatever carries the rows."""
+    machine = eq.load("spring-balanced-crank")
+    (spring,) = machine.springs
+    found = at(machine.with_rows(ROWS[:2]))
+    assert not np.any(found.load_force)
+    assert not np.any(found.load_moment)
+    wanted, step = np.zeros(9), 1e-5
+    for row in ROWS[:2]:
+        theta = THETA + row.phase
+        places = [eq.move(machine, theta + h).points[spring.point].place for h in (step, -step)]
+        lengths = [np.abs(place - complex(*machine.frame[spring.to])) for place in places]
+        up, down = (spring.stiffness * (x - spring.free_length) ** 2 / 2 for x in lengths)
+        wanted -= (up - down) / (2 * step)
+    close(found.load_torque, wanted, 1e-8)
+
+
 def test_no_loads() -> None:
     found = at(eq.load("yamashita-1"))
     for part in (found.load_force, found.load_moment, found.load_torque):
