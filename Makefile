@@ -22,6 +22,7 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise analyze yamashita-1 --csv out.csv    every signal against crank angle"
 	@echo "  $(BIN)/equipoise plant transplanter               the path of a planting finger, and its figures"
 	@echo "  $(BIN)/equipoise respond yamashita-rig            how it shakes what it stands on"
+	@echo "  $(BIN)/equipoise balance balance-crank            what to change so that it shakes less"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test
@@ -38,7 +39,9 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/analysis.py
 	$(BIN)/python benchmarks/planting.py
 	$(BIN)/python benchmarks/vibration.py
+	$(BIN)/python benchmarks/balancing.py
 	$(BIN)/python benchmarks/startup.py
+	$(BIN)/python benchmarks/exudyn_slider_crank.py
 
 clean:
 	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

@@ -14,8 +14,14 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
+    "AddedMass": "mechanism.balance",
     "Analysis": "results",
+    "Balance": "mechanism.balance",
+    "BalanceShafts": "mechanism.balance",
+    "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
+    "CenterMove": "mechanism.balance",
+    "Conditions": "balancing.conditions",
     "Decay": "measured.decay",
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
@@ -24,9 +30,12 @@ _HOMES = {
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
     "FreeVibration": "structures.free",
+    "Front": "balancing.front",
     "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
+    "GearedWeight": "mechanism.balance",
     "Goal": "planting.goals",
+    "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
     "Load": "mechanism.model",
@@ -36,7 +45,10 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
+    "Objective": "mechanism.balance",
     "Periodic": "signals",
+    "Phases": "mechanism.balance",
+    "Phasing": "balancing.phases",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
@@ -47,12 +59,19 @@ _HOMES = {
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
+    "Spring": "mechanism.spring",
+    "SpringChoice": "mechanism.balance",
     "Support": "mechanism.support",
     "Sweep": "structures.sweep",
     "Transient": "structures.transient",
+    "Weight": "mechanism.balance",
     "analyze": "pipeline",
+    "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
+    "balance": "balancing.balance",
     "base_parameters": "mechanism.parameters",
+    "choose_phases": "balancing.phases",
+    "conditions": "balancing.conditions",
     "dumps": "io.models",
     "examples": "io.models",
     "fit_planting": "planting.search",
@@ -62,6 +81,7 @@ _HOMES = {
     "harmonics": "signals",
     "identify_decay": "measured.decay",
     "json_schema": "io.models",
+    "least_moments": "balancing.least",
     "load": "io.models",
     "loads": "io.models",
     "move": "mechanism.motion",
@@ -70,8 +90,11 @@ _HOMES = {
     "regressor": "mechanism.parameters",
     "respond": "structures.forced",
     "save": "io.models",
+    "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
     "sweep_speed": "structures.sweep",
+    "trade_off": "balancing.front",
+    "verdict": "balancing.verdict",
     "vibrate_freely": "structures.free",
 }
 """Public names and where they live; each is imported when it is first used."""
@@ -79,6 +102,18 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 if TYPE_CHECKING:
+    from equipoise.balancing.balance import balance as balance
+    from equipoise.balancing.balanced import Balanced as Balanced
+    from equipoise.balancing.conditions import Conditions as Conditions
+    from equipoise.balancing.conditions import conditions as conditions
+    from equipoise.balancing.front import Front as Front
+    from equipoise.balancing.front import trade_off as trade_off
+    from equipoise.balancing.least import least_moments as least_moments
+    from equipoise.balancing.patterns import arranged as arranged
+    from equipoise.balancing.phases import Phasing as Phasing
+    from equipoise.balancing.phases import choose_phases as choose_phases
+    from equipoise.balancing.sensitivity import sensitivities as sensitivities
+    from equipoise.balancing.verdict import verdict as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
     from equipoise.io.models import dumps as dumps
     from equipoise.io.models import examples as examples
@@ -91,6 +126,16 @@ if TYPE_CHECKING:
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
     from equipoise.measured.swinging import simulate_decay as simulate_decay
+    from equipoise.mechanism.balance import AddedMass as AddedMass
+    from equipoise.mechanism.balance import Balance as Balance
+    from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
+    from equipoise.mechanism.balance import CenterMove as CenterMove
+    from equipoise.mechanism.balance import GearedWeight as GearedWeight
+    from equipoise.mechanism.balance import Limit as Limit
+    from equipoise.mechanism.balance import Objective as Objective
+    from equipoise.mechanism.balance import Phases as Phases
+    from equipoise.mechanism.balance import SpringChoice as SpringChoice
+    from equipoise.mechanism.balance import Weight as Weight
     from equipoise.mechanism.dynamics import Forces as Forces
     from equipoise.mechanism.dynamics import forces as forces
     from equipoise.mechanism.field import Planting as Planting
@@ -140,6 +185,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parameters import (
         regressor as regressor,
     )
+    from equipoise.mechanism.spring import Spring as Spring
     from equipoise.mechanism.support import Gauge as Gauge
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row

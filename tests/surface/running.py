@@ -15,8 +15,16 @@ from typing import Any
 from equipoise.cli import run
 
 EXAMPLES = (
+    "balance-coupler",
+    "balance-crank",
+    "balance-geared-a",
+    "balance-geared-b",
+    "balance-geared-c",
+    "balance-rig",
     "class-three",
     "drag-link",
+    "exudyn-slider-crank",
+    "four-row-transplanter",
     "geared-counterweight",
     "kim-chung-a",
     "kim-chung-b",
@@ -29,6 +37,7 @@ EXAMPLES = (
     "riding-transplanter",
     "scotch-yoke",
     "slider-crank-engine",
+    "spring-balanced-crank",
     "stephenson-six-bar",
     "transplanter",
     "walking-transplanter",

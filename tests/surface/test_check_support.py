@@ -1,4 +1,4 @@
-"""What `equipoise check` tells of support, rows and motor."""
+"""What `equipoise check` tells of support, rows, springs and motor."""
 
 from __future__ import annotations
 
@@ -74,6 +74,12 @@ def test_motor() -> None:
     Path("m.csv").write_text("speed [rpm],torque [N m]\n0,2\n1500,1.9\n3000,-0.5\n")
     table = checked('\n[drive.motor]\ntable = "m.csv"\n')
     assert "motor: 3 rows from 0 to 3000 rpm, ratio 1.000; mean speed is the drive's" in table
+
+
+def test_springs() -> None:
+    lines = succeeded(equipoise("check", "spring-balanced-crank")).splitlines()
+    assert "spring: from F of rocker to S, 3300 N/m, free at 76.00 mm" in lines
+    assert not any(line.startswith("note: ") for line in lines)
 
 
 def test_flywheel() -> None:

@@ -28,7 +28,10 @@ from surface.running import (
 )
 
 ROOT = Path(__file__).parents[2]
-COMMANDS = ("analyze", "check", "decay", "examples", "modes", "new", "plant", "respond", "schema")
+COMMANDS = (
+    *["analyze", "balance", "check", "decay", "examples", "modes", "new", "plant", "respond"],
+    "schema",
+)
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
 MASSES = re.compile(r"^(mass|center_of_mass|inertia) = .*\n", re.MULTILINE)
@@ -73,6 +76,13 @@ OPTIONS = {
     "analyze": [
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--json", "--split"],
         *["--csv", "--orders", "--crank-zero"],
+    ],
+    "balance": [
+        *["FILE", "--objective", "--limit", "--move-cm", "--crank-counterweight"],
+        *["--counterweight", "--geared-counterweight", "--ratio", "--pitch-radius", "--shape"],
+        *["--radius", "--mass", "--at-most", "--thickness", "--material", "--phases", "--speed"],
+        *["--front", "--points", "--conditions", "--sensitivities", "--crank-zero"],
+        *["--arrangements", "--spacing", "--out", "--json", "--csv", "--plot", "--format"],
     ],
     "check": ["FILE"],
     "decay": (

@@ -20,7 +20,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from surface.running import EXAMPLES, Result, equipoise, example, example_text, refused
-from unit.io.samples import ROWS, SUPPORT
+from unit.io.samples import BALANCE, ROWS, SUPPORT
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
 Draw = Callable[..., Any]
@@ -147,6 +147,7 @@ def mutate(draw: Draw, document: Document) -> None:
 
 
 CARRIED = tomllib.loads(SUPPORT + ROWS)
+BALANCED = tomllib.loads(BALANCE)
 MOTOR = {"no_load_speed": "3000 rpm", "stall_torque": "2 N m", "ratio": 12.5}
 
 
@@ -156,6 +157,8 @@ def mutated(draw: Draw) -> Document:
     if draw(st.booleans()):
         document |= deepcopy(CARRIED)
         document["drive"] |= {"flywheel": "2 kg cm^2", "motor": dict(MOTOR)}
+    if draw(st.integers(0, 3)) == 0:  # of a four-bar, by the names that most examples have
+        document |= deepcopy(BALANCED)
     for _ in range(draw(st.integers(1, 3))):
         mutate(draw, document)
     return document

@@ -534,7 +534,8 @@ PICTURES = {
 def test_pictures(words: tuple[str, ...], names: set[str]) -> None:
     result = equipoise(*words, "--plot", "new/pictures")
     succeeded(result)
-    assert result.err == f"wrote {len(names)} pictures to new/pictures\n"
+    count = "1 picture" if len(names) == 1 else f"{len(names)} pictures"
+    assert result.err == f"wrote {count} to new/pictures\n"
     assert {path.name for path in Path("new/pictures").iterdir()} == {f"{n}.svg" for n in names}
     assert all(b"<svg" in path.read_bytes()[:600] for path in Path("new/pictures").iterdir())
 

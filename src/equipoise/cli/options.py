@@ -40,7 +40,7 @@ def check_belonging(owner: str, given: object, **options: object) -> None:
     """An option that would do nothing is told, not passed over."""
     for name, value in options.items():
         if value is not None and given is None:
-            raise UsageError(f"--{name} belongs to {owner}; give both")
+            raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
 
 
 def quantity(option: str, text: str, dimension: str) -> float:
@@ -66,6 +66,20 @@ def check_folder(option: str, path: str) -> None:
         above = os.path.dirname(above)
     if not path or not os.path.isdir(above):
         raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
+
+
+def check_new(machine: Machine, path: str) -> None:
+    """A new model file must have a place to go, and take no other's."""
+    from equipoise.io.files import printable
+    from equipoise.io.models import files_of
+
+    if not path:
+        raise UsageError("--out: got an empty name; give the name of a file")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise UsageError(f"{printable(path)}: there is no such folder; make it, or choose another")
+    for file in files_of(machine, path):
+        if os.path.lexists(file):
+            raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
 
 
 def check_target(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import sys
 from dataclasses import replace
@@ -13,6 +12,7 @@ from equipoise.cli.app import FILE, SIGNED, app
 from equipoise.cli.options import (
     check_belonging,
     check_folder,
+    check_new,
     check_target,
     naming,
     quantity,
@@ -137,17 +137,8 @@ def _count(angles: str | None) -> int:
 
 def _new_file(machine: Machine, file: str, out: str | None) -> str:
     """Where the design that is found will be written; told before the search, not after it."""
-    from equipoise.io.files import printable
-    from equipoise.io.models import files_of
-
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
-    if not new:
-        raise UsageError("--out: got an empty name; give the name of a file")
-    if not os.path.isdir(os.path.dirname(new) or "."):
-        raise UsageError(f"{printable(new)}: there is no such folder; make it, or choose another")
-    for path in files_of(machine, new):
-        if os.path.lexists(path):
-            raise UsageError(f"{printable(path)}: is there already; choose another name by --out")
+    check_new(machine, new)
     return new
 
 

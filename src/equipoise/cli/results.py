@@ -72,7 +72,8 @@ def draw(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
 
     pictures = {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()}
     write_all(folder, pictures)
-    print(f"wrote {len(pictures)} pictures to {folder}", file=sys.stderr)
+    count = "1 picture" if len(pictures) == 1 else f"{len(pictures)} pictures"
+    print(f"wrote {count} to {folder}", file=sys.stderr)
 
 
 def vibration() -> ModuleType:

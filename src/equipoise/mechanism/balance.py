@@ -222,6 +222,8 @@ class Objective(Frozen):
         words = "area under" if self.measure == "area" else f"{self.measure} of"
         orders = f" (order {', '.join(f'{order:g}' for order in self.orders)})"
         about = f" about {self.about}" if self.about else ""
+        if self.speeds:
+            about += f" at {', '.join(f'{speed * 30 / pi:.6g}' for speed in self.speeds)} rpm"
         name = f"{words} {self.output}{about}{orders if self.orders else ''}"
         return name.replace("_to_", " to ")
 

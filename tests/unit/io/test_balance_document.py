@@ -55,7 +55,8 @@ def test_all_values_arrive_in_si_units() -> None:
         AddedMass("rocker", "D", Weight(mass=0.5)),
     )
     assert balance.geared == (
-        GearedWeight("rocker", Weight(radius=0.04), (0.3, 2.0), pitch_radius=0.05, direction=(0.0, 0.0),
+        GearedWeight("rocker", Weight(radius=0.04), (0.3, 2.0), pitch_radius=0.05,
+                     direction=(0.0, 0.0),
                      gear_thickness=0.008, gear_density=7850.0, clear_of=("coupler",)),
         GearedWeight("crank", Weight("disc", 0.04, 0.0, 0.008, 7800.0), teeth=(17, 80),
                      module=0.002, axis=(0.1, 0.0), gear_thickness=0.008, gear_density=7800.0,

@@ -1,0 +1,1 @@
+"""What to change so that a machine shakes less, with proof that nothing better exists."""

@@ -1,0 +1,283 @@
+"""Shafts that are added to a machine: counterweights geared to a link, and balance shafts."""
+
+from __future__ import annotations
+
+from cmath import phase, rect
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import product, starmap
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.parts import Change
+from equipoise.balancing.weights import AddedWeight
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import BalanceShafts, GearedWeight
+from equipoise.mechanism.model import Gear, Link, Machine, Vector
+from equipoise.mechanism.motion import Motion, move
+
+Array = np.ndarray[Any, Any]
+
+GRID, COARSE, WAYS = 33, 13, 24
+"""Ratios at which a range is looked at, before the best are followed to their tops; the same where
+directions are looked for too; directions."""
+LARGEST_DENOMINATOR = 3
+"""Of the ratios that are tried where the driver turns fully: turns until the shaft is back."""
+TURNS = 720
+SAME = 1e-6
+"""m: lengths that are told as equal."""
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """One choice of gears.
+
+    driver, shaft : radii of their pitch circles, m.  direction : from the driver's pin to the
+        shaft, rad.  teeth : numbers of them, where they are counted.
+    """
+
+    driver: float
+    shaft: float
+    direction: float
+    teeth: tuple[int, int] | None = None
+
+    @property
+    def ratio(self) -> float:
+        """Speed of the shaft over that of the driver, its size."""
+        return float(self.driver / self.shaft)
+
+
+class Gearing:
+    """A geared counterweight that is to be added to a machine."""
+
+    def __init__(self, machine: Machine, geared: GearedWeight) -> None:
+        self.machine, self.geared = machine, geared
+        driver = machine.links[geared.driver]
+        self.pin = next(name for name in driver.points if name in machine.frame)
+        self.at_pin = complex(*machine.frame[self.pin])
+        self.motion = move(machine, TURNS, acceleration=0.0)
+
+    @property
+    def name(self) -> str:
+        return f"{self.geared.name}-axis"
+
+    @property
+    def turns_fully(self) -> bool:
+        """Whether the driver goes round, so that only few ratios bring the shaft back."""
+        speed = self.motion.links[self.geared.driver].angular_velocity
+        return bool(abs(np.mean(speed)) > 1e-6 * abs(self.motion.speed))
+
+    @property
+    def direction(self) -> float:
+        """From the driver's pin to the shaft, rad, where it is not to be chosen."""
+        if self.geared.axis is not None:
+            return phase(complex(*self.geared.axis) - self.at_pin)
+        away = self.at_pin - complex(*self.machine.frame[self.motion.linkage.pivot])
+        return phase(away) if away else 0.0
+
+    @property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """What may be any number between two: ratio, direction."""
+        ratio, direction = self.geared.ratio, self.geared.direction
+        found = {}
+        if ratio is not None and ratio[0] < ratio[1] and not self.turns_fully:
+            found["ratio"] = ratio
+        if direction is not None and direction[0] < direction[1]:
+            found["direction"] = direction
+        return found
+
+    def meshes(self) -> list[Mesh]:
+        """Choices to try: pairs of teeth, or ratios over the range."""
+        found = list(self._choices())
+        if not found:
+            raise UsageError(self._why_none())
+        clear = [mesh for mesh in found if self.is_clear(mesh)]
+        if not clear:
+            raise UsageError(str(self._hit(found[0])))
+        return clear
+
+    def _why_none(self) -> str:
+        if self.geared.teeth is not None:
+            assert self.geared.axis is not None and self.geared.module is not None
+            apart = abs(complex(*self.geared.axis) - self.at_pin)
+            return (
+                f"the gears of the {self.geared.name} do not mesh: shafts {apart * 1e3:.5g} mm "
+                f"apart need {2 * apart / self.geared.module:.5g} teeth of module "
+                f"{self.geared.module * 1e3:.4g} mm together; move the axis, or leave it out"
+            )
+        low, high = self.geared.ratio or (0.0, 0.0)
+        return (
+            f"the {self.geared.name} has no ratio from {low:g} to {high:g} that brings it back "
+            f"within {LARGEST_DENOMINATOR} turns; give another range, or teeth"
+        )
+
+    def _choices(self) -> Iterator[Mesh]:
+        if self.geared.teeth is not None:
+            assert self.geared.module is not None
+            low, high = self.geared.teeth
+            half = self.geared.module / 2
+            counts = range(low, high + 1)
+            triples = product(counts, counts, self._directions())
+            meshes = (Mesh(half * a, half * b, way, (a, b)) for a, b, way in triples)
+            yield from (mesh for mesh in meshes if self._meets(mesh))
+        else:
+            yield from starmap(self.mesh, product(self._ratios(), self._directions()))
+
+    def _directions(self) -> list[float]:
+        if self.geared.direction is None:
+            return [self.direction]
+        low, high = self.geared.direction
+        if low == high:
+            return [low]
+        whole = high - low >= 2 * pi - 1e-9
+        return [float(d) for d in np.linspace(low, high, WAYS, endpoint=not whole)]
+
+    def _meets(self, mesh: Mesh) -> bool:
+        """Whether the gears touch on shafts whose places are given."""
+        if self.geared.axis is None:
+            return True
+        apart = abs(complex(*self.geared.axis) - self.at_pin)
+        return abs(mesh.driver + mesh.shaft - apart) < SAME
+
+    def _ratios(self) -> list[float]:
+        assert self.geared.ratio is not None
+        low, high = self.geared.ratio
+        if low == high:
+            return [low]
+        if not self.turns_fully:
+            count = COARSE if "direction" in self.ranges else GRID
+            return [float(ratio) for ratio in np.geomspace(low, high, count)]
+        fractions = {
+            Fraction(p, q)
+            for q in range(1, LARGEST_DENOMINATOR + 1)
+            for p in range(1, int(high * q) + 1)
+        }
+        return sorted(float(f) for f in fractions if low <= f <= high)
+
+    def mesh(self, ratio: float, direction: float) -> Mesh:
+        """Gears of a ratio, with the shaft in a direction from the driver's pin."""
+        if self.geared.axis is not None:
+            apart = abs(complex(*self.geared.axis) - self.at_pin)
+            driver = apart * ratio / (1 + ratio)
+            return Mesh(driver, apart - driver, direction)
+        assert self.geared.pitch_radius is not None
+        return Mesh(self.geared.pitch_radius, self.geared.pitch_radius / ratio, direction)
+
+    def axis(self, mesh: Mesh) -> complex:
+        """Place of the shaft in the frame, m."""
+        if self.geared.axis is not None:
+            return complex(*self.geared.axis)
+        return self.at_pin + rect(mesh.driver + mesh.shaft, mesh.direction)
+
+    def is_clear(self, mesh: Mesh) -> bool:
+        """Whether the counterweight runs into no link that it must stay clear of."""
+        return not self._hit(mesh)
+
+    def _hit(self, mesh: Mesh) -> str:
+        """What is wrong with where the shaft is, if anything is."""
+        axis, room = self.axis(mesh), max(self.geared.weight.radius, mesh.shaft)
+        for link in self.geared.clear_of:
+            near = nearest(self.motion, link, axis)
+            if near < room:
+                return (
+                    f"the {self.geared.name} would run into {link}, which comes within "
+                    f"{near * 1e3:.4g} mm of its shaft, while it needs {room * 1e3:.4g} mm; give "
+                    "it less room, another place, or another plane (leave the link out of clear_of)"
+                )
+        return ""
+
+    def added(self, mesh: Mesh) -> tuple[Machine, AddedWeight]:
+        """The machine with shaft and gears, and the weight that is free on the shaft."""
+        machine, geared = self.machine, self.geared
+        place: Vector = (self.axis(mesh).real, self.axis(mesh).imag)
+        mass, inertia = self._gear(mesh.shaft)
+        shaft = Link({self.name: (0.0, 0.0)}, mass, (0.0, 0.0), inertia)
+        given: dict[str, Any] = (
+            {"ratio": -mesh.ratio} if mesh.teeth is None else {"teeth": mesh.teeth}
+        )
+        machine = _with_gear(machine, geared.driver, self.pin, *self._gear(mesh.driver))
+        machine = replace(
+            machine,
+            frame={**machine.frame, self.name: place},
+            links={**machine.links, geared.name: shaft},
+            gears=(*machine.gears, Gear(geared.driver, geared.name, **given)),
+        )
+        return machine, AddedWeight(machine, geared.name, self.name, geared.weight)
+
+    def _gear(self, radius: float) -> tuple[float, float]:
+        """Mass and inertia of a gear, a solid disc."""
+        thickness, density = self.geared.gear_thickness, self.geared.gear_density
+        if thickness is None or density is None:
+            return 0.0, 0.0
+        mass = pi * radius**2 * thickness * density
+        return mass, mass * radius**2 / 2
+
+    def change(self, mesh: Mesh) -> Change:
+        """The gears, as a workshop needs them."""
+        axis = self.axis(mesh)
+        values: dict[str, Any] = {
+            "driver": self.geared.driver,
+            "ratio": mesh.ratio,
+            "pitch_radii": (mesh.driver, mesh.shaft),
+            "axis": (axis.real, axis.imag),
+        }
+        if mesh.teeth is not None:
+            values["teeth"] = mesh.teeth
+            values["module"] = self.geared.module
+        return Change("gears", self.geared.name, values)
+
+
+def _with_gear(machine: Machine, link: str, pin: str, mass: float, inertia: float) -> Machine:
+    """The machine with a disc about a pin of a link."""
+    if not mass:
+        return machine
+    body = machine.links[link]
+    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
+    at, old = complex(*body.points[pin]), complex(*body.center_of_mass)
+    whole = body.mass + mass
+    center = (body.mass * old + mass * at) / whole
+    own = body.inertia + body.mass * abs(old - center) ** 2
+    own += inertia + mass * abs(at - center) ** 2
+    return machine.with_link(
+        link, mass=whole, center_of_mass=(center.real, center.imag), inertia=own
+    )
+
+
+def nearest(motion: Motion, link: str, place: complex) -> float:
+    """How near a link's points, and the lines between them, come to a place over a turn, m."""
+    points = [motion.points[name].place for name in motion.machine.links[link].points]
+    least = min(float(np.min(np.abs(p - place))) for p in points)
+    for k, one in enumerate(points):
+        for other in points[k + 1 :]:
+            along = other - one
+            share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-30)
+            foot = one + np.clip(share, 0.0, 1.0) * along
+            least = min(least, float(np.min(np.abs(foot - place))))
+    return least
+
+
+def with_shafts(machine: Machine, shafts: BalanceShafts) -> tuple[Machine, list[AddedWeight]]:
+    """The machine with two balance shafts, and the weight that is free on each.
+
+    The first is geared to the drive's link and turns against it; the second is geared to the
+    first, and turns with the drive's link: a pair of gears from outside each time.
+    """
+    names = [f"{shafts.name}-{k}" for k in (1, 2)]
+    points = [f"{name}-axis" for name in names]
+    frame = {**machine.frame, **dict(zip(points, shafts.axes, strict=True))}
+    empty = {
+        name: Link({point: (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0)
+        for name, point in zip(names, points, strict=True)
+    }
+    gears = (
+        Gear(machine.drive.link, names[0], ratio=-float(shafts.order)),
+        Gear(names[0], names[1], ratio=-1.0),
+    )
+    machine = replace(
+        machine, frame=frame, links={**machine.links, **empty}, gears=(*machine.gears, *gears)
+    )
+    pairs = zip(names, points, strict=True)
+    return machine, [AddedWeight(machine, n, p, shafts.weight) for n, p in pairs]

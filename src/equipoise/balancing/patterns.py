@@ -1,0 +1,205 @@
+"""Arrangements of rows in fixed phases: Table 5 of Yamashita, Ichikawa and Mori, and its rule.
+
+Rows that differ by phase only leave of order n the share |sum_k exp(i n phi_k)| of one row's
+amplitude: the number of rows that are in phase there.  Their force twists the machine, about the
+axes x and y, by the lever |sum_k z_k exp(i n phi_k)| with z_k the lateral place.
+
+The table has for four claws (a) 0, pi, 3 pi/2, pi/2 and (b) 0, pi, pi, 0; for six (a) 0, pi, 0, pi,
+pi, 0, (b) 0, pi, pi, 0, 0, pi, (c) 0, pi, 0, pi, 3 pi/2, pi/2 and (d) 0, pi, 3 pi/2, pi/2, pi, 0.
+What it tells of them is computed here: which orders of how many claws are left, and whether the
+rest twists.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import lcm, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.support import Row
+
+Array = np.ndarray[Any, Any]
+Fractions = tuple[tuple[int, int], ...]
+
+ROUNDING = 1e-9
+"""Rows, and spacings, that are rounding."""
+TABLE = "Table 5"
+
+
+@dataclass(frozen=True)
+class Pattern:
+    """Phases of rows side by side at equal spacing, as parts of a turn.
+
+    parts : (numerator, denominator) of the turn by which each row's crank is ahead.
+    source : where it is printed.
+    """
+
+    name: str
+    parts: Fractions
+    source: str = ""
+
+    @property
+    def rows(self) -> int:
+        return len(self.parts)
+
+    @property
+    def phases(self) -> tuple[float, ...]:
+        """rad."""
+        return tuple(2 * pi * top / bottom for top, bottom in self.parts)
+
+    @property
+    def cycle(self) -> int:
+        """Orders after which everything repeats: all rows are in phase at its multiples."""
+        return lcm(*(bottom for _, bottom in self.parts))
+
+    def in_phase(self, order: int) -> float:
+        """How many rows' worth of an order is left."""
+        return float(abs(np.sum(self._turned(order))))
+
+    def lever(self, order: int) -> float:
+        """Lever of an order's twist, in spacings of the rows, per row's force."""
+        return float(abs(np.sum(np.array(self.places) * self._turned(order))))
+
+    def _turned(self, order: int) -> Array:
+        # Whole numbers first: what is left of a sum that vanishes is then rounding of one turn.
+        parts = np.array([(order * top) % bottom / bottom for top, bottom in self.parts])
+        return np.exp(2j * pi * parts)
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Lateral places in spacings, about the middle."""
+        return tuple(k - (self.rows - 1) / 2 for k in range(self.rows))
+
+    @property
+    def remaining(self) -> Mapping[int, float]:
+        """Order -> how many rows' worth is left, for the orders up to the cycle that are left."""
+        orders = range(1, self.cycle + 1)
+        return {n: rows for n in orders if (rows := self.in_phase(n)) > ROUNDING}
+
+    @property
+    def twists(self) -> bool:
+        """Whether any order has a roll or yaw moment."""
+        return any(self.lever(order) > ROUNDING for order in range(1, self.cycle + 1))
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output; rad, rows and spacings."""
+        return {
+            "name": self.name,
+            "source": self.source,
+            "phases": list(self.phases),
+            "cycle": self.cycle,
+            "remaining": {str(order): rows for order, rows in self.remaining.items()},
+            "levers": {str(n): self.lever(n) for n in range(1, self.cycle + 1)},
+            "twists": self.twists,
+        }
+
+
+def _of_quarters(name: str, text: str, source: str = TABLE) -> Pattern:
+    """From quarters of a turn, one digit a row."""
+    reduced = {"0": (0, 1), "1": (1, 4), "2": (1, 2), "3": (3, 4)}
+    return Pattern(name, tuple(reduced[digit] for digit in text), source)
+
+
+PATTERNS: dict[str, Pattern] = {
+    pattern.name: pattern
+    for pattern in (
+        _of_quarters("2 opposed", "02", "section 5-5"),
+        _of_quarters("4 quarter turns", "0231", f"{TABLE}, 4 claws (a)"),
+        _of_quarters("4 mirrored", "0220", f"{TABLE}, 4 claws (b)"),
+        _of_quarters("6 alternate", "020220", f"{TABLE}, 6 claws (a)"),
+        _of_quarters("6 in pairs", "022002", f"{TABLE}, 6 claws (b)"),
+        _of_quarters("6 quarter turns at the end", "020231", f"{TABLE}, 6 claws (c)"),
+        _of_quarters("6 quarter turns within", "023120", f"{TABLE}, 6 claws (d)"),
+    )
+}
+"""Name -> pattern: what is printed."""
+
+
+def halving(rows: int) -> tuple[float, ...]:
+    """Phases (rad) by the rule (a) of section 5-6, for 2, 4, 8 ... rows.
+
+    Two rows half a turn apart are a pair, which leaves the even orders; two pairs a quarter apart
+    are four, which leave every fourth; and so on: orders that are no multiple of the number of rows
+    vanish.
+
+    Raises
+    ------
+    UsageError : the number of rows is no power of two.
+    """
+    return Pattern("", _halved(rows)).phases
+
+
+def _halved(rows: int) -> Fractions:
+    if rows < 2 or rows & (rows - 1):
+        raise UsageError(f"got {rows} rows; halving needs 2, 4, 8 or another power of two")
+    parts = [(0, 1)]
+    count = 1
+    while count < rows:
+        count *= 2
+        parts += [_added(part, (1, count)) for part in parts]
+    return tuple(parts)
+
+
+def _added(one: tuple[int, int], other: tuple[int, int]) -> tuple[int, int]:
+    bottom = max(one[1], other[1])
+    return (one[0] * bottom // one[1] + other[0] * bottom // other[1], bottom)
+
+
+def patterns_for(rows: int) -> tuple[Pattern, ...]:
+    """Patterns of a number of rows: those printed, by the rule of halving, and evenly spaced ones.
+
+    Raises
+    ------
+    UsageError : there are fewer than two rows.
+    """
+    if rows < 2:
+        raise UsageError(f"got {rows} rows; give two at least")
+    found = [pattern for pattern in PATTERNS.values() if pattern.rows == rows]
+    if rows >= 8 and not rows & (rows - 1):
+        found.append(Pattern(f"{rows} halved", _halved(rows), "section 5-6 (a)"))
+    if rows not in {2, 4}:  # where they are printed already
+        found.append(Pattern(f"{rows} evenly spread", tuple((k, rows) for k in range(rows))))
+    if rows >= 6 and rows % 2 == 0:
+        half = [(k, rows // 2) for k in range(rows // 2)]
+        found.append(Pattern(f"{rows} mirrored", (*half, *half[::-1])))
+    return tuple(found)
+
+
+def pattern_named(name: str) -> Pattern:
+    """The pattern of a name, which begins with its number of rows.
+
+    Raises
+    ------
+    UsageError : there is none.
+    """
+    first = name.partition(" ")[0]
+    count = int(first) if first.isdecimal() and len(first) < 4 else 0
+    known = {pattern.name: pattern for pattern in patterns_for(count)} if count > 1 else PATTERNS
+    if name not in known:
+        raise UsageError(unknown(name, known, "pattern"))
+    return known[name]
+
+
+def arranged(machine: Machine, pattern: str | Pattern, spacing: float) -> Machine:
+    """The machine with rows side by side in a pattern, about the plane of the file.
+
+    spacing : from row to row, m.  An offset of the machine's first row is kept.
+
+    Raises
+    ------
+    UsageError : there is no such pattern, or the spacing is not above 0.
+    """
+    chosen = pattern_named(pattern) if isinstance(pattern, str) else pattern
+    if not 0 < spacing < float("inf"):
+        raise UsageError(f"got a spacing of {spacing:g} m; give more than 0")
+    offset = machine.rows[0].offset if machine.rows else (0.0, 0.0)
+    return machine.with_rows(
+        Row(phase, spacing * place, offset)
+        for phase, place in zip(chosen.phases, chosen.places, strict=True)
+    )

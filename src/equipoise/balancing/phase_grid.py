@@ -1,0 +1,218 @@
+"""All arrangements of phases on a grid, those that differ by symmetry only counted once.
+
+A mean square of a sum of rows is a sum over pairs, since orders do not mix:
+
+    sum_n |S_n|^2 = const + sum_(j<k) G_jk(phi_k - phi_j)
+    G_jk(d) = 2 Re sum_n T*_jn T_kn exp(i n d)
+
+so that tables of G over the grid give it for millions of arrangements.  Other measures are taken
+from samples of the signal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from math import comb, prod
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.phase_cost import Cost, Term, by_orders, size
+from equipoise.mechanism.balance import Measure
+from equipoise.signals import synthesis
+
+Array = np.ndarray[Any, Any]
+
+MOST = 5_000_000
+"""Arrangements that are looked at."""
+MOST_PAIRS, MOST_SAMPLES = 150_000_000, 1_000_000_000
+"""Look-ups of pairs, and samples, that one search may take: some ten seconds."""
+CHUNK, SAMPLED_CHUNK = 50_000, 4_000
+SAMPLES = 96
+"""In a turn, on which peaks are judged until they are polished."""
+FEWEST = 4
+"""Phases in a turn below which a grid tells nothing."""
+KEPT = 3_000
+"""Best arrangements among which different ones are looked for."""
+SAME = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Arrangements of the rows on phases that are whole multiples of a step; row 1 is at 0.
+
+    levels : how many phases there are in a period.
+    """
+
+    cost: Cost
+    levels: int
+
+    @property
+    def step(self) -> float:
+        """rad."""
+        return self.cost.period / self.levels
+
+    @cached_property
+    def groups(self) -> tuple[tuple[int, ...], ...]:
+        """Rows but the first, by which of them may be swapped without any effect."""
+        return tuple(
+            rest for group in alike(self.cost) if (rest := tuple(k for k in group if k > 0))
+        )
+
+    @property
+    def count(self) -> int:
+        """Number of arrangements: within a group only the sorted ones."""
+        return prod(comb(self.levels + len(group) - 1, len(group)) for group in self.groups)
+
+    @property
+    def affordable(self) -> bool:
+        """Whether all arrangements can be looked at."""
+        rows, terms = self.cost.rows, self.cost.terms
+        summed = sum(
+            term.signals.amplitudes[:, :, :, 0].size * self._samples
+            for term in terms
+            if not by_orders(term.measure)
+        )
+        pairs = rows * (rows - 1) // 2 * sum(by_orders(term.measure) for term in terms)
+        count = self.count
+        return count <= MOST and count * pairs <= MOST_PAIRS and count * summed <= MOST_SAMPLES
+
+    @property
+    def _samples(self) -> int:
+        return SAMPLES * self.cost.terms[0].signals.turns
+
+    def best(self, progress: Callable[[int], None]) -> Array:
+        """The best arrangements (R, m), rad, the best first; `progress` hears how many are done."""
+        sampled = any(not by_orders(term.measure) for term in self.cost.terms)
+        judges = [self._judge(term) for term in self.cost.terms]
+        levels, costs = np.zeros((0, self.cost.rows), np.int64), np.zeros(0)
+        done = 0
+        for chunk in self._chunks(SAMPLED_CHUNK if sampled else CHUNK):
+            found = self.cost.of([judge(chunk) for judge in judges])
+            levels, costs = np.vstack([levels, chunk]), np.concatenate([costs, found])
+            if len(costs) > KEPT:
+                best = np.argpartition(costs, KEPT)[:KEPT]
+                levels, costs = levels[best], costs[best]
+            done += len(chunk)
+            progress(done)
+        found = levels[np.argsort(costs, kind="stable")] * self.step
+        return np.asarray(found)
+
+    def _chunks(self, size: int) -> Iterator[Array]:
+        """Numbers of steps (B, m) of all arrangements, some at a time."""
+        parts = [sorted_choices(self.levels, len(group)) for group in self.groups]
+        for start in range(0, self.count, size):
+            left = np.arange(start, min(start + size, self.count))
+            chunk = np.zeros((len(left), self.cost.rows), np.int64)
+            for group, part in zip(self.groups, parts, strict=True):
+                left, here = np.divmod(left, len(part))
+                chunk[:, group] = part[here]
+            yield chunk
+
+    def _judge(self, term: Term) -> Callable[[Array], Array]:
+        return self._by_pairs(term) if by_orders(term.measure) else self._by_samples(term)
+
+    def _by_pairs(self, term: Term) -> Callable[[Array], Array]:
+        """Value (B,) of numbers of steps (B, m), by the pairs' tables."""
+        amplitudes = term.signals.amplitudes * np.sqrt(term.shares)
+        turning = np.exp(1j * np.outer(term.signals.orders, np.arange(self.levels) * self.step))
+        constant = np.sum(np.abs(amplitudes) ** 2, axis=(1, 2, 3))
+        pairs = list(combinations(range(self.cost.rows), 2))
+
+        def table_of(j: int, k: int) -> Array:
+            product = np.sum(amplitudes[:, j].conj() * amplitudes[:, k], axis=1)
+            return np.ascontiguousarray(2 * (product @ turning).real.T)
+
+        tables = [table_of(j, k) for j, k in pairs]
+
+        def judge(levels: Array) -> Array:
+            total = np.broadcast_to(constant, (len(levels), len(constant))).copy()
+            for (j, k), table in zip(pairs, tables, strict=True):
+                total += table[(levels[:, k] - levels[:, j]) % self.levels]
+            return np.asarray(np.sqrt(np.maximum(np.max(total, axis=1), 0.0)))
+
+        return judge
+
+    def _by_samples(self, term: Term) -> Callable[[Array], Array]:
+        """Value (B,) of numbers of steps (B, m), by samples of the signal."""
+        phases = np.arange(self.levels) * self.step
+        turned = term.signals.turned(np.repeat(phases[:, None], self.cost.rows, axis=1))
+        theta = np.arange(self._samples) * (2 * np.pi / self._samples)
+        samples = synthesis(turned, theta).astype(np.float32)
+
+        def judge(levels: Array) -> Array:
+            found = sum(samples[levels[:, k], :, k] for k in range(self.cost.rows))
+            values = np.asarray(found)
+            values = values[:, :, 0] if values.shape[2] == 1 else size(values)
+            return np.asarray(np.max(_sampled(values, term.measure), axis=1), float)
+
+        return judge
+
+
+def _sampled(values: Array, measure: Measure) -> Array:
+    """Measure (...) of sampled signals (..., N)."""
+    if measure == "area":
+        return np.asarray(2 * np.pi * np.mean(np.abs(values), axis=-1))
+    high, low = np.max(values, axis=-1), np.min(values, axis=-1)
+    return np.asarray(high - low if measure == "peak_to_peak" else np.maximum(high, -low))
+
+
+def alike(cost: Cost) -> list[list[int]]:
+    """Rows that do the same to every objective, by groups; what does not vary is left out."""
+    signals = [term.signals.amplitudes[..., 1:] for term in cost.terms]
+    groups: list[list[int]] = []
+    for k in range(cost.rows):
+        for group in groups:
+            if all(_same(a[:, group[0]], a[:, k], a) for a in signals):
+                group.append(k)
+                break
+        else:
+            groups.append([k])
+    return groups
+
+
+def _same(one: Array, other: Array, whole: Array) -> bool:
+    return bool(np.max(np.abs(one - other)) <= SAME * np.max(np.abs(whole)))
+
+
+def sorted_choices(levels: int, count: int) -> Array:
+    """All rising choices (R, count) of `count` numbers below `levels`, with repetition."""
+    found = np.arange(levels, dtype=np.int64)[:, None]
+    for _ in range(count - 1):
+        last = found[:, -1]
+        many = levels - last
+        first = np.repeat(np.cumsum(many) - many, many)
+        added = np.arange(int(many.sum())) - first + np.repeat(last, many)
+        found = np.hstack([np.repeat(found, many, axis=0), added[:, None]])
+    return found
+
+
+def distinct(found: Array, period: float, apart: Sequence[float], most: int) -> Array:
+    """The first arrangements (R, m) that differ from all before them, (S, m).
+
+    apart : distances in the phase of some row, rad, the widest first; `most` of each.
+    """
+    kept: list[int] = []
+    for distance in apart:
+        wanted = len(kept) + most
+        for k, phases in enumerate(found):
+            if len(kept) >= wanted:
+                break
+            off = np.abs((found[kept] - phases + period / 2) % period - period / 2)
+            if not kept or np.min(np.max(off, axis=1)) > distance * (1 + 1e-9):
+                kept.append(k)
+    return found[kept]
+
+
+def coarsened(cost: Cost, levels: int) -> Grid | None:
+    """The finest grid that can be looked at as a whole, of divisors of `levels`."""
+    least = FEWEST * cost.terms[0].signals.turns
+    for divisor in range(1, levels // least + 1):
+        if levels % divisor == 0:
+            grid = Grid(cost, levels // divisor)
+            if grid.affordable:
+                return grid
+    return None

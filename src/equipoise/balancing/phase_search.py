@@ -1,0 +1,225 @@
+"""The search for phases: a grid, its best cells polished, and equal rows swapped against twist."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import combinations, permutations
+from math import ceil, degrees, factorial, pi, prod
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.phase_cost import NOTHING, Combine, Cost, Term
+from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct
+from equipoise.balancing.phase_polish import polished
+from equipoise.balancing.row_outputs import Rows, RowSignals
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.balance import Objective, Phases
+from equipoise.mechanism.model import Machine
+
+Array = np.ndarray[Any, Any]
+Progress = Callable[[int, int], None]
+"""Is called with the arrangements looked at, and how many there are to look at."""
+
+CANDIDATES, COARSE_CANDIDATES = 16, 40
+"""Cells that are polished of each distance apart; where the first grid had to be coarse."""
+GUESSES, FEW_LEVELS = 300, 12
+"""Random starts over the number of rows, where a turn of the first grid has so few phases."""
+WIDE = pi / 6
+"""rad, apart from which cells are in different valleys of the first orders."""
+BETTER = 1e-9
+"""Share by which a value must fall to count as better."""
+MOST_SWAPS, MOST_BEST, MOST_ROUNDS = 50_000, 8, 100
+"""Orders of equal rows, and arrangements that are as good, among which the twist decides; where
+there are more orders, so many times the best swap of two rows is made."""
+
+
+@dataclass(frozen=True, eq=False)
+class Search:
+    """Phases are relative to row 1 here, rad.
+
+    Raises
+    ------
+    ModelError, UsageError : there is nothing to search.
+    """
+
+    machine: Machine
+    objectives: tuple[Objective, ...]
+    phases: Phases
+    combine: Combine
+
+    def __post_init__(self) -> None:
+        count, step = len(self.machine.rows), self.phases.step
+        if count < 2:
+            raise ModelError(
+                "rows", f"got {count} rows, which leaves no phase to choose; give two at least"
+            )
+        if not self.objectives:
+            raise UsageError("got no objective; give what is to become small")
+        if not 0 < step <= pi / 2 * (1 + 1e-12):
+            raise UsageError(
+                f"got a step of {degrees(step):g} deg; give more than 0 deg and at most 90 deg"
+            )
+
+    @cached_property
+    def present(self) -> Array:
+        """Phases (m,) of the machine as it is."""
+        found = np.array([row.phase for row in self.machine.rows])
+        return np.asarray(found - found[0])
+
+    @cached_property
+    def rows(self) -> Rows:
+        return Rows(self.machine)
+
+    @cached_property
+    def force(self) -> RowSignals:
+        """Shaking force of the rows."""
+        return self.rows.signals(Objective("shaking_force"))
+
+    @cached_property
+    def cost(self) -> Cost:
+        terms = tuple(self._term(k, wish) for k, wish in enumerate(self.objectives, 1))
+        return Cost(terms, self.combine)
+
+    def _term(self, number: int, objective: Objective) -> Term:
+        term = Term(objective, self.rows.signals(objective, f"objectives[{number}]"))
+        if not term.influenced:
+            raise UsageError(
+                f"{objective.name}: no phase changes it; choose another output, measure or orders"
+            )
+        before = float(term.values(self.present))
+        return replace(term, scale=term.single if self.vanishes(term) else before)
+
+    def vanishes(self, term: Term) -> bool:
+        """Whether an objective is 0 already, so that it counts over the sum of all rows alone."""
+        return float(term.values(self.present)) <= BETTER * term.single
+
+    @cached_property
+    def levels(self) -> int:
+        """Steps in a period."""
+        return ceil(2 * pi / self.phases.step * (1 - 1e-9)) * self.force.turns
+
+    @property
+    def step(self) -> float:
+        """The step asked for, made smaller until it divides a turn, rad."""
+        return self.cost.period / self.levels
+
+    @cached_property
+    def grid(self) -> Grid | None:
+        """The first grid; None where even the coarsest one has too many arrangements."""
+        return coarsened(self.cost, self.levels)
+
+    # -- search ------------------------------------------------------------------------------------
+
+    def pool(self, progress: Progress) -> Array:
+        """Arrangements (R, m) among which the best one is, the present one first."""
+        found = [self.present]
+        for start in self._starts(progress):
+            cell = self._descended(start)
+            found.append(self._snapped(polished(self.cost, cell, self.step)))
+        return np.array(found)
+
+    def _starts(self, progress: Progress) -> Array:
+        """The best cells (S, m) of the grid; and the present and the equally spaced phases."""
+        grid, rows = self.grid, self.cost.rows
+        first = [self.present, np.arange(rows) * (self.cost.period / rows)]
+        if grid is None or grid.levels < FEW_LEVELS * self.force.turns:
+            first += list(self._guesses())
+        if grid is None:
+            progress(len(first), len(first))
+            return np.array(first)
+        cells = grid.best(lambda done: progress(done, grid.count))
+        most = CANDIDATES if grid.levels == self.levels else COARSE_CANDIDATES
+        apart = sorted({max(WIDE, grid.step), grid.step}, reverse=True)
+        return np.vstack([*first, distinct(cells, self.cost.period, apart, most)])
+
+    def _guesses(self) -> Array:
+        count = max(2, GUESSES // self.cost.rows)
+        found = np.random.default_rng(1).uniform(0.0, self.cost.period, (count, self.cost.rows))
+        found[:, 0] = 0.0
+        return found
+
+    def _descended(self, phases: Array) -> Array:
+        """The arrangement from which no single row can be moved by a step for the better."""
+        each = np.eye(len(phases))[1:]
+        moves = self.step * np.vstack([np.zeros(len(phases)), each, -each])
+        for _ in range(self.levels if self.grid is not None else 0):
+            values = self.cost.values(phases + moves)
+            best = int(np.argmin(values))
+            if not values[best] < values[0] * (1 - BETTER):
+                break
+            phases = phases + moves[best]
+        return phases
+
+    def _snapped(self, phases: Array) -> Array:
+        """Phases on the grid where they are there but for rounding."""
+        near = np.round(phases / self.step) * self.step
+        near = np.where(np.abs(near - phases) < 1e-6, near, phases)
+        as_good = self.cost.values(near) <= self.cost.values(phases) + NOTHING * self._whole
+        return np.asarray((near if as_good else phases) % self.cost.period)
+
+    @cached_property
+    def _whole(self) -> float:
+        """Combined value of all rows without any cancelling."""
+        return float(self.cost.of([term.single for term in self.cost.terms]))
+
+    # -- choice ------------------------------------------------------------------------------------
+
+    def best(self, pool: Array) -> Array:
+        """The best arrangement (m,); the present one, which is the first, if none is better.
+
+        Of those that are as good, and of those that swap equal rows, it is the one with the least
+        roll and yaw moment, as section 5-5 of Yamashita, Ichikawa and Mori wants rows arranged.
+        """
+        values = self.cost.values(pool)
+        limit = np.min(values) * (1 + BETTER) + NOTHING * self._whole
+        if values[0] <= limit:
+            return np.asarray(pool[0])
+        good = distinct(pool[values <= limit], self.cost.period, [1e-6], MOST_BEST)
+        laid = [self._laid_out(phases) for phases in good]
+        twist = np.array([float(self._twist(phases)[0]) for phases in laid])
+        found = laid[int(np.argmax(twist <= np.min(twist) + BETTER * np.max(twist)))]
+        return np.asarray((found - found[0]) % self.cost.period)
+
+    def _laid_out(self, phases: Array) -> Array:
+        """The phases (m,), swapped among equal rows until they twist least."""
+        groups = alike(self.cost)
+        rows = np.arange(len(phases))
+        if prod(factorial(len(group)) for group in groups) <= MOST_SWAPS:
+            orders = rows[None]
+            for group in groups:
+                swapped = np.array(list(permutations(group)))
+                orders = np.repeat(orders, len(swapped), axis=0)
+                orders[:, group] = np.tile(swapped, (len(orders) // len(swapped), 1))
+            return self._least(phases, orders)
+        pairs = [pair for group in groups for pair in combinations(group, 2)]
+        orders = np.repeat(rows[None], len(pairs) + 1, axis=0)
+        for order, (j, k) in zip(orders[1:], pairs, strict=True):
+            order[[j, k]] = k, j
+        for _ in range(MOST_ROUNDS):
+            found = self._least(phases, orders)
+            if found is phases:
+                break
+            phases = found
+        return phases
+
+    def _least(self, phases: Array, orders: Array) -> Array:
+        """The phases (m,) in the order of all (P, m) that twists least; as given if none does."""
+        twist = self._twist(phases, orders)
+        best = int(np.argmax(twist <= np.min(twist) + BETTER * np.max(twist)))
+        return phases if best == 0 else np.asarray(phases[orders[best]])
+
+    def _twist(self, phases: Array, orders: Array | None = None) -> Array:
+        """Mean square (P,) of roll and yaw moment together, N2 m2, with phases (m,) in orders.
+
+        sum_n |F_n|^2 / 2 |sum_k z_k exp(i n phi_k)|^2 is a sum over pairs of rows.
+        """
+        orders = np.arange(len(phases))[None] if orders is None else orders
+        sizes = np.sum(np.abs(self.force.amplitudes[0, 0, :, 1:]) ** 2, axis=0) / 2
+        turning = np.exp(1j * np.outer(phases, self.force.orders[1:]))
+        pairs = ((sizes * turning) @ turning.conj().T).real
+        lateral = np.array([row.lateral for row in self.machine.rows])
+        swapped = pairs[orders[:, :, None], orders[:, None, :]]
+        return np.asarray(np.einsum("j,pjk,k->p", lateral, swapped, lateral))

@@ -1,0 +1,308 @@
+"""A plan of balancing as a cone program: numbers, limits, and what is to become small."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.gauges import Near, gauge_signals, supports_more
+from equipoise.balancing.measures import Signal, bound_measure, measured
+from equipoise.balancing.parts import MovedCenter, Part, Square, with_parameters
+from equipoise.balancing.program import Affine, Program
+from equipoise.balancing.springs import FreeSpring
+from equipoise.balancing.weights import AddedWeight
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import Balance, Limit, Objective
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parameters import parameter_values
+
+Array = np.ndarray[Any, Any]
+
+WITHOUT_EFFECT = 1e-9
+"""Over the RMS of an output: change by a unit of every number that is taken for none."""
+ROUNDING = 1e-11
+"""Over the effect of a unit of a number: an objective that is nothing but rounding."""
+ADDED = "added mass"
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """What is asked of a machine.
+
+    machine : as it is.  start : the machine from which the parts' numbers count: with its geared
+        shafts, and moved centres of mass in the origin.
+    parts : what is free.  close : a machine near the solution, whose mass gauges are read with.
+    """
+
+    machine: Machine
+    plan: Balance
+    start: Machine
+    parts: tuple[Part, ...]
+    close: Near
+
+    @classmethod
+    def of(
+        cls,
+        machine: Machine,
+        plan: Balance,
+        with_shafts: Machine | None = None,
+        more: Sequence[Part] = (),
+    ) -> Problem:
+        """From a plan; `with_shafts` is the machine with geared shafts, whose parts are `more`."""
+        base = machine if with_shafts is None else with_shafts
+        parts: list[Part] = [MovedCenter(base, move) for move in plan.moves]
+        parts += [AddedWeight(base, m.link, m.at, m.weight) for m in plan.masses]
+        parts += [*more, *(FreeSpring(base, choice) for choice in plan.springs)]
+        _name_apart(parts)
+        start = base
+        for move in plan.moves:
+            start = start.with_link(move.link, center_of_mass=(0.0, 0.0))
+        return cls(machine, plan, start, tuple(parts), Near(machine))
+
+    def near(self, numbers: list[Array]) -> Problem:
+        """The same, with gauges read as they are near the machine of some numbers."""
+        there = replace(self, close=Near(self.machine_with(numbers), np.concatenate(numbers)))
+        there.__dict__.update(before=self.before, effects=self.effects)
+        return there
+
+    @cached_property
+    def supports_more(self) -> bool:
+        """Whether the support's mass depends on the numbers."""
+        return supports_more(self.effects, self.start)
+
+    @property
+    def asked(self) -> tuple[Objective, ...]:
+        """Every output and measure that counts."""
+        return (*self.plan.objectives, *(limit.objective for limit in self.plan.limits))
+
+    @property
+    def reads_gauges(self) -> bool:
+        """Whether the support's vibration counts."""
+        return any(one.output.startswith("gauges.") for one in self.asked)
+
+    @cached_property
+    def before(self) -> dict[str, float]:
+        """Value of each objective and limit of the machine as it is."""
+        return {one.name: self.value_of(self.machine, one) for one in self.asked}
+
+    @staticmethod
+    def value_of(machine: Machine, objective: Objective) -> float:
+        """Value of an objective for a machine, read off the machine itself."""
+        signals = _signals(Effects(machine, ()), objective, Near(machine))
+        return max(measured(signal.start, objective.measure) for signal in signals)
+
+    def cost_of(self, machine: Machine) -> float:
+        """What is to become small, for a machine; 1 for each unit of weight before."""
+        return self.plan.combined(
+            [self.value_of(machine, one) / self._scale(one) for one in self.plan.objectives]
+        )
+
+    def cost_at(self, numbers: list[Array]) -> float:
+        """The same for the parts' numbers, as the program has it."""
+        x = np.concatenate(numbers)
+        return self.plan.combined(
+            [
+                max(measured(signal.at(x), one.measure) for signal in self.signals[one.name])
+                for one in self.plan.objectives
+            ]
+        )
+
+    def _scale(self, objective: Objective) -> float:
+        return self.before[objective.name] or 1.0
+
+    @cached_property
+    def effects(self) -> Effects:
+        return Effects(self.start, self.parts)
+
+    @cached_property
+    def signals(self) -> dict[str, list[Signal]]:
+        """Signals of each objective and limit, over the value before."""
+        found = {}
+        for one in self.asked:
+            if one.name not in found:
+                signals = _signals(self.effects, one, self.close)
+                found[one.name] = [signal.divided(self._scale(one)) for signal in signals]
+        return found
+
+    def check_influence(self) -> None:
+        """Refuse an objective that is 0 already, or that nothing free can change."""
+        for one in self.plan.objectives:
+            if self._is_nothing(one):
+                raise UsageError(f"the {one.name} is 0 already; choose another objective")
+            if self._effect(one) < WITHOUT_EFFECT:
+                raise UsageError(
+                    f"nothing that is free to change has an effect on the {one.name}; free "
+                    "something else, or choose another objective"
+                )
+        for limit in self.plan.limits:
+            if limit.ratio is not None and self._is_nothing(limit.objective):
+                raise UsageError(
+                    f"the {limit.name} is 0 before, of which there is no share; give the limit in "
+                    "a unit"
+                )
+
+    def _is_nothing(self, objective: Objective) -> bool:
+        """Whether a value before is but rounding beside what a unit of any number does."""
+        effect = self._effect(objective) * self._scale(objective)
+        return self.before[objective.name] < ROUNDING * effect
+
+    def _effect(self, objective: Objective) -> float:
+        """The largest effect of a unit of any number, over the value before."""
+        signals = self.signals[objective.name]
+        return max(float(np.max(np.abs(signal.columns), initial=0.0)) for signal in signals)
+
+    @cached_property
+    def built(self) -> Built:
+        """The program of everything that is asked."""
+        program = Program()
+        places = [program.numbers(part.count) for part in self.parts]
+        squares = [
+            square
+            for part, at in zip(self.parts, places, strict=True)
+            for square in part.constrain(program, at)
+        ]
+        self._limit_added(program, places)
+        numbers = np.concatenate(places)
+        terms = [self._term(program, numbers, one) for one in self.plan.objectives]
+        for limit in self.plan.limits:
+            self._limit(program, numbers, limit)
+        self._cost(program, terms)
+        return Built(program, places, self._that_matter(squares, numbers))
+
+    def _limit_added(self, program: Program, places: list[Array]) -> None:
+        if self.plan.added_mass is None:
+            return
+        masses, units = self.added_masses(places)
+        if len(masses):
+            slope = Affine.of([], np.zeros((1, 0)), 1.0)
+            program.nonnegative(Affine.of(masses, -units, self.plan.added_mass), ADDED, slope)
+
+    def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
+        """Places of the numbers that are added masses, and a unit of each, kg."""
+        found = [
+            (at[part.mass_place], part.mass_unit)
+            for part, at in zip(self.parts, places, strict=True)
+            if part.mass_place is not None
+        ]
+        masses, units = zip(*found, strict=True) if found else ((), ())
+        return np.array(masses, dtype=int), np.array(units)
+
+    def _term(self, program: Program, numbers: Array, objective: Objective) -> int:
+        """Place of a number that is at least the objective, over its value before."""
+        term = program.numbers(1)
+        for signal in self.signals[objective.name]:
+            bound_measure(program, numbers, signal, objective.measure, Affine.of(term, 1.0))
+        return int(term[0])
+
+    def _limit(self, program: Program, numbers: Array, limit: Limit) -> None:
+        scale = self._scale(limit.objective)
+        at_most = limit.ratio if limit.at_most is None else limit.at_most / scale
+        bound = Affine.of([], np.zeros((1, 0)), at_most)
+        for signal in self.signals[limit.name]:
+            bound_measure(program, numbers, signal, limit.objective.measure, bound, limit.name)
+
+    def _cost(self, program: Program, terms: list[int]) -> None:
+        weights = [one.weight for one in self.plan.objectives]
+        if self.plan.combine == "sum" or len(terms) == 1:
+            program.cost = dict(zip(terms, weights, strict=True))
+            return
+        whole = program.numbers(1)
+        factors = np.diag([1.0, *weights])
+        program.cones(Affine.of([int(whole[0]), *terms], factors), len(factors))
+        program.cost = {int(whole[0]): 1.0}
+
+    def _that_matter(self, squares: list[Square], numbers: Array) -> list[Square]:
+        """Squares whose lifts change an objective or a limited output."""
+        place_of = {int(place): k for k, place in enumerate(numbers)}
+        return [square for square in squares if self._matters[place_of[square.lift]]]
+
+    @cached_property
+    def _matters(self) -> Array:
+        """Whether each number (K,) changes an objective or a limited output."""
+        return self._change(self.asked)
+
+    def _change(self, outputs: Iterable[Objective]) -> Array:
+        """Whether each number (K,) changes any of some outputs."""
+        signals = [signal for one in outputs for signal in self.signals[one.name]]
+        sizes = [np.max(np.abs(signal.columns), axis=1, initial=0.0) for signal in signals]
+        return np.asarray(np.max(sizes, axis=0) > WITHOUT_EFFECT)
+
+    @property
+    def leaves_masses_open(self) -> bool:
+        """Whether there is an added mass that no objective depends on."""
+        counts = np.cumsum([0, *(part.count for part in self.parts)])
+        masses = [
+            start + part.mass_place
+            for start, part in zip(counts, self.parts, strict=False)
+            if part.mass_place is not None
+        ]
+        return not np.all(self._change(self.plan.objectives)[masses])
+
+    def mass_added(self, numbers: list[Array]) -> float:
+        """Mass of weights and gears, kg."""
+        masses = [sum(link.mass or 0.0 for link in m.links.values()) for m in self._ends]
+        pairs = zip(self.parts, numbers, strict=True)
+        weights = [own @ part.effect[:, 0] for part, own in pairs]
+        return masses[0] - masses[1] + float(sum(weights))
+
+    @property
+    def _ends(self) -> tuple[Machine, Machine]:
+        return self.start, self.machine
+
+    def split(self, x: Array) -> list[Array]:
+        """The numbers of each part, tightened."""
+        return self.tightened([x[at] for at in self.built.places])
+
+    def tightened(self, numbers: list[Array]) -> list[Array]:
+        """Squares made equal; of numbers that do not matter, the least that are possible."""
+        ends = np.cumsum([part.count for part in self.parts])[:-1]
+        matters = np.split(self._matters, ends)
+        triples = zip(self.parts, numbers, matters, strict=True)
+        return [part.tightened(own, matter) for part, own, matter in triples]
+
+    def machine_with(self, numbers: list[Array]) -> Machine:
+        """The machine that the parts' numbers make."""
+        machine = self.start
+        values = parameter_values(machine).reshape(-1, 4).copy()
+        order = list(machine.links)
+        for part, own in zip(self.parts, numbers, strict=True):
+            values[order.index(part.link)] += own @ part.effect
+        for link in {part.link for part in self.parts if not isinstance(part, FreeSpring)}:
+            machine = with_parameters(machine, link, values[order.index(link)])
+        pairs = zip(self.parts, numbers, strict=True)
+        springs = [part.spring(own) for part, own in pairs if isinstance(part, FreeSpring)]
+        kept = [spring for spring in springs if spring is not None]
+        if kept:
+            machine = replace(machine, springs=(*machine.springs, *kept))
+        return machine
+
+
+@dataclass(frozen=True, eq=False)
+class Built:
+    """A program, the places of each part's numbers in it, and the squares that matter."""
+
+    program: Program
+    places: list[Array]
+    squares: list[Square]
+
+
+def _name_apart(parts: list[Part]) -> None:
+    """Give weights of one link names of their own."""
+    weights = [part for part in parts if isinstance(part, AddedWeight)]
+    for part in weights:
+        same = [other for other in weights if other.link == part.link]
+        if len(same) > 1:
+            part.name = f"mass on {part.link} ({same.index(part) + 1})"
+
+
+def _signals(effects: Effects, objective: Objective, close: Near) -> list[Signal]:
+    """Signals whose largest measure an objective is: one for each speed at which it is read."""
+    if objective.output.startswith("gauges."):
+        return gauge_signals(effects, objective, close)
+    signal = effects.signal(objective.output, objective.about)
+    return [signal.kept(objective.orders)]

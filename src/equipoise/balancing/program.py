@@ -1,0 +1,321 @@
+"""Cone programs: a linear cost over second-order cones, solved by Clarabel.
+
+    minimise c'x  so that  factors x + constant  lies in a cone, block by block
+
+with cones zero, nonnegative and second-order (first row >= length of the others).  Their duals z
+tell the price of every constant: the value falls by z for a unit more of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError
+
+Array = np.ndarray[Any, Any]
+Cone = Literal["zero", "nonnegative", "second-order"]
+
+TOLERANCES = (1e-9, 1e-8)
+"""Relative to cost and constraints."""
+STRIDE, BROKEN, MOST_ROUNDS = 12, 3e-9, 30
+"""Of the rows of a cycle with which a program starts; by how much a row may be broken; how often
+rows are added."""
+
+
+Cutter = Callable[[Array], "list[Block]"]
+
+
+class NoSolutionError(EquipoiseError):
+    """No numbers meet the constraints."""
+
+
+class StalledError(NoSolutionError):
+    """The solver came to no result."""
+
+
+@dataclass(frozen=True, eq=False)
+class Affine:
+    """Rows factors @ x[columns] + constant; factors (R, C), columns (C,), constant (R,).
+
+    The factors of many rows may be a sparse matrix.
+    """
+
+    factors: Any
+    columns: Array
+    constant: Array
+
+    def at(self, x: Array) -> Array:
+        """Values (R,) of the rows for numbers x."""
+        found: Array = self.factors @ x[self.columns] + self.constant
+        return found
+
+    def of_rows(self, places: Array) -> Affine:
+        """Some of the rows."""
+        return Affine(self.factors[places], self.columns, self.constant[places])
+
+    @classmethod
+    def of(cls, columns: Any, factors: Any, constant: Any = 0.0) -> Affine:
+        """From one row or many; a constant is spread over the rows."""
+        factors = np.atleast_2d(np.asarray(factors, dtype=float))
+        spread = np.broadcast_to(np.asarray(constant, dtype=float), (len(factors),))
+        return cls(factors, np.atleast_1d(np.asarray(columns, dtype=int)), spread)
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Rows that lie in a cone; second-order cones stand one after the other, `size` rows each.
+
+    name : of the limit that it stands for.
+    slope : its derivative by that limit, rows for rows.
+    lift : place of the number that it keeps above a square, where it does that.
+    local : name of what it cuts off near the last solution only; blocks of that name come and go.
+    """
+
+    cone: Cone
+    rows: Affine
+    size: int = 1
+    name: str = ""
+    slope: Affine | None = None
+    lift: int | None = None
+    local: str = ""
+
+    @property
+    def groups(self) -> int:
+        """How many cones, or single rows, there are."""
+        return len(self.rows.constant) // self.size
+
+    def of(self, groups: Array) -> Block:
+        """Some of the cones or rows."""
+        places = (groups[:, None] * self.size + np.arange(self.size)).ravel()
+        slope = None if self.slope is None else self.slope.of_rows(places)
+        return replace(self, rows=self.rows.of_rows(places), slope=slope)
+
+    def slack(self, x: Array) -> Array:
+        """By how much each cone or row (G,) is kept; below 0 where it is broken."""
+        values = self.rows.at(x).reshape(-1, self.size)
+        return np.asarray(values[:, 0] - np.linalg.norm(values[:, 1:], axis=1))
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """Solution: x (n,), its value, a lower bound of it, and the price of each named limit."""
+
+    x: Array
+    value: float
+    bound: float
+    prices: dict[str, float]
+
+
+@dataclass
+class Program:
+    """A program in the making: numbers, blocks of constraints on them, and the cost.
+
+    waiting : blocks whose rows are taken in only where a solution breaks them.
+    cutters : each tells blocks that cut off a solution which is not possible.
+    tolerances : asked of the solver in turn, until it comes so near.
+    parent : of which this is a copy; what cuts off impossible solutions here does so there too.
+    """
+
+    count: int = 0
+    blocks: list[Block] = field(default_factory=list)
+    cost: dict[int, float] = field(default_factory=dict)
+    waiting: list[Block] = field(default_factory=list)
+    cutters: list[Cutter] = field(default_factory=list)
+    parent: Program | None = None
+    tolerances: tuple[float, ...] = TOLERANCES
+
+    def numbers(self, count: int) -> Array:
+        """Add free numbers; returns their places in x."""
+        self.count += count
+        return np.arange(self.count - count, self.count)
+
+    def zero(self, rows: Affine) -> None:
+        """Rows that must be 0."""
+        self.blocks.append(Block("zero", rows))
+
+    def nonnegative(self, rows: Affine, name: str = "", slope: Affine | None = None) -> None:
+        """Rows that must not be negative."""
+        self.blocks.append(Block("nonnegative", rows, 1, name, slope))
+
+    def cones(self, rows: Affine, size: int, name: str = "", slope: Affine | None = None) -> None:
+        """Groups of `size` rows, the first of which is at least the length of the others."""
+        self.blocks.append(Block("second-order", rows, size, name, slope))
+
+    def gradually(self, block: Block) -> None:
+        """A block of many rows, equally spaced round a cycle, few of which will matter."""
+        self.waiting.append(block)
+        self.blocks.append(block.of(np.arange(0, block.groups, STRIDE)))
+
+    def rotated(self, x: Affine, y: Affine, z: Affine, lift: int | None = None) -> None:
+        """x y >= |z|^2 with x, y >= 0: one row each of x and y, any number of z."""
+        rows = _stacked([(x, 1.0), (y, 1.0)], [(x, 1.0), (y, -1.0)], (z, 2.0))
+        self.blocks.append(Block("second-order", rows, len(rows.constant), lift=lift))
+
+    def copy(self) -> Program:
+        """To which more can be added without changing what this one asks."""
+        return replace(
+            self,
+            blocks=list(self.blocks),
+            cost=dict(self.cost),
+            waiting=list(self.waiting),
+            cutters=list(self.cutters),
+            parent=self,
+        )
+
+    def without(self, names: set[str]) -> Program:
+        """The program without some of its named limits."""
+        kept, waiting = (
+            [block for block in blocks if block.name not in names]
+            for blocks in (self.blocks, self.waiting)
+        )
+        return replace(self, blocks=kept, waiting=waiting, cost=dict(self.cost), parent=None)
+
+    def without_squares(self, lifts: set[int]) -> Program:
+        """A copy in which some lifts are not kept above their squares."""
+        copy = self.copy()
+        copy.blocks = [block for block in copy.blocks if block.lift not in lifts]
+        return copy
+
+    @property
+    def names(self) -> list[str]:
+        """Named limits, each once."""
+        return list(dict.fromkeys(block.name for block in self.blocks if block.name))
+
+    def solve(self) -> Solved:
+        """Solve; raises `NoSolutionError` where there is none."""
+        found = self._solve()
+        for _ in range(MOST_ROUNDS):
+            cuts = [*self._broken(found.x)]
+            cuts += [block for cutter in self.cutters for block in cutter(found.x)]
+            if not cuts:
+                break
+            self._cut(cuts)
+            try:
+                again = self._solve()  # of less freedom, so that the bound before still holds
+            except StalledError:  # constraints that hardly differ; what is broken is little
+                break
+            found = replace(again, bound=max(found.bound, again.bound))
+        return found
+
+    def _cut(self, cuts: list[Block]) -> None:
+        """Add blocks; those that belong to a place take the place of the last of the same name."""
+        local = {block.local for block in cuts if block.local}
+        self.blocks = [block for block in self.blocks if block.local not in local] + cuts
+        if self.parent is not None:
+            self.parent._cut(cuts)
+
+    def _broken(self, x: Array) -> Iterator[Block]:
+        """Rows of the waiting blocks that a solution breaks most, each among its neighbours."""
+        for block in self.waiting:
+            slack = block.slack(x)
+            lowest = (slack <= np.roll(slack, 1)) & (slack < np.roll(slack, -1))
+            broken = np.flatnonzero(lowest & (slack < -BROKEN))
+            if broken.size:
+                yield block.of(broken)
+
+    def _solve(self) -> Solved:
+        import clarabel
+        from scipy import sparse
+
+        matrix, right, cones = self._assembled()
+        cost = np.zeros(self.count)
+        for place, factor in self.cost.items():
+            cost[place] += factor
+        nothing = sparse.csc_matrix((self.count, self.count))
+        for tolerance in self.tolerances:
+            settings = clarabel.DefaultSettings()
+            settings.verbose, settings.max_threads = False, 1
+            settings.tol_gap_abs = settings.tol_gap_rel = settings.tol_feas = tolerance
+            found = clarabel.DefaultSolver(nothing, cost, matrix, right, cones, settings).solve()
+            if str(found.status) == "Solved":
+                break
+            if "Infeasible" in str(found.status):
+                raise NoSolutionError(f"the cone program is {found.status}")
+        if str(found.status) not in {"Solved", "AlmostSolved"}:
+            raise StalledError(f"the solver ended with {found.status}")
+        bound = min(found.obj_val, found.obj_val_dual)
+        return Solved(
+            np.array(found.x),
+            found.obj_val,
+            bound,
+            self._prices(np.array(found.x), np.array(found.z)),
+        )
+
+    def feasible(self, stalled: bool = True) -> bool:
+        """Whether any numbers meet the constraints.
+
+        stalled : the answer where the solver comes to none.
+        """
+        try:
+            replace(self.copy(), cost={}).solve()
+        except StalledError:
+            return stalled
+        except NoSolutionError:
+            return False
+        return True
+
+    def _assembled(self) -> tuple[Any, Array, list[Any]]:
+        """Matrix, right-hand side and cones in the solver's form A x + s = b."""
+        import clarabel
+        from scipy import sparse
+
+        values, rows, columns, right, cones = [], [], [], [], []
+        start = 0
+        for block in self.blocks:
+            row, column, value = _entries(block.rows.factors)
+            count = len(block.rows.constant)
+            values.append(-value)
+            rows.append(row + start)
+            columns.append(block.rows.columns[column])
+            right.append(block.rows.constant)
+            start += count
+            if block.cone == "second-order":
+                cones += [clarabel.SecondOrderConeT(block.size)] * (count // block.size)
+            else:
+                kind = clarabel.ZeroConeT if block.cone == "zero" else clarabel.NonnegativeConeT
+                cones.append(kind(count))
+        places = (np.concatenate(rows), np.concatenate(columns))
+        shape = (start, self.count)
+        matrix = sparse.csc_matrix((np.concatenate(values), places), shape=shape)
+        return matrix, np.concatenate(right), cones
+
+    def _prices(self, x: Array, dual: Array) -> dict[str, float]:
+        """How much the value falls for a unit more of each named limit."""
+        prices = dict.fromkeys(self.names, 0.0)
+        start = 0
+        for block in self.blocks:
+            count = len(block.rows.constant)
+            if block.name and block.slope is not None:
+                prices[block.name] += float(dual[start : start + count] @ block.slope.at(x))
+            start += count
+        return prices
+
+
+def _entries(factors: Any) -> tuple[Array, Array, Array]:
+    """Rows, columns and values of what is not 0 in a matrix, sparse or not."""
+    if isinstance(factors, np.ndarray):
+        row, column = np.nonzero(factors)
+        return row, column, factors[row, column]
+    entries = factors.tocoo()
+    return entries.row, entries.col, entries.data
+
+
+def _stacked(*rows: Any) -> Affine:
+    """Rows one under the other, each (rows, factor) or a sum of such."""
+    sums = [row if isinstance(row, list) else [row] for row in rows]
+    columns = np.unique(np.concatenate([part.columns for parts in sums for part, _ in parts]))
+    factors, constants = [], []
+    for parts in sums:
+        count = len(parts[0][0].constant)
+        matrix, constant = np.zeros((count, len(columns))), np.zeros(count)
+        for part, scale in parts:
+            places = np.searchsorted(columns, part.columns)
+            matrix[:, places] += scale * part.factors
+            constant += scale * part.constant
+        factors.append(matrix)
+        constants.append(constant)
+    return Affine(np.concatenate(factors), columns, np.concatenate(constants))

@@ -1,0 +1,197 @@
+"""Outputs of several rows by orders, each row at phase 0, so that phases only turn them.
+
+A row whose crank is ahead by phi has the amplitudes Y_n exp(i n phi) (see `Periodic.shifted`).
+Rows are equal linkages, so that all that differs between them is a lever: with (x, y, z) the place
+of a row's drive pivot, a force F = (F_x, F_y, 0) in its plane has the moment (x, y, z) x F.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, wrong_objective
+from equipoise.mechanism.dynamics import forces, place_of
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.support import Row
+from equipoise.signals import Periodic
+from equipoise.structures.choice import chosen_model, steady_speed, usual_step
+from equipoise.structures.excitation import ANGLES
+from equipoise.structures.linear import Linear, gauges_of
+from equipoise.structures.linkages import rows_of
+
+Array = np.ndarray[Any, Any]
+
+SHAKING, FRAME, TORQUE = 0, 3, 6
+"""Among signals of one row: force x, y and moment about the drive's pivot, twice; drive torque."""
+
+
+@dataclass(frozen=True, eq=False)
+class RowSignals:
+    """What every row adds to an output while its phase is 0.
+
+    amplitudes : complex (V, m, C, K + 1) of V speeds, m rows, C components (two of a vector) and
+        the orders 0 to K of the period, in the output's unit.
+    turns : of the crank in one period.
+    """
+
+    amplitudes: Array
+    turns: int = 1
+
+    @property
+    def orders(self) -> Array:
+        """Order of each amplitude, events in one turn of the crank, (K + 1,)."""
+        return np.arange(self.amplitudes.shape[-1]) / self.turns
+
+    def kept(self, orders: Sequence[float]) -> RowSignals:
+        """The same with these orders only; with all of them if there are none."""
+        if not orders:
+            return self
+        wanted = np.any(np.isclose(self.orders[:, None], orders, atol=1e-9), axis=1)
+        return RowSignals(np.where(wanted, self.amplitudes, 0.0), self.turns)
+
+    def turned(self, phases: Array) -> Array:
+        """Amplitudes (..., V, m, C, K + 1) of each row at phases (..., m), rad."""
+        turning = np.exp(1j * np.multiply.outer(phases, self.orders))
+        turned: Array = self.amplitudes * turning[..., None, :, None, :]
+        return turned
+
+    def total(self, phases: Array) -> Array:
+        """Amplitudes (..., V, C, K + 1) of the sum of all rows at phases (..., m), rad."""
+        turning = np.exp(1j * np.multiply.outer(phases, self.orders))
+        total: Array = np.einsum("vkcn,...kn->...vcn", self.amplitudes, turning)
+        return total
+
+    def alone(self, row: int) -> RowSignals:
+        """What one row does without the others."""
+        return RowSignals(self.amplitudes[:, row : row + 1], self.turns)
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """The rows of a machine, at the constant speed of its drive."""
+
+    machine: Machine
+
+    def signals(self, objective: Objective, where: str = "objective") -> RowSignals:
+        """An objective's output of each row, by the orders that count.
+
+        Shaking force, moment, drive torque, force and moment on the frame; ``roll_moment`` and
+        ``yaw_moment``, those of the shaking force about the axes x and y through the drive's pivot;
+        ``gauges.NAME``, a displacement (m) or rotation (rad) without its mean.
+
+        Raises
+        ------
+        UsageError : the output is that of one row, which no phase changes.
+        ModelError : there is no such output, or its measure cannot be taken; `where` it stands.
+        MassError, MotionError, ResponseError : the machine cannot be computed.
+        """
+        for problem in wrong_objective(where, objective, self.machine):
+            raise problem
+        output = objective.output
+        if output.startswith(JOINTS):
+            raise UsageError(
+                f"{output} acts within one row, so that no phase changes it; choose an output of "
+                "all rows"
+            )
+        if output.startswith(GAUGES):
+            found = self._gauge(output.removeprefix(GAUGES), objective.speeds)
+        else:
+            rows = rows_of(self.machine)
+            levers = np.array([self._lever(output, row, objective.about) for row in rows])
+            found = RowSignals((levers @ self._one.amplitudes)[None], self._one.turns)
+        return found.kept(objective.orders)
+
+    def _lever(self, output: str, row: Row, about: str | None) -> Array:
+        """Rows (C, 7) by which an output reads the signals of one row."""
+        if output == "drive_torque":
+            return np.eye(7)[TORQUE:]
+        if output in OF_ROWS:
+            lever = np.zeros((1, 7))
+            lever[0, :2] = (0.0, -row.lateral) if output == "roll_moment" else (row.lateral, 0.0)
+            return lever
+        first = FRAME if output.startswith("frame") else SHAKING
+        kind = output.removeprefix("frame_").removeprefix("shaking_")
+        whole = np.eye(7)[first : first + 3]
+        if kind == "moment":
+            pole = self._pivot if about is None else place_of(self.machine, about)
+            arm = self._pivot + complex(*row.offset) - pole
+            return np.array([[-arm.imag, arm.real, 1.0]]) @ whole
+        return whole[{"force": [0, 1], "force.x": [0], "force.y": [1]}[kind]]
+
+    @cached_property
+    def _motion(self) -> Motion:
+        planting = self.machine.planting
+        sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
+        return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
+
+    @cached_property
+    def _pivot(self) -> complex:
+        """The drive's pivot in the frame."""
+        return complex(*self.machine.frame[self._motion.linkage.pivot])
+
+    @cached_property
+    def _one(self) -> Periodic:
+        """Signals of one row (7, K + 1), each cut off where its own rounding begins."""
+        found = forces(self._motion)
+        shaking, frame = found.shaking_force, found.frame_force
+        signals = (shaking.x, shaking.y, found.shaking_moment, frame.x, frame.y)
+        turns = self._motion.turns
+        each = [
+            Periodic.of(signal, turns).amplitudes
+            for signal in (*signals, found.frame_moment, found.drive_torque)
+        ]
+        return Periodic(_padded(each), turns)
+
+    def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
+        chosen_model(self.machine, None, False)  # refuses a machine without a support
+        linear = self._linear
+        reading = linear.body.row(gauges_of(linear.body)[name])[linear.body.free]
+        each = [
+            _read(linear, reading, steady_speed(self.machine, speed, False))
+            for speed in (speeds or (None,))
+        ]
+        return RowSignals(
+            _padded([found[:, None] for found in each]), linear.excitation.motion.turns
+        )
+
+    @cached_property
+    def _linear(self) -> Linear:
+        return Linear.of(self.machine, usual_step(self.machine))
+
+
+def _padded(each: Sequence[Array]) -> Array:
+    """Amplitudes (..., K + 1) of unequal K as one array, the short ones filled up with 0."""
+    count = max(found.shape[-1] for found in each)
+    whole = np.zeros((len(each), *each[0].shape[:-1], count), complex)
+    for row, found in zip(whole, each, strict=True):
+        row[..., : found.shape[-1]] = found
+    return whole
+
+
+def _read(linear: Linear, reading: Array, speed: float) -> Array:
+    """What a reading (D,) of the free coordinates sees of each row, (m, K + 1), at a speed, rad/s.
+
+    (K - (n w)^2 M + i n w C) q_n = W_n, whose matrices do not depend on the phases.  They are
+    symmetric, so that the answer to the reading itself serves all rows.
+    """
+    linear.motion(speed)  # refuses what resonates, or drives the support away
+    one = linear.excitation.of_one(speed)
+    impedance = linear.impedance(one.orders[1:] * speed)
+    along = np.broadcast_to(reading[:, None], (len(impedance), len(reading), 1))
+    answer = np.zeros((6, len(one.orders)), complex)
+    answer[linear.body.free, 1:] = np.linalg.solve(impedance, along)[..., 0].T
+    rows = rows_of(linear.excitation.machine)
+    found = np.zeros((len(rows), len(one.orders)), complex)
+    for k, row in enumerate(rows):
+        wrench = one.amplitudes.copy()
+        wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
+        found[k] = np.sum(answer * wrench, axis=0)
+    return found

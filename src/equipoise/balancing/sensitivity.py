@@ -1,0 +1,208 @@
+"""What each link's mass, centre of mass and inertia does to an output, at every crank angle.
+
+(64) of Yamashita, Ichikawa and Mori, for any linkage and for moment and torque too: derivatives of
+an output at constant crank speed, and the crank angles at which they vanish, so that the output
+there stays as it is whatever the parameter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.wording import machine_size
+from equipoise.errors import UsageError
+from equipoise.mechanism.instants import roots
+from equipoise.mechanism.model import Link, Machine, unknown
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.parameters import QUANTITIES, regressor
+
+Array = np.ndarray[Any, Any]
+
+OUTPUTS = ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque")
+CHANGES = ("mass", "center_x", "center_y", "inertia")
+"""Mass at a fixed centre of mass, kg; that centre at a fixed mass, m; inertia about it, kg m2."""
+NOTHING = 1e-10
+"""Share of the largest effect below which there is none."""
+LEAST_ANGLES = 8
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivity:
+    """Derivative of an output by one parameter of a link.
+
+    values : (N,) at each crank angle, unit of the output over unit of the parameter.
+    rms : of it.
+    no_effect_at : crank angles (rad) within the cycle at which the sign changes; empty where there
+        is no effect at all.
+    percent : RMS of what a small change does: 1 % of the link's mass, 1 % of its moment of
+        inertia, or its centre of mass moved by 1 % of the machine's size; unit of the output.
+    """
+
+    link: str
+    change: str
+    values: Array
+    rms: float
+    no_effect_at: Array
+    percent: float
+
+    @property
+    def name(self) -> str:
+        """Such as ``coupler.center_x``."""
+        return f"{self.link}.{self.change}"
+
+    @property
+    def has_effect(self) -> bool:
+        """Whether the output depends on the parameter at all."""
+        return self.rms > 0
+
+
+@dataclass(frozen=True, eq=False)
+class Sensitivities:
+    """Sensitivities of one output, by link in file order and by change as in `CHANGES`.
+
+    crank_angle : (N,) rad, over the whole cycle.  turns : of the crank in it.
+    """
+
+    machine: Machine
+    output: str
+    crank_angle: Array
+    turns: int
+    by_name: Mapping[str, Sensitivity]
+
+    @property
+    def ranked(self) -> tuple[Sensitivity, ...]:
+        """Those with an effect, the largest of a change of 1 % first."""
+        found = [one for one in self.by_name.values() if one.has_effect]
+        return tuple(sorted(found, key=lambda one: -one.percent))
+
+    def __getitem__(self, name: str) -> Sensitivity:
+        """One of them, by a name such as ``coupler.center_x``."""
+        if name not in self.by_name:
+            raise UsageError(unknown(name, self.by_name, "sensitivity"))
+        return self.by_name[name]
+
+    def to_dict(self, signals: bool = True) -> dict[str, Any]:
+        """Everything as plain data, in SI units and rad; with its arrays or without."""
+        rows = {
+            name: {
+                **({"values": one.values} if signals else {}),
+                "rms": one.rms,
+                "percent": one.percent,
+                "has_effect": one.has_effect,
+                "no_effect_at": one.no_effect_at,
+            }
+            for name, one in self.by_name.items()
+        }
+        angles = {"crank_angle": self.crank_angle} if signals else {}
+        return {"output": self.output, **angles, "sensitivities": rows}
+
+
+def sensitivities(
+    machine: Machine, output: str = "shaking_force.y", angles: int = 720
+) -> Sensitivities:
+    """Derivatives of an output by mass, centre of mass and inertia of every link.
+
+    Parameters
+    ----------
+    output : one of `OUTPUTS`; the shaking moment is about the drive pivot, the drive torque with
+        weight.  The crank's speed is constant, that of the machine.
+    angles : crank angles in each turn of the cycle.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the linkage cannot turn fully.
+    UsageError : there is no such output, or too few crank angles.
+    """
+    if output not in OUTPUTS:
+        raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
+    motion = move(machine, _count(angles), acceleration=0.0)
+    values = _derivatives(motion, output)
+    values[_absent(machine, values)] = 0.0
+    zeros = _sign_changes(motion, output, values)
+    names = [(link, change) for link in machine.links for change in CHANGES]
+    ones = [
+        _one(machine, *pair, own, at) for pair, own, at in zip(names, values, zeros, strict=True)
+    ]
+    by_name = {one.name: one for one in ones}
+    return Sensitivities(machine, output, motion.crank_angle, motion.turns, by_name)
+
+
+def _derivatives(motion: Motion, output: str) -> Array:
+    """Derivatives of an output by `CHANGES` of each link (4 L, N)."""
+    name, _, part = output.partition(".")
+    columns = getattr(regressor(motion), name)
+    columns = {"": columns, "x": columns.real, "y": columns.imag}[part]
+    links = motion.machine.links
+    of_links = columns.reshape(len(links), len(QUANTITIES), -1)
+    return np.concatenate(list(map(_by_change, links.values(), of_links)))
+
+
+def _count(angles: Any) -> int:
+    whole = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
+    if not whole or angles < LEAST_ANGLES:
+        raise UsageError(f"got {angles!r} crank angles; give a number of at least {LEAST_ANGLES}")
+    return int(angles)
+
+
+def _by_change(link: Link, columns: Array) -> Array:
+    """Derivatives by `CHANGES` (4, N) from those by the parameters of the regressor (4, N).
+
+    These are about the origin of the link's axes: S = m g and J = I + m |g|^2, and the chain rule.
+    """
+    mass, (x, y) = link.mass or 0.0, link.center_of_mass or (0.0, 0.0)
+    by_mass, by_x, by_y, by_inertia = columns
+    return np.stack(
+        [
+            by_mass + x * by_x + y * by_y + (x * x + y * y) * by_inertia,
+            mass * (by_x + 2 * x * by_inertia),
+            mass * (by_y + 2 * y * by_inertia),
+            by_inertia,
+        ]
+    )
+
+
+def _absent(machine: Machine, raw: Array) -> Array:
+    """Which derivatives are only rounding, at the size and mass of the machine."""
+    size = machine_size(machine)
+    mass = sum(link.mass or 0.0 for link in machine.links.values()) or 1.0
+    scale = np.tile([mass, size, size, mass * size**2], len(machine.links))
+    sizes = np.max(np.abs(raw), axis=1) * scale
+    found: Array = sizes <= NOTHING * np.max(sizes)
+    return found
+
+
+def _one(machine: Machine, link: str, change: str, values: Array, zeros: Array) -> Sensitivity:
+    body = machine.links[link]
+    step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(
+        change, machine_size(machine)
+    )
+    rms = float(np.sqrt(np.mean(values**2)))
+    return Sensitivity(link, change, values, rms, zeros, 0.01 * step * rms)
+
+
+def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
+    """Crank angles at which each derivative (4 L, N) changes sign, rising, within the cycle.
+
+    Those of all derivatives are closed in on together, by solving the machine there.
+    """
+    period = 2 * np.pi * motion.turns
+    step = period / values.shape[1]
+    negative = np.signbit(values)
+    which, k = np.nonzero(negative != np.roll(negative, -1, axis=1))
+    if not which.size:
+        return [np.empty(0)] * len(values)
+    each = np.arange(len(which))
+
+    def signal(theta: Array) -> Array:
+        there = move(motion.machine, theta[0], motion.speed, 0.0)
+        found: Array = _derivatives(there, output)[which, each]
+        return found[None]
+
+    low = k * step
+    found = np.mod(roots(signal, low[None], low[None] + step)[0], period)
+    return [np.sort(found[which == row]) for row in range(len(values))]

@@ -1,0 +1,99 @@
+"""From the best numbers to what is told of them: objectives, changes, prices, notes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from equipoise.balancing.balanced import Balanced, Price
+from equipoise.balancing.measures import unit_of
+from equipoise.balancing.optimum import Solution
+from equipoise.balancing.parts import Bound
+from equipoise.balancing.problem import ADDED
+from equipoise.balancing.weights import AddedWeight
+from equipoise.mechanism.balance import Balance
+from equipoise.mechanism.model import Machine
+
+
+def told(machine: Machine, plan: Balance, found: Solution) -> Balanced:
+    """The result, with what was asked read off the new machine."""
+    problem = found.problem
+    objectives = {
+        one.name: (problem.before[one.name], problem.value_of(found.machine, one))
+        for one in plan.objectives
+    }
+    pairs = zip(problem.parts, found.numbers, strict=True)
+    changes = [*found.meshes, *(change for part, own in pairs for change in part.changes(own))]
+    return Balanced(
+        found.machine,
+        machine,
+        plan,
+        tuple(changes),
+        objectives,
+        problem.cost_of(found.machine),
+        found.best.bound,
+        found.method,
+        _prices(found),
+        found.best.nodes,
+        tuple(_notes(found)),
+    )
+
+
+def _prices(found: Solution) -> dict[str, Price]:
+    """Prices of the limits, in SI units."""
+    problem, plan = found.problem, found.problem.plan
+    only = plan.objectives[0] if len(plan.objectives) == 1 else None
+    unit = 1.0 if only is None else (problem.before[only.name] or 1.0) / only.weight
+    prices = {}
+    for limit in plan.limits:
+        scale = problem.before[limit.name] or 1.0
+        at_most = limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * scale
+        used = problem.value_of(found.machine, limit.objective)
+        paid = found.best.prices.get(limit.name, 0.0) * unit / scale
+        paid = _rounded(paid, unit / scale)
+        prices[limit.name] = Price(at_most, used, paid, unit_of(limit.objective, problem.machine))
+    return prices | _prices_of_parts(found, unit)
+
+
+def _prices_of_parts(found: Solution, unit: float) -> dict[str, Price]:
+    """Prices of added mass in all, and of the limits that each part has of itself."""
+    problem, most = found.problem, found.problem.plan.added_mass
+    pairs = [*zip(problem.parts, found.numbers, strict=True)]
+    bounds = [bound for part, own in pairs for bound in part.bounds(own)]
+    if most is not None:
+        weights = sum(float(own @ part.effect[:, 0]) for part, own in pairs if part.mass_place == 0)
+        bounds.append(Bound(ADDED, most, weights, "kg"))
+    prices = {}
+    for one in bounds:
+        paid = _rounded(found.best.prices.get(one.name, 0.0) * unit, unit / one.at_most)
+        prices[one.name] = Price(one.at_most, one.used, paid, one.unit)
+    return prices
+
+
+def _rounded(price: float, scale: float) -> float:
+    """A price that is nothing but the solver's rounding is 0."""
+    return price if price > 1e-7 * scale else 0.0
+
+
+def _notes(found: Solution) -> Iterator[str]:
+    """What a reader has to know."""
+    problem = found.problem
+    if problem.machine.drive.acceleration:
+        yield "the drive's acceleration is left out: the crank is taken as turning steadily"
+    if problem.reads_gauges and problem.supports_more:
+        yield (
+            "added mass makes the support heavier, which bends what is linear otherwise: the bound "
+            "is that of small changes about this result"
+        )
+    for part, own in zip(problem.parts, found.numbers, strict=True):
+        if isinstance(part, AddedWeight) and part.is_capped(own):
+            yield (
+                f"the weight on {part.link} has come to ten times the mass of the links, where it "
+                "was stopped; more would do better still: give it at_most"
+            )
+    if found.best.nodes >= 1 and found.best.value - found.best.bound > 1e-7:
+        yield (
+            "the search ended before it had proved that nothing better exists; the gap tells how "
+            "far it came"
+        )
+    if found.machine.gears and any(one.output.startswith("joints.") for one in problem.asked):
+        yield "forces in bearings of gears are those with the flank in contact that was so before"

@@ -1,0 +1,173 @@
+"""What was changed, as shapes to scale with their labels: one class of shape a function."""
+
+from __future__ import annotations
+
+from cmath import rect
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.plotting.balancing.looks import MM, SHORT, grams
+from equipoise.plotting.style import short, shown
+
+if TYPE_CHECKING:
+    from equipoise.balancing.parts import Change
+    from equipoise.mechanism.balance import Balance, CenterMove
+    from equipoise.plotting.balancing.placed import Placed
+
+Array = np.ndarray[Any, Any]
+
+AROUND = np.exp(2j * np.pi * np.arange(73) / 72)
+ARC = 0.05
+"""rad, about: length of the pieces of an arc."""
+FINEST = 3
+"""Digits of mm that a free length has: what is less is the solver's rounding."""
+NO_LENGTH = 1e-6
+"""mm."""
+FULL = 1e-6
+"""rad: a sector that lacks less than this is a ring."""
+
+
+@dataclass(frozen=True, eq=False)
+class Mark:
+    """Something to draw, complex places in mm.
+
+    kind : ``mass``, ``room``, ``gear``, ``move``, ``spring``.
+    outline : of what has an area, or a line.  holes : inner edges.
+    at, text : where its label stands, and what it says.
+    """
+
+    kind: str
+    outline: Array
+    holes: tuple[Array, ...] = ()
+    at: complex = 0j
+    text: str = ""
+    away: complex = field(default=1j)
+
+
+def marks(placed: Placed, changes: tuple[Change, ...], plan: Balance) -> list[Mark]:
+    """Everything that is drawn over the machine."""
+    found = list(_rooms(placed, plan))
+    for change in changes:
+        if change.kind == "added mass":
+            found += _pieces(placed, change)
+        elif change.kind == "center of mass":
+            found.append(_moved(placed, change))
+        elif change.kind == "spring" and change.values["stiffness"]:
+            found.append(_spring(placed, change))
+        elif change.kind == "gears":
+            found += _gears(placed, change)
+    return found
+
+
+def circle(middle: complex, radius: float) -> Array:
+    """A closed circle."""
+    return np.asarray(middle + radius * AROUND)
+
+
+def _way(vector: complex) -> complex:
+    """Its direction; up to the right where it has none."""
+    size = abs(vector)
+    return vector / size if size > NO_LENGTH else rect(1.0, np.pi / 4)
+
+
+# -- masses ----------------------------------------------------------------------------------------
+
+
+def _pieces(placed: Placed, change: Change) -> Iterator[Mark]:
+    link, values = change.link, change.values
+    center = MM * placed.at(link, complex(*values["center"]))
+    for piece in values["pieces"]:
+        place = MM * placed.at(link, complex(*piece["place"]))
+        text = f"{grams(piece['mass'])} on {short(link, SHORT)}"
+        outline, holes, edge = _shape(placed, link, piece, center, place)
+        yield Mark("mass", outline, holes, edge, text, _way(place - center))
+
+
+def _shape(
+    placed: Placed, link: str, piece: dict[str, Any], center: complex, place: complex
+) -> tuple[Array, tuple[Array, ...], complex]:
+    """Outline and holes of a piece, and the place of its label."""
+    if piece["shape"] == "point":
+        return np.array([place]), (), place
+    if piece["shape"] == "disc":
+        radius = MM * piece["radius"]
+        return circle(place, radius), (), place + radius * _way(place - center)
+    inner, outer = MM * piece["inner_radius"], MM * piece["outer_radius"]
+    if piece["shape"] == "ring" or piece["angle"] >= 2 * np.pi - FULL:
+        holes = (circle(center, inner),) if inner else ()
+        return circle(center, outer), holes, complex(center + rect(outer, 0.25 * np.pi))
+    middle = piece["direction"] + placed.angle(link)
+    outline = sector(center, inner, outer, middle, piece["angle"])
+    return outline, (), complex(center + rect(outer, middle))
+
+
+def sector(center: complex, inner: float, outer: float, middle: float, width: float) -> Array:
+    """Closed outline of a part of a ring, about a direction (rad) and so many rad wide."""
+    count = max(3, int(width / ARC))
+    angles = middle + width * np.linspace(-0.5, 0.5, count)
+    edge = outer * np.exp(1j * angles)
+    back = inner * np.exp(1j * angles[::-1]) if inner else np.zeros(1)
+    return np.asarray(center + np.concatenate([edge, back, edge[:1]]))
+
+
+# -- the rest --------------------------------------------------------------------------------------
+
+
+def _moved(placed: Placed, change: Change) -> Mark:
+    """From the old centre of mass to the new one."""
+    old, new = (MM * placed.at(change.link, complex(*change.values[k])) for k in ("from", "to"))
+    text = f"{short(change.link, SHORT)}, {grams(change.values['mass'])}"
+    return Mark("move", np.array([old, new]), (), new, text, _way(new - old))
+
+
+def _spring(placed: Placed, change: Change) -> Mark:
+    values = change.values
+    own = placed.machine.links[change.link].points[values["point"]]
+    one = MM * placed.at(change.link, complex(*own))
+    other = MM * complex(*placed.machine.frame[values["to"]])
+    free = round(MM * values["free_length"], FINEST)
+    text = f"{shown(values['stiffness'])} N/m, {shown(free)} mm free"
+    away = 1j * _way(other - one)
+    return Mark("spring", np.array([one, other]), (), (one + other) / 2, text, away)
+
+
+def _gears(placed: Placed, change: Change) -> Iterator[Mark]:
+    """Pitch circles: that on the driver, then that on the shaft."""
+    values = change.values
+    driver, shaft = (MM * radius for radius in values["pitch_radii"])
+    axis = MM * complex(*values["axis"])
+    points = placed.machine.links[values["driver"]].points
+    pin = next(name for name in points if name in placed.machine.frame)
+    at = MM * complex(*placed.machine.frame[pin])
+    aside = 1j * _way(axis - at)
+    for middle, radius in ((at, driver), (axis, shaft)):
+        text = f"gear, {shown(radius)} mm"
+        edge = middle + radius * aside
+        yield Mark("gear", circle(middle, radius), (), edge, text, aside)
+
+
+def _rooms(placed: Placed, plan: Balance) -> Iterator[Mark]:
+    """The rooms that masses and centres of mass have."""
+    links = placed.machine.links
+    held = [(one.link, links[one.link].points[one.at], one.weight) for one in plan.masses]
+    held += [(one.name, (0.0, 0.0), one.weight) for one in plan.geared]
+    held += [(f"{one.name}-{k}", (0.0, 0.0), one.weight) for one in plan.shafts for k in (1, 2)]
+    for link, center, weight in held:
+        if isfinite(weight.radius):
+            middle = MM * placed.at(link, complex(*center))
+            yield Mark("room", circle(middle, MM * weight.radius))
+    for move in plan.moves:
+        yield from _room_of_center(placed, move)
+
+
+def _room_of_center(placed: Placed, move: CenterMove) -> Iterator[Mark]:
+    if move.center is not None and move.radius is not None:
+        middle = MM * placed.at(move.link, complex(*move.center))
+        yield Mark("room", circle(middle, MM * move.radius))
+    if move.x is not None and move.y is not None:
+        box = [complex(move.x[i], move.y[j]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
+        yield Mark("room", np.array([MM * placed.at(move.link, corner) for corner in box]))

@@ -1,0 +1,257 @@
+"""Conditions of balance, proofs and sensitivities hold on random linkages of all kinds."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.conditions import Conditions, Kind, conditions, parameter_scales
+from equipoise.balancing.least import least_moments
+from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
+from equipoise.balancing.verdict import ASKED, Verdict, verdict
+from support.machines import KINDS, make
+
+Array = np.ndarray[Any, Any]
+
+EXACT = 1e-12
+"""Relative to the sum of what every parameter does by itself."""
+SAMPLES = 97
+"""Crank angles in a turn: others than those from which conditions were made."""
+
+every_kind = pytest.mark.parametrize("kind", KINDS)
+every_machine = pytest.mark.parametrize("seed", [0, 1, 2])
+
+
+def balanced(machine: eq.Machine, found: Conditions, values: Array) -> Array:
+    """The parameters nearest to some (P,) that meet conditions."""
+    if not found.count:
+        return values
+    scale = parameter_scales(machine)
+    rows = found.coefficients * scale
+    step = np.linalg.lstsq(rows, found.coefficients @ values, rcond=None)[0]
+    return np.asarray(values - step * scale)
+
+
+def effects(machine: eq.Machine, output: str) -> tuple[Array, Array, int]:
+    """Parameters (P,), effects (P, N) at 1 rad/s and turns of the cycle."""
+    motion = eq.move(machine, SAMPLES, 1.0, 0.0)
+    found = eq.regressor(motion)
+    return found.values, getattr(found, output), motion.turns
+
+
+def left(values: Array, columns: Array, kind: Kind, turns: int) -> float:
+    """Largest value of an output, without order 1 for a sine, relative to its parts."""
+    signal = values @ columns
+    if kind == "sine":
+        amplitudes = np.fft.fft(signal)
+        amplitudes[[turns, -turns]] = 0.0
+        signal = np.fft.ifft(amplitudes)
+    return float(np.max(np.abs(signal)) / np.max(np.abs(values) @ np.abs(columns)))
+
+
+@every_kind
+@every_machine
+@pytest.mark.parametrize("output", ["shaking_force", "shaking_moment"])
+@pytest.mark.parametrize("wanted", ["zero", "sine"])
+def test_conditions_suffice(kind: str, seed: int, output: str, wanted: Kind) -> None:
+    machine = make(kind, seed).machine
+    found = conditions(machine, wanted, [output])
+    values, columns, turns = effects(machine, output)
+    assert left(balanced(machine, found, values), columns, wanted, turns) < EXACT
+
+
+@every_kind
+@every_machine
+def test_each_condition_is_needed(kind: str, seed: int) -> None:
+    """Where one is violated alone, the shaking force is not zero."""
+    machine = make(kind, seed).machine
+    found = conditions(machine)
+    _, columns, turns = effects(machine, "shaking_force")
+    scale = parameter_scales(machine)
+    rows = found.coefficients * scale
+    for one in np.eye(found.count):
+        values = scale * np.linalg.lstsq(rows, one * np.linalg.norm(rows, axis=1), rcond=None)[0]
+        assert left(values, columns, "zero", turns) > 1e-6
+
+
+@every_kind
+@every_machine
+def test_components_together_are_the_whole(kind: str, seed: int) -> None:
+    machine = make(kind, seed).machine
+    whole = conditions(machine, "zero", ["shaking_force"])
+    parts = conditions(machine, "zero", ["shaking_force.x", "shaking_force.y"])
+    assert parts.count == whole.count
+    scale = parameter_scales(machine)
+    both = np.concatenate([parts.coefficients, whole.coefficients]) * scale
+    both /= np.linalg.norm(both, axis=1, keepdims=True)
+    assert np.linalg.matrix_rank(both, tol=1e-9) == whole.count
+
+
+@every_kind
+@every_machine
+def test_least_moments_balance_what_can_be_balanced(kind: str, seed: int) -> None:
+    """Masses kept, all links free to move their centres of mass."""
+    machine = replace(make(kind, seed).machine, loads=())
+    if not verdict(machine).force.masses_kept:
+        return
+    links = [name for name, link in machine.links.items() if link.mass]
+    found = least_moments(machine, links)
+    values, columns, _ = effects(found.machine, "shaking_force")
+    assert left(values, columns, "zero", 1) < EXACT
+    kept = [(link.mass, link.inertia) for link in machine.links.values()]
+    assert [(link.mass, link.inertia) for link in found.machine.links.values()] == kept
+    freed = least_moments(machine, links[1:], links[:1])
+    assert freed.cost <= found.cost * (1 + 1e-9)
+
+
+# -- verdicts --------------------------------------------------------------------------------------
+
+
+@every_kind
+@every_machine
+def test_a_no_has_a_proof(kind: str, seed: int) -> None:
+    """The proof combines the conditions, and no admissible masses make it smaller than it says."""
+    machine = make(kind, seed).machine
+    rng = np.random.default_rng(5)
+    for answer in verdict(machine).answers:
+        assert answer.possible == (answer.proof is None)
+        if answer.proof is None:
+            continue
+        row, scale = answer.proof.coefficients, parameter_scales(machine)
+        assert answer.proof.least > 0
+        rows = conditions(machine, "zero", ASKED[answer.what]).coefficients * scale
+        rest = row * scale - np.linalg.lstsq(rows.T, row * scale, rcond=None)[0] @ rows
+        assert np.linalg.norm(rest) < 1e-9 * np.linalg.norm(row * scale)
+        for _ in range(200):
+            assert row @ any_masses(machine, rng) > answer.proof.least * (1 - 1e-4)
+
+
+def any_masses(machine: eq.Machine, rng: np.random.Generator) -> Array:
+    """Parameters of heavier links whose centres of mass lie anywhere."""
+    values: list[float] = []
+    size = parameter_scales(machine)[1]
+    for link in machine.links.values():
+        assert link.mass is not None
+        assert link.inertia is not None
+        mass = link.mass + float(rng.exponential()) * 10 ** float(rng.uniform(-6, 2))
+        center = rng.normal(size=2) * size * 10 ** rng.uniform(-2, 1)
+        x, y = (float(part) for part in center)
+        own = link.inertia + mass * size**2 * 10 ** float(rng.uniform(-9, 1))
+        values += [mass, mass * x, mass * y, own + mass * (x * x + y * y)]
+    return np.array(values)
+
+
+FORCE_NEVER = {"scotch_yoke", "crossed_guides"}
+"""A link there that only slides in the frame moves as no other link's first moment can."""
+MOMENT_NEVER = {"crank_rocker", "stephenson", "watt", "floating_watt", "shared_pin",
+                "slider_on_rocker", "guide_on_dyad", "quick_return", "swinging_block"}  # fmt: skip
+"""All links that do not turn evenly have moments of inertia that act alike."""
+MOMENT_ALWAYS = {"slider_crank", "slider_beside_pin", "scotch_yoke", "planetary_arm"}
+
+
+@every_kind
+@every_machine
+def test_verdicts_by_kind(kind: str, seed: int) -> None:
+    machine = heavy(make(kind, seed).machine)
+    found: Verdict = verdict(machine)
+    assert found.force.possible == (kind not in FORCE_NEVER)
+    if kind in MOMENT_NEVER:
+        assert not found.moment.possible
+        assert not found.both.possible
+    if kind in MOMENT_ALWAYS:
+        assert found.moment.possible
+    if found.both.possible:
+        assert found.force.possible
+        assert found.moment.possible
+
+
+def heavy(machine: eq.Machine) -> eq.Machine:
+    """Give masses to links that are neglected."""
+    for name, link in machine.links.items():
+        if not link.mass:
+            machine = machine.with_link(name, mass=0.5, inertia=1e-4)
+    return machine
+
+
+def test_physical_pendulum_with_geared_counterweight() -> None:
+    """Both can be balanced if the coupler is a physical pendulum, J = m c g, which takes mass.
+
+    m g (c - g) = I is largest at g = c / 2, so that the least mass is 4 I / c^2.
+    """
+    machine = eq.load("geared-counterweight")
+    coupler = machine.links["coupler"]
+    assert coupler.mass is not None
+    assert coupler.inertia is not None
+    least = 4 * coupler.inertia / 0.075**2
+    for answer in (verdict(machine).moment, verdict(machine).both):
+        assert answer.added_mass is not None
+        assert dict(answer.added_mass) == pytest.approx({"coupler": least - coupler.mass}, rel=1e-4)
+    enough = verdict(machine.with_link("coupler", mass=1.001 * least)).both
+    assert enough.masses_kept
+
+
+# -- sensitivities ---------------------------------------------------------------------------------
+
+
+def output_of(machine: eq.Machine, output: str, angles: Any) -> Array:
+    forces = eq.analyze(machine, angles, acceleration=0.0).forces
+    name, _, part = output.partition(".")
+    found = getattr(forces, name)
+    return np.asarray(getattr(found, part) if part else found)
+
+
+def changed(machine: eq.Machine, link: str, change: str, by: float) -> eq.Machine:
+    body = machine.links[link]
+    if change in {"mass", "inertia"}:
+        return machine.with_link(link, **{change: getattr(body, change) + by})
+    x, y = body.center_of_mass or (0.0, 0.0)
+    center = (x + by, y) if change == "center_x" else (x, y + by)
+    return machine.with_link(link, center_of_mass=center)
+
+
+@every_kind
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_sensitivities_are_differences(kind: str, output: str) -> None:
+    """Outputs are linear in mass and inertia and quadratic in centres: differences are exact."""
+    machine = heavy(replace(make(kind, 4).machine, loads=()))
+    found = sensitivities(machine, output, 24)
+    scale = parameter_scales(machine)[1]
+    before = np.max(np.abs(output_of(machine, output, 24)))
+    for one in found.by_name.values():
+        body = machine.links[one.link]
+        step = {"mass": body.mass, "inertia": body.inertia}.get(one.change, scale) or 0.0
+        more, less = (
+            output_of(changed(machine, one.link, one.change, by), output, 24)
+            for by in (step / 2, -step / 2)
+        )
+        np.testing.assert_allclose(one.values * step, more - less, rtol=0, atol=1e-9 * before)
+
+
+@every_kind
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_nothing_changes_where_there_is_no_effect(kind: str, output: str) -> None:
+    machine = heavy(replace(make(kind, 5).machine, loads=()))
+    found = sensitivities(machine, output)
+    for one in found.by_name.values():
+        if not one.has_effect:
+            assert one.no_effect_at.size == 0
+            continue
+        assert len(one.no_effect_at) % 2 == 0
+        if one.no_effect_at.size:
+            at = exact_derivative(machine, output, one.link, one.change, one.no_effect_at)
+            slope = np.max(np.abs(np.gradient(one.values, found.crank_angle)))
+            assert np.max(np.abs(at)) < 1e-9 * slope
+
+
+def exact_derivative(
+    machine: eq.Machine, output: str, link: str, change: str, angles: Array
+) -> Array:
+    body = machine.links[link]
+    size = parameter_scales(machine)[1]
+    step = {"mass": body.mass, "inertia": body.inertia}.get(change, size) or 0.0
+    more, less = (changed(machine, link, change, by) for by in (step / 2, -step / 2))
+    return (output_of(more, output, angles) - output_of(less, output, angles)) / step

@@ -1,0 +1,444 @@
+"""`equipoise balance` as a user runs it: tables, JSON, CSV, pictures, and the new model file."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import jsonschema
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.measures import measured
+from surface.running import equipoise, example_text, process, succeeded
+
+CRANK = ("yamashita-1", "--crank-counterweight")
+FORCE = ("--objective", "shaking_force")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in an empty folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def run(*words: str | Path) -> str:
+    return succeeded(equipoise("balance", *words))
+
+
+def read(*words: str | Path) -> dict[str, Any]:
+    """What `equipoise balance ... --json` prints, which is one line and nothing else."""
+    result = equipoise("balance", *words, "--json")
+    assert result.err == ""
+    assert result.out.count("\n") == 1
+    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
+
+
+def no_constant(text: str) -> None:
+    raise AssertionError(f"{text} is not JSON")
+
+
+def cells(text: str, label: str) -> list[str]:
+    """What stands in the first row with this label."""
+    (row, *_) = (line for line in text.splitlines() if line.startswith(f"{label}  "))
+    return row.removeprefix(label).split()
+
+
+def changed(name: str, *pairs: tuple[str, str], to: str = "model.toml") -> str:
+    """A bundled model as a file here, with pieces of its text replaced."""
+    text = example_text(name)
+    for old, new in pairs:
+        assert old in text
+        text = text.replace(old, new)
+    Path(to).write_text(text, encoding="utf-8")
+    return to
+
+
+# -- tables ----------------------------------------------------------------------------------------
+
+
+def test_tables_of_the_papers_counterweight() -> None:
+    result = equipoise("balance", "balance-crank")
+    text = succeeded(result)
+    assert result.err == ""
+    assert text.splitlines()[1] == "crank driven at 193.0 rpm"
+    assert cells(text, "ripple of shaking_force.y") == ["12.19", "3.016", "N", "-75.25", "%"]
+    assert "crank: add 1145 g, 35.70 mm from A at -165.98 deg, 40882 g mm" in text
+    assert "    point of 1145 g at (-34.64, -8.649) mm" in text.splitlines()
+    assert "found by closed form; proved: nothing that is allowed is better by more than" in text
+    assert cells(text, "mass of the links")[:3] == ["g", "1145", "2290"]
+    assert cells(text, "joints.C peak")[-1] == "same"
+    assert cells(text, "shaking_force RMS") == ["N", "14.98", "5.855", "-60.9", "%"]
+    assert cells(text, "drive_torque RMS")[:2] == ["N", "m"]
+    assert not re.search("nan|inf|None|-0 ", text)
+
+
+def test_moved_centre_of_mass() -> None:
+    text = run("balance-coupler")
+    assert (
+        "coupler: move the centre of mass from (-45.00, -20.00) mm to (6.240, 26.22) mm, "
+        "mass 761.0 g"
+    ) in text
+    assert cells(text, "mass of the links")[-1] == "same"
+
+
+def test_limits_and_their_prices() -> None:
+    words = (*CRANK, "--objective", "shaking_force.y", "--limit", "shaking_force.x <= 40 %")
+    text = run(*words, "--limit", "peak joints.A <= 99 %")
+    assert cells(text, "rms of shaking_force.x")[:3] == ["3.487", "3.487", "N"]
+    assert cells(text, "rms of shaking_force.x")[3:] == ["0.9613", "N", "per", "N"]
+    assert cells(text, "peak of joints.A")[-1] == "nothing"
+    content = read(*words)
+    price = content["prices"]["rms of shaking_force.x"]
+    again = read(*words[:-1], "shaking_force.x <= 3.497 N")
+    key = "rms of shaking_force.y"
+    fall = content["objectives"][key]["after"] - again["objectives"][key]["after"]
+    step = 3.497 - price["at_most"]
+    assert fall / step == pytest.approx(price["price"], rel=0.02)
+
+
+def test_prices_of_masses() -> None:
+    words = (*CRANK, *FORCE, "--radius", "40 mm", "--at-most", "300 g")
+    text = run(*words)
+    assert cells(text, "mass on crank")[:3] == ["300.0", "300.0", "g"]
+    assert cells(text, "mass on crank")[-3:] == ["N", "per", "g"]
+    text = run(*CRANK, *FORCE, "--radius", "40 mm", "--limit", "added_mass <= 300 g")
+    assert cells(text, "added mass")[:3] == ["300.0", "300.0", "g"]
+    text = run(*words, "--objective", "drive_torque")
+    assert cells(text, "mass on crank")[-3:] == ["%", "per", "g"]
+
+
+SHAPES = {
+    "any": "point of",
+    "point": "point of",
+    "disc": "disc of",
+    "sector": "sector of",
+}
+PLATE = ("--thickness", "10 mm", "--material", "steel", "--radius", "50 mm")
+
+
+@pytest.mark.parametrize(("shape", "told"), SHAPES.items(), ids=SHAPES)
+def test_shapes(shape: str, told: str) -> None:
+    plate = PLATE if shape in {"disc", "sector"} else PLATE[-2:]
+    words = (*CRANK, *FORCE, "--shape", shape, *plate)
+    assert f"\n    {told}" in run(*words)
+    content = read(*words)
+    (change,) = content["changes"]
+    assert sum(piece["mass"] for piece in change["pieces"]) == pytest.approx(change["mass"])
+    assert change["mass"] == pytest.approx(content["added_mass"])
+    for piece in change["pieces"]:
+        assert math.hypot(*piece["place"]) <= 0.05 * (1 + 1e-6)
+    assert content["gap"] < 1e-6
+
+
+def test_a_ring_on_the_rocker_changes_the_torque() -> None:
+    """It shakes nothing, but the rocker's speed varies."""
+    words = ("--shape", "ring", *PLATE, "--objective", "peak drive_torque")
+    text = run("yamashita-1", "--counterweight", "rocker", *words)
+    assert "rocker: add" in text
+
+
+def test_everything_else_that_may_be_freed() -> None:
+    text = run("yamashita-1", "--move-cm", "coupler", "--move-cm", "rocker", *FORCE)
+    assert "coupler: move the centre of mass" in text
+    assert "rocker: move the centre of mass" in text
+    text = run("yamashita-1", "--counterweight", "rocker", "--mass", "100 g", *FORCE)
+    assert "rocker: add 100.0 g" in text
+
+
+def test_several_objectives() -> None:
+    words = ("--objective", "peak shaking_force weight 2", "--objective", "rms drive_torque")
+    content = read(*CRANK, *words)
+    assert list(content["objectives"]) == ["peak of shaking_force", "rms of drive_torque"]
+    before_after = content["objectives"].values()
+    cost = sum(w * x["after"] / x["before"] for w, x in zip((2, 1), before_after, strict=True))
+    assert content["cost"] == pytest.approx(cost)
+
+
+@pytest.mark.parametrize(
+    ("asked", "name"),
+    [
+        ("shaking_energy about D", "area under shaking_moment about D"),
+        ("peak_to_peak drive_torque", "peak to peak of drive_torque"),
+        ("shaking_force.y orders 1,2", "rms of shaking_force.y (order 1, 2)"),
+        ("  rms   joints.B ", "rms of joints.B"),
+    ],
+)
+def test_objectives_in_words(asked: str, name: str) -> None:
+    content = read("yamashita-1", "--move-cm", "coupler", "--objective", asked)
+    assert list(content["objectives"]) == [name]
+    values = content["objectives"][name]
+    assert values["after"] < values["before"]
+
+
+def test_another_speed() -> None:
+    slow, fast = (read("balance-crank", "--speed", speed) for speed in ("-100 rpm", "200 rpm"))
+    assert fast["speed"] == pytest.approx(200 * math.pi / 30)
+    (one,), (other,) = slow["objectives"].values(), fast["objectives"].values()
+    assert other["after"] == pytest.approx(4 * one["after"])
+
+
+def test_gauges_at_several_speeds() -> None:
+    text = run("balance-rig")
+    name = "peak to peak of gauges.gauge at 150, 193, 240 rpm"
+    assert cells(text, name)[:3] == ["20.86", "8.562", "mm"]
+    assert cells(text, "gauges.gauge peak to peak")[0] == "mm"
+    assert "note: added mass makes the support heavier" in text
+    words = ("peak gauges.gauge speeds 100 rpm, 193 rpm", "--at-most", "500 g")
+    content = read("yamashita-rig", "--crank-counterweight", "--objective", *words)
+    (values,) = content["objectives"].values()
+    assert values["after"] < values["before"]
+
+
+def test_a_balanced_machine_has_no_speed_at_which_it_shakes_as_before() -> None:
+    text = run("exudyn-slider-crank")
+    assert cells(text, "shaking_force RMS")[-2:] == ["-100.0", "%"]
+    speeds = text.partition("Speed at which it shakes as before")[2]
+    assert "shaking_force" not in speeds
+    assert "shaking_moment RMS" in speeds
+    content = read("exudyn-slider-crank")
+    assert not any(name.startswith("shaking_force") for name in content["equivalent_speeds"])
+
+
+def test_rounding_is_not_printed() -> None:
+    """A balanced machine shakes by rounding alone, of which no share is told either."""
+    succeeded(equipoise("balance", "exudyn-slider-crank", "-o", "still.toml"))
+    limit = ("--limit", "shaking_force <= 1 N")
+    text = run("still.toml", "--move-cm", "rod", "--objective", "shaking_moment", *limit)
+    assert cells(text, "shaking_force RMS") == ["N", "0", "1.0000"]
+    assert cells(text, "gauges.x peak to peak")[:2] == ["mm", "0"]
+    assert not re.search(r"[0-9]e-1[0-9] +[0-9]", text.partition("Before and after")[2])
+
+
+# -- gears, phases ---------------------------------------------------------------------------------
+
+GEARED = ("lee-kim-b", "--geared-counterweight", "rocker", "--pitch-radius", "50 mm",
+          "--objective", "shaking_energy", "--at-most", "416 g")  # fmt: skip
+
+
+def test_a_geared_counterweight_of_one_ratio() -> None:
+    words = (*GEARED, "--ratio", "0.8", "--radius", "74.257 mm")
+    text = run(*words, "-o", "geared.toml")
+    assert cells(text, "area under shaking_moment")[:3] == ["14.31", "9.928", "J"]
+    assert "counterweight: gear a shaft at (186.5, 0) mm of the frame to rocker" in text
+    assert "; proved: nothing that is allowed" in text
+    assert cells(text, "joints.counterweight-axis peak")[-1] == "new"
+    machine = eq.load("geared.toml")
+    moment = eq.forces(eq.move(machine, 720)).shaking_moment
+    assert measured(moment, "area") == pytest.approx(9.9284, abs=1e-3)
+
+
+def test_a_second_geared_counterweight_has_a_name_of_its_own() -> None:
+    run(*GEARED, "--ratio", "1", "-o", "one.toml")
+    run("one.toml", *GEARED[1:], "--ratio", "0.5", "-o", "two.toml")
+    machine = eq.load("two.toml")
+    assert [*machine.links][-2:] == ["counterweight", "counterweight-2"]
+    assert machine.title == "Planting mechanism B (Lee, Kim), balanced"
+
+
+def test_a_range_of_ratios_is_proved_one_by_one() -> None:
+    text = run(*GEARED, "--ratio", "0.8, 0.81")
+    assert "choices of gears; proved for each of them: nothing that is allowed" in text
+    teeth = changed(
+        "balance-geared-b",
+        ('ratio = [0.2, 3]\npitch_radius = "50 mm"', 'teeth = [39, 41]\nmodule = "2.5 mm"'),
+    )
+    text = run(teeth)
+    assert "for each of 9 choices of gears; proved: nothing that is allowed" in text
+    assert "teeth of module 2.500 mm, with the ratio" in text
+
+
+def test_phases_of_rows() -> None:
+    text = run("four-row-transplanter", "-o", "rows.toml")
+    assert "  rows: set the phases to 0, 180, 270, 90 deg" in text.splitlines()
+    assert "found among 64824 arrangements" in text
+    assert "is not proved of phases" in text
+    speeds = text.partition("Speed at which it shakes as before")[2]
+    assert cells(speeds, "all rows, shaking_force RMS") == ["501.4"]
+    phases = [math.degrees(row.phase) for row in eq.load("rows.toml").rows]
+    assert phases == pytest.approx([0, 180, 270, 90])
+    content = read("four-row-transplanter")
+    assert (content["bound"], content["gap"]) == (None, None)
+    assert content["rows"]["remaining_orders"][:2] == [4, 8]
+    assert [math.degrees(phase) for phase in content["rows"]["phases"]] == pytest.approx(phases)
+
+
+def test_phases_by_an_option() -> None:
+    path = changed("four-row-transplanter", ('phases = { step = "5 deg" }', ""))
+    assert "set the phases" in run(path, "--phases")
+
+
+# -- JSON, CSV, pictures, model file ---------------------------------------------------------------
+
+
+def test_json_is_the_result_of_the_function() -> None:
+    content = read("balance-crank")
+    found = eq.balance(eq.load("balance-crank"))
+    assert list(content) == list(found.to_dict())
+    for key in ("before", "after", "equivalent_speeds", "objectives", "gap", "prices", "bound"):
+        assert content[key] == found.to_dict()[key], key
+    assert content["changes"][0]["pieces"][0]["shape"] == "point"
+    assert content["changes"][0]["radius"] == pytest.approx(0.0357, abs=5e-5)
+    assert content["planting_kept"] is None
+    effects = content["sensitivities"]["shaking_force.y"]["sensitivities"]
+    assert effects["coupler.mass"]["rms"] > 0 and "values" not in effects["coupler.mass"]
+
+
+def test_json_of_a_process_is_all_of_its_output() -> None:
+    result = process("balance", "balance-coupler", "--json")
+    assert (result.status, result.err) == (0, "")
+    assert json.loads(result.out) == read("balance-coupler")
+
+
+def test_csv() -> None:
+    result = equipoise("balance", "balance-crank", "--csv", "x.csv")
+    assert succeeded(result).startswith("Planting mechanism type I")
+    assert result.err == "wrote x.csv\n"
+    with open("x.csv", encoding="utf-8", newline="") as file:
+        header, *rows = csv.reader(file)
+    assert header[0] == "crank_angle [rad]"
+    assert "drive_torque.after [N m]" in header
+    values = dict(zip(header, np.array(rows, float).T, strict=True))
+    assert len(rows) == 720
+    content = read("balance-crank")
+    for when in ("before", "after"):
+        force = values[f"shaking_force.y.{when} [N]"]
+        assert measured(force, "rms") == pytest.approx(content[when]["shaking_force.y.rms"])
+
+
+def test_pictures() -> None:
+    result = equipoise("balance", "balance-crank", "--plot", "pictures", "--format", "png")
+    succeeded(result)
+    names = sorted(path.name for path in Path("pictures").iterdir())
+    assert result.err == f"wrote {len(names)} pictures to pictures\n"
+    assert "force.png" in names
+    words = (*CRANK, "--front", "shaking_force.x", "shaking_force.y", "--points", "3")
+    result = equipoise("balance", *words, "--plot", "front")
+    succeeded(result)
+    assert result.err == "wrote 1 picture to front\n"
+
+
+@pytest.mark.parametrize(
+    "name", ["balance-crank", "balance-coupler", "balance-rig", "exudyn-slider-crank"]
+)
+def test_the_new_model_does_what_was_printed(name: str) -> None:
+    result = equipoise("balance", name, "--out", "new.toml", "--json")
+    assert result.err == "wrote new.toml\n"
+    content = json.loads(succeeded(result))
+    schema = json.loads(succeeded(equipoise("schema")))
+    text = Path("new.toml").read_text(encoding="utf-8")
+    jsonschema.validate(tomllib.loads(text), schema)
+    machine = eq.load("new.toml")
+    assert machine.title.endswith(", balanced")
+    assert machine.description.startswith("Changed by equipoise balance: ")
+    assert machine.balance is None
+    forces = eq.forces(eq.move(machine, 720, acceleration=0.0))
+    for output, values in (
+        ("shaking_force", forces.shaking_force.value),
+        ("shaking_moment", forces.shaking_moment),
+        ("drive_torque", forces.drive_torque),
+        *((f"joints.{name}", joint.value) for name, joint in forces.joints.items()),
+    ):
+        for measure in ("rms", "peak"):
+            wanted = content["after"][f"{output}.{measure}"]
+            assert measured(values, measure) == pytest.approx(wanted, rel=1e-9, abs=1e-9)
+    assert "ready to be analysed" in succeeded(equipoise("check", "new.toml"))
+
+
+def test_odd_file_names() -> None:
+    result = equipoise("balance", *CRANK, *FORCE, "-o", "odd name [1] %s.toml")
+    assert result.err == "wrote odd name [1] %s.toml\n"
+    succeeded(equipoise("analyze", "odd name [1] %s.toml"))
+
+
+def test_planting_figures_are_kept() -> None:
+    text = run("kim-chung-a", "--crank-counterweight", *FORCE)
+    assert "\nthe planting figures are unchanged" in text
+    assert read("kim-chung-a", "--crank-counterweight", *FORCE)["planting_kept"] is True
+
+
+# -- other questions -------------------------------------------------------------------------------
+
+FRONT = (*CRANK, "--front", "shaking_force.x", "shaking_force.y", "--points", "4")
+
+
+def test_front() -> None:
+    text = run(*FRONT)
+    rows = [line.split() for line in text.splitlines() if re.match(r" +[0-9]", line)]
+    values = np.array(rows, float)
+    assert values.shape == (4, 3)
+    assert np.all(np.diff(values[:, 0]) > 0)
+    assert np.all(np.diff(values[:, 1]) < 0)
+    assert values[[0, -1], :2] == pytest.approx(
+        np.array([[2.809, 5.109], [5.018, 3.016]]), rel=1e-3
+    )
+    assert "every point is as good as any can be, to" in text
+    content = read(*FRONT)
+    assert content["before"]["rms of shaking_force.x"] == pytest.approx(8.718, abs=5e-4)
+    found = [[p["first"], p["second"], 1e3 * p["added_mass"]] for p in content["points"]]
+    np.testing.assert_allclose(found, values, rtol=6e-4)
+    assert all(point["gap"] < 1e-7 and point["changes"] for point in content["points"])
+    succeeded(equipoise("balance", *FRONT, "--csv", "x.csv"))
+    lines = Path("x.csv").read_text(encoding="utf-8").splitlines()
+    assert lines[0] == "rms of shaking_force.x [N],rms of shaking_force.y [N],added mass [kg]"
+    assert len(lines) == 5
+
+
+def test_front_has_21_points() -> None:
+    assert len(read(*FRONT[:-2])["points"]) == 21
+
+
+def test_conditions() -> None:
+    text = run("yamashita-1", "--conditions")
+    assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0" in text
+    assert "The shaking force can be made zero, with every mass as it is." in text
+    content = read("yamashita-1", "--conditions")
+    assert [len(content[kind]["conditions"]) for kind in ("zero", "sine")] == [4, 2]
+    assert content["verdict"]["shaking_force"]["possible"] is True
+    assert content["verdict"]["shaking_moment"]["proof"]["unit"] == "kg"
+
+
+def test_sensitivities() -> None:
+    words = ("yamashita-2", "--sensitivities", "shaking_force.y")
+    text = run(*words, "--crank-zero", "-100 deg")
+    assert "crank angles from -100.0 deg" in text
+    row = cells(text, "coupler.center_x")
+    assert row[1] == "mm"
+    assert [float(part.strip(",")) for part in row[3:]] == pytest.approx([6.7, 265.8])
+    content = read(*words)
+    assert content["output"] == "shaking_force.y"
+    at = np.degrees(content["sensitivities"]["coupler.center_x"]["no_effect_at"]) + 100
+    assert at % 360 == pytest.approx([265.8, 6.7], abs=0.05)
+
+
+@pytest.mark.parametrize("output", ["shaking_force.x", "shaking_moment", "drive_torque"])
+def test_sensitivities_of_other_outputs(output: str) -> None:
+    text = run("lee-kim-a", "--sensitivities", output)
+    assert "coupler.mass" in text
+    assert "crank angles from" not in text
+
+
+def test_arrangements() -> None:
+    text = run("yamashita-2", "--arrangements", "4")
+    assert cells(text, "all in phase") == ["86.74", "0", "0"]
+    assert cells(text.partition("Figures")[2], "4 quarter turns") == ["13.80", "9.556", "6.522"]
+    wide = run("yamashita-2", "--arrangements", "4", "--spacing", "600 mm")
+    row = cells(wide.partition("Figures")[2], "4 quarter turns")
+    assert [float(part) for part in row] == pytest.approx([13.80, 2 * 9.556, 2 * 6.522], rel=1e-3)
+    content = read("yamashita-2", "--arrangements", "6")
+    assert [one["source"] for one in content["patterns"]][:1] == ["Table 5, 6 claws (a)"]
+
+
+def test_progress_of_a_log_does_not_reach_standard_output() -> None:
+    environment = {**os.environ, "PYTHONUTF8": "1"}
+    result = process("balance", *GEARED, "--ratio", "0.8, 0.9", "--json", env=environment)
+    assert result.status == 0
+    assert json.loads(result.out)["method"].startswith("cone program, for each of")

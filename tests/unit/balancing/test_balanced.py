@@ -1,0 +1,166 @@
+"""The result of balancing against analyses of the machines themselves."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.figures import figures_of
+from equipoise.mechanism.balance import (
+    AddedMass,
+    Balance,
+    Limit,
+    Objective,
+    Weight,
+)
+
+MACHINE = eq.load("yamashita-1")
+CRANK = AddedMass("crank", "A", Weight("any", 0.06, at_most=0.8))
+ROCKER = AddedMass("rocker", "D", Weight("any", 0.06, at_most=0.5))
+LIFT, TORQUE = Objective("shaking_force.y", "ripple"), Objective("drive_torque", "peak")
+PLAN = Balance(
+    masses=(CRANK, ROCKER),
+    objectives=(LIFT, replace(TORQUE, weight=0.5)),
+    limits=(Limit(Objective("joints.D", "peak"), ratio=1.02),),
+    added_mass=0.9,
+)
+FOUND = eq.balance(MACHINE, PLAN)
+
+
+def test_figures_are_those_of_the_analysis() -> None:
+    for machine, figures in ((MACHINE, FOUND.before), (FOUND.machine, FOUND.after)):
+        forces = eq.analyze(machine, 720, acceleration=0.0).forces
+        moment, torque = forces.shaking_moment, forces.drive_torque
+        wanted = {
+            "mass": sum(link.mass for link in machine.links.values()),
+            "shaking_force.rms": np.sqrt(np.mean(forces.shaking_force.size**2)),
+            "shaking_force.x.peak": np.max(np.abs(forces.shaking_force.x)),
+            "shaking_force.y.rms": np.sqrt(np.mean(forces.shaking_force.y**2)),
+            "shaking_moment.rms": np.sqrt(np.mean(moment**2)),
+            "shaking_moment.area": 2 * pi * np.mean(np.abs(moment)),
+            "drive_torque.ripple": np.std(torque),
+            "drive_torque.peak_to_peak": np.ptp(torque),
+            **{f"joints.{n}.peak": np.max(one.size) for n, one in forces.joints.items()},
+        }
+        assert wanted == pytest.approx({name: figures[name] for name in wanted}, rel=1e-12)
+
+
+def test_objectives_are_read_off_the_machines() -> None:
+    for machine, k in ((MACHINE, 0), (FOUND.machine, 1)):
+        forces = eq.analyze(machine, 720, acceleration=0.0).forces
+        assert FOUND.objectives[LIFT.name][k] == pytest.approx(np.std(forces.shaking_force.y))
+        assert FOUND.objectives[TORQUE.name][k] == pytest.approx(
+            np.max(np.abs(forces.drive_torque))
+        )
+
+
+def test_cost_bound_and_gap() -> None:
+    shares = {name: after / before for name, (before, after) in FOUND.objectives.items()}
+    assert FOUND.cost == pytest.approx(shares[LIFT.name] + 0.5 * shares[TORQUE.name])
+    assert FOUND.bound is not None and FOUND.gap is not None
+    assert FOUND.bound <= FOUND.cost < 1.5
+    assert FOUND.gap == pytest.approx((FOUND.cost - FOUND.bound) / 1.5)
+    assert FOUND.gap < 1e-8
+
+
+def test_limits_are_kept() -> None:
+    assert FOUND.after["joints.D.peak"] <= 1.02 * FOUND.before["joints.D.peak"] * (1 + 1e-8)
+    assert FOUND.added_mass <= 0.9 + 1e-8
+    assert FOUND.added_mass == pytest.approx(
+        sum(change.values["mass"] for change in FOUND.changes), rel=1e-9
+    )
+    for change, most in zip(FOUND.changes, (0.8, 0.5), strict=True):
+        assert change.values["mass"] <= most + 1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "wider"),
+    [
+        ("mass on rocker", lambda h: {"masses": (CRANK, heavier(ROCKER, h))}),
+        ("added mass", lambda h: {"added_mass": 0.9 + h}),
+        ("peak of joints.D", lambda h: {"limits": (Limit(Objective("joints.D", "peak"),
+                                                          at_most=JOINT + 1e2 * h),)}),
+    ],
+)  # fmt: skip
+def test_prices_are_differences(name: str, wider: object) -> None:
+    """Of the combined objective, for one SI unit more of the limit."""
+    step = 1e-4
+    more, less = (
+        eq.balance(MACHINE, replace(PLAN, **wider(sign * step))).cost  # type: ignore[operator]
+        for sign in (1, -1)
+    )
+    unit = 1e2 if name.startswith("peak") else 1.0
+    difference = (less - more) / (2 * step * unit)
+    assert FOUND.prices[name].price == pytest.approx(difference, rel=1e-3, abs=1e-5)
+
+
+JOINT = 1.02 * FOUND.before["joints.D.peak"]
+
+
+def heavier(added: AddedMass, more: float) -> AddedMass:
+    assert added.weight.at_most is not None
+    return replace(added, weight=replace(added.weight, at_most=added.weight.at_most + more))
+
+
+def test_changes_make_the_machine() -> None:
+    """Pieces screwed onto the old links are the new links."""
+    for change in FOUND.changes:
+        old, new = MACHINE.links[change.link], FOUND.machine.links[change.link]
+        bodies = [(old.mass, complex(*old.center_of_mass), old.inertia)]
+        bodies += [(p["mass"], complex(*p["place"]), 0.0) for p in change.values["pieces"]]
+        mass = sum(m for m, _, _ in bodies)
+        center = sum(m * at for m, at, _ in bodies) / mass
+        inertia = sum(own + m * abs(at - center) ** 2 for m, at, own in bodies)
+        assert new.mass == pytest.approx(mass)
+        assert new.center_of_mass == pytest.approx((center.real, center.imag))
+        assert new.inertia == pytest.approx(inertia, rel=1e-7)
+
+
+def test_equivalent_speeds_give_the_old_figures() -> None:
+    assert FOUND.equivalent_speeds
+    for name, speed in FOUND.equivalent_speeds.items():
+        faster = figures_of(FOUND.machine.with_drive(speed=speed))
+        assert faster[name] == pytest.approx(FOUND.before[name], rel=1e-9)
+
+
+def test_json() -> None:
+    told = json.loads(json.dumps(FOUND.to_dict(), default=np.ndarray.tolist))
+    wanted = {"before", "after", "changes", "gap", "prices", "bound", "cost", "objectives", "notes"}
+    assert wanted <= set(told)
+    assert told["before"] == pytest.approx(FOUND.before)
+    assert told["objectives"][LIFT.name]["after"] == FOUND.objectives[LIFT.name][1]
+    assert told["prices"]["added mass"]["at_most"] == 0.9
+    assert [change["link"] for change in told["changes"]] == ["crank", "rocker"]
+    assert "shaking_force.y" in told["sensitivities"]
+    assert told["planting_kept"] is None
+
+
+def test_units_of_objectives_and_limits() -> None:
+    assert FOUND.units == {
+        LIFT.name: "N",
+        TORQUE.name: "N m",
+        "peak of joints.D": "N",
+        "mass on crank": "kg",
+        "mass on rocker": "kg",
+        "radius on crank": "m",
+        "radius on rocker": "m",
+        "added mass": "kg",
+    }
+
+
+def test_columns_before_and_after() -> None:
+    columns = {name: values for name, _, values in FOUND.columns()}
+    for name, machine in (("before", MACHINE), ("after", FOUND.machine)):
+        force = eq.analyze(machine, 720, acceleration=0.0).forces.shaking_force
+        scale = np.max(force.size)
+        assert columns[f"shaking_force.y.{name}"] == pytest.approx(force.y, abs=1e-12 * scale)
+    assert len(columns) == 9
+
+
+def test_a_gap_of_nothing_proved() -> None:
+    assert replace(FOUND, bound=None).gap is None

@@ -1,0 +1,204 @@
+"""The search for phases: what it refuses, what it notes, and what it prints."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from math import radians
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
+from equipoise.balancing.phase_search import Search
+from equipoise.balancing.phases import choose_phases
+from equipoise.errors import EquipoiseError
+from equipoise.mechanism.balance import Objective, Phases
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.support import Row
+from equipoise.terminal.phases import phasing_told
+
+TYPE_II = eq.load("yamashita-2")
+FORCE = Objective("shaking_force")
+ROLL = Objective("roll_moment")
+
+
+def rows(count: int, phase: float = 0.0, spacing: float = 0.3) -> Machine:
+    """Rows side by side, each ahead of the one before by a phase."""
+    middle = (count - 1) / 2
+    return TYPE_II.with_rows(Row(k * phase, spacing * (k - middle)) for k in range(count))
+
+
+@pytest.mark.parametrize(
+    ("machine", "objectives", "step", "sentence"),
+    [
+        (TYPE_II, [FORCE], 5, "rows: got 0 rows, which leaves no phase to choose; give two at"),
+        (rows(1), [FORCE], 5, "rows: got 1 rows, which leaves no phase to choose; give two at"),
+        (rows(2), [], 5, "got no objective; give what is to become small"),
+        (rows(2), [FORCE], 0, "got a step of 0 deg; give more than 0 deg and at most 90 deg"),
+        (rows(2), [FORCE], 91, "got a step of 91 deg; give more than 0 deg and at most 90 deg"),
+        (
+            rows(2),
+            [Objective("joints.B")],
+            5,
+            "joints.B acts within one row, so that no phase changes it; choose an output of all",
+        ),
+        (rows(2), [FORCE, Objective("nothing")], 5, "objectives[2].output: no output is called"),
+        (rows(2), [Objective("gauges.seat")], 5, "objectives[1].output: there is no gauge"),
+        (
+            rows(2),
+            [Objective("drive_torque", orders=(0.0,))],
+            5,
+            "rms of drive_torque (order 0): no phase changes it; choose another output, measure",
+        ),
+        (rows(2), [Objective("shaking_force.x", orders=(0.5,))], 5, "no phase changes it"),
+        (rows(3, spacing=0.0), [ROLL], 5, "rms of roll_moment: no phase changes it"),
+        (
+            TYPE_II.with_rows([Row(), Row(lateral=1.0)]),
+            [Objective("yaw_moment", "peak")],
+            5,
+            "peak of yaw_moment: no phase changes it",
+        ),
+        (TYPE_II.with_link("crank", mass=None, center_of_mass=None, inertia=None).with_rows(
+            [Row(), Row()]), [FORCE], 5, "forces need mass"),
+    ],
+)  # fmt: skip
+def test_refused(machine: Machine, objectives: list[Objective], step: float, sentence: str) -> None:
+    with pytest.raises(EquipoiseError) as caught:
+        choose_phases(machine, objectives, Phases(radians(step)))
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_rows_that_share_no_order_have_peaks_all_the_same() -> None:
+    """A single row in each order: phases do not change the mean square, but they do the peak."""
+    machine = TYPE_II.with_rows([Row(), Row(lateral=1.0), Row(lateral=0.5)])
+    assert choose_phases(machine, [Objective("yaw_moment", "peak")]).combined[1] < 1.0
+
+
+@pytest.mark.parametrize(("levels", "count"), [(3, 1), (4, 2), (5, 3), (2, 6)])
+def test_sorted_choices(levels: int, count: int) -> None:
+    from itertools import combinations_with_replacement
+
+    expected = list(combinations_with_replacement(range(levels), count))
+    assert [tuple(row) for row in sorted_choices(levels, count).tolist()] == expected
+
+
+def search(machine: Machine, *objectives: Objective, step: float = 5.0) -> Search:
+    return Search(machine, objectives, Phases(radians(step)), "sum")
+
+
+def test_rows_that_are_alike() -> None:
+    assert alike(search(rows(4), FORCE).cost) == [[0, 1, 2, 3]]
+    assert alike(search(rows(4), FORCE, ROLL).cost) == [[0], [1], [2], [3]]
+    paired = rows(4).with_rows(Row(lateral=z) for z in (-0.3, 0.3, -0.3, 0.3))
+    assert alike(search(paired, ROLL).cost) == [[0, 2], [1, 3]]
+    offset = rows(3).with_rows([Row(), Row(offset=(0.1, 0.0)), Row()])
+    assert alike(search(offset, Objective("shaking_moment")).cost) == [[0, 2], [1]]
+
+
+def test_arrangements_are_counted_by_groups() -> None:
+    paired = rows(4).with_rows(Row(lateral=z) for z in (-0.3, 0.3, -0.3, 0.3))
+    assert Grid(search(rows(4), FORCE).cost, 12).count == 14 * 13 * 12 // 6
+    assert Grid(search(rows(4), ROLL).cost, 12).count == 12**3
+    assert Grid(search(paired, ROLL).cost, 12).count == 12 * (12 * 13 // 2)
+
+
+def test_first_grid_is_as_fine_as_can_be_afforded() -> None:
+    for count, levels in ((4, 72), (6, 36), (8, 24)):
+        grid = coarsened(search(rows(count), FORCE).cost, 72)
+        assert grid is not None
+        assert grid.levels == levels
+    assert coarsened(search(rows(14), ROLL).cost, 72) is None
+
+
+def test_distinct_arrangements() -> None:
+    cells = np.array([[0.0, 1.0], [0.0, 1.1], [0.0, 6.2], [0.0, 0.05], [0.0, 3.0]])
+    far = distinct(cells, 2 * np.pi, [0.5], 10)
+    assert far[:, 1].tolist() == [1.0, 6.2, 3.0]
+    near = distinct(cells, 2 * np.pi, [0.5, 0.08], 10)
+    assert near[:, 1].tolist() == [1.0, 6.2, 3.0, 1.1, 0.05]
+
+
+def test_step_that_does_not_divide_a_turn_is_made_smaller() -> None:
+    found = choose_phases(rows(2), [FORCE], Phases(radians(7)))
+    assert np.degrees(found.step) == pytest.approx(360 / 52)
+    assert np.degrees(found.phases[1]) == pytest.approx(180.0, abs=1e-6)
+
+
+def test_row_1_keeps_its_phase_and_rows_their_places() -> None:
+    machine = rows(3, 0.3).with_rows(replace(row, phase=row.phase + 8.0) for row in rows(3).rows)
+    found = choose_phases(machine, [FORCE])
+    assert found.phases[0] == 8.0
+    assert [row.phase for row in found.machine.rows] == list(found.phases)
+    assert [row.lateral for row in found.machine.rows] == [row.lateral for row in machine.rows]
+
+
+@pytest.mark.parametrize("combine", ["sum", "squares"])
+def test_combined_value(combine: str) -> None:
+    wishes = [replace(FORCE, weight=2.0), Objective("drive_torque", "ripple")]
+    found = choose_phases(rows(3, 0.5), wishes, combine=combine)  # type: ignore[arg-type]
+    shares = np.array([found.after[w.name] / found.before[w.name] * w.weight for w in wishes])
+    expected = np.sum(shares) if combine == "sum" else np.linalg.norm(shares)
+    assert found.combined[1] == pytest.approx(expected, rel=1e-12)
+    assert found.combined[0] == pytest.approx(3.0 if combine == "sum" else np.hypot(2.0, 1.0))
+
+
+def test_objective_that_is_0_before_counts_over_all_rows_alone() -> None:
+    found = choose_phases(rows(2), [FORCE, ROLL])
+    assert found.before[ROLL.name] == 0.0
+    assert any("rms of roll_moment is 0 before" in note for note in found.notes)
+    one = choose_phases(rows(2, 0.7), [ROLL]).before[ROLL.name]
+    assert found.after[ROLL.name] >= 0.0
+    assert one > 0
+
+
+def test_many_rows_are_noted() -> None:
+    found = choose_phases(rows(6), [FORCE])
+    assert np.degrees(found.step) == pytest.approx(10.0)
+    assert "a grid of 5 deg has too many arrangements: one of 10 deg" in found.notes[0]
+    more = choose_phases(rows(13), [FORCE, ROLL], combine="squares")
+    assert more.combinations == 0
+    assert "too many rows for a grid" in more.notes[0]
+    assert more.combined[1] < 0.2
+
+
+def test_many_equal_rows_are_laid_out_too() -> None:
+    """More orders than can be tried: no swap of two rows twists less."""
+    machine = rows(10)
+    found = choose_phases(machine, [FORCE], Phases(radians(30)))
+    assert found.remaining[0] == 10.0
+    twist = np.hypot(*(after for _, after in found.lateral.values()))
+    sorted_rows = machine.with_rows(
+        replace(row, phase=phase)
+        for row, phase in zip(machine.rows, sorted(found.phases), strict=True)
+    )
+    again = choose_phases(sorted_rows, [FORCE], Phases(radians(30)))
+    assert twist < 0.5 * np.hypot(*(before for before, _ in again.lateral.values()))
+
+
+def test_progress_is_told() -> None:
+    told: list[tuple[int, int]] = []
+    found = choose_phases(rows(3), [FORCE], progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (found.combinations, found.combinations)
+
+
+def test_values() -> None:
+    found = choose_phases(rows(2), [FORCE])
+    values = json.loads(json.dumps(found.to_dict()))
+    assert values["phases"] == pytest.approx([0.0, np.pi])
+    assert values["objectives"][0]["name"] == "rms of shaking_force"
+    assert values["remaining_orders"][:3] == [2.0, 4.0, 6.0]
+    assert values["lateral"]["roll_moment"]["before"] == 0.0
+    assert values["combinations"] == 72
+    assert values["notes"] == []
+
+
+def test_printed() -> None:
+    told = phasing_told(choose_phases(rows(4), [FORCE, ROLL]))
+    assert "orders of the shaking force that are left: 2, 4, 6, 8" in told
+    assert [line.split() for line in told.splitlines() if line.startswith("4 ")] == [
+        ["4", "450.0", "0", "0", "0"]
+    ]
+    assert "roll moment" in told

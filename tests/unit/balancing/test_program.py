@@ -1,0 +1,219 @@
+"""Cone programs against problems whose solutions are known, and prices against differences.
+
+The solver stops at 1e-10 of the cost and of the constraints; solutions are met to 1e-8, and where
+the cost is flat about them, to its root.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from equipoise.balancing.program import Affine, Block, NoSolutionError, Program
+
+CLOSE = 1e-8
+
+
+def row(columns: list[int], factors: list[float], constant: float = 0.0) -> Affine:
+    return Affine.of(columns, factors, constant)
+
+
+def fixed(*values: float) -> Affine:
+    """A row that changes with the limit alone."""
+    return Affine(np.zeros((len(values), 0)), np.zeros(0, int), np.array(values))
+
+
+def factory(hours: float = 18.0) -> Program:
+    """Most of 3 x + 5 y with x <= 4, 2 y <= 12, 3 x + 2 y <= hours: x = 2, y = 6, 36 in all."""
+    program = Program()
+    x, y = map(int, program.numbers(2))
+    program.nonnegative(Affine(np.eye(2), np.array([x, y]), np.zeros(2)))
+    program.nonnegative(row([x], [-1.0], 4.0), "first", fixed(1.0))
+    program.nonnegative(row([y], [-2.0], 12.0), "second", fixed(1.0))
+    program.nonnegative(row([x, y], [-3.0, -2.0], hours), "third", fixed(1.0))
+    program.cost = {x: -3.0, y: -5.0}
+    return program
+
+
+def test_linear_program() -> None:
+    found = factory().solve()
+    assert found.x == pytest.approx([2.0, 6.0], abs=CLOSE)
+    assert found.value == pytest.approx(-36.0, abs=CLOSE)
+    assert found.bound <= found.value
+    assert found.value - found.bound < 1e-7
+    assert found.prices == pytest.approx({"first": 0.0, "second": 1.5, "third": 1.0}, abs=1e-7)
+
+
+def test_limits_can_be_left_out() -> None:
+    """Without 3 x + 2 y <= 18 the other two are met with equality."""
+    program = factory()
+    less = program.without({"third"})
+    assert program.names == ["first", "second", "third"]
+    assert less.names == ["first", "second"]
+    assert less.solve().x == pytest.approx([4.0, 6.0], abs=CLOSE)
+    assert len(program.blocks) == len(less.blocks) + 1
+
+
+def test_a_copy_goes_its_own_way() -> None:
+    program = factory()
+    copy = program.copy()
+    copy.zero(row([1], [1.0], -1.0))
+    copy.cost[0] = -30.0
+    assert copy.solve().x == pytest.approx([4.0, 1.0], abs=CLOSE)
+    assert program.solve().value == pytest.approx(-36.0, abs=CLOSE)
+
+
+def test_what_contradicts_itself() -> None:
+    program = factory(hours=-1.0)
+    assert not program.feasible()
+    assert program.without({"third"}).feasible()
+    with pytest.raises(NoSolutionError, match="Infeasible"):
+        program.solve()
+
+
+def test_feasibility_does_not_depend_on_the_cost() -> None:
+    program = Program()
+    x = int(program.numbers(1)[0])
+    program.nonnegative(row([x], [1.0]))
+    program.cost = {x: -1.0}  # as small as one likes
+    assert program.feasible()
+    with pytest.raises(NoSolutionError):
+        program.solve()
+
+
+def away(radius: float, weight: float = 2.0) -> Program:
+    """Least x + weight y on a disc about (1, 1)."""
+    program = Program()
+    places = program.numbers(2)
+    inner = Affine(np.vstack([np.zeros(2), np.eye(2)]), places, np.array([radius, -1.0, -1.0]))
+    program.cones(inner, 3, "radius", fixed(1.0, 0.0, 0.0))
+    program.cost = {int(places[0]): 1.0, int(places[1]): weight}
+    return program
+
+
+def test_second_order_cone() -> None:
+    found = away(0.5).solve()
+    assert found.x == pytest.approx(1 - 0.5 * np.array([1, 2]) / np.sqrt(5), abs=1e-7)
+    assert found.value == pytest.approx(3 - 0.5 * np.sqrt(5), abs=CLOSE)
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.7])
+def test_price_of_a_cone_is_a_difference(radius: float) -> None:
+    step = 1e-3
+    more, less = (away(radius + sign * step).solve().value for sign in (1, -1))
+    price = away(radius).solve().prices["radius"]
+    assert price == pytest.approx((less - more) / (2 * step), rel=1e-6)
+    assert price == pytest.approx(np.sqrt(5), rel=1e-6)
+
+
+def test_price_whose_slope_depends_on_the_numbers() -> None:
+    """y >= 2 and y <= a x with the cost x: x = 2 / a, so that a unit more of a saves 2 / a^2."""
+
+    def built(a: float) -> Program:
+        program = Program()
+        x, y = map(int, program.numbers(2))
+        program.nonnegative(row([y], [1.0], -2.0))
+        program.nonnegative(row([x, y], [a, -1.0]), "slope", row([x], [1.0]))
+        program.cost = {x: 1.0}
+        return program
+
+    assert built(0.5).solve().prices["slope"] == pytest.approx(8.0, rel=1e-6)
+
+
+def test_rotated_cone() -> None:
+    """Least x + 4 y with x y >= 3^2 + 4^2 is 2 sqrt(4 25) at x = 10, y = 2.5."""
+    program = Program()
+    x, y, *z = map(int, program.numbers(4))
+    for place, value in zip(z, (3.0, 4.0), strict=True):
+        program.zero(row([place], [1.0], -value))
+    both = Affine(np.eye(2), np.array(z), np.zeros(2))
+    program.rotated(row([x], [1.0]), row([y], [1.0]), both)
+    program.cost = {x: 1.0, y: 4.0}
+    found = program.solve()
+    assert found.value == pytest.approx(20.0, abs=1e-7)
+    assert found.x[:2] == pytest.approx([10.0, 2.5], abs=1e-4)
+
+
+def test_rotated_cone_over_sums_that_share_numbers() -> None:
+    """(x + 1) (2 - x) >= t^2 with the most of t: at x = 1/2, t = 3/2."""
+    program = Program()
+    x, t = map(int, program.numbers(2))
+    program.rotated(row([x], [1.0], 1.0), row([x], [-1.0], 2.0), row([t], [1.0]))
+    program.cost = {t: -1.0}
+    found = program.solve()
+    assert found.x == pytest.approx([0.5, 1.5], abs=1e-5)
+    assert found.value == pytest.approx(-1.5, abs=CLOSE)
+
+
+def test_sparse_rows_do_what_full_ones_do() -> None:
+    rng = np.random.default_rng(1)
+    factors = rng.normal(size=(40, 6)) * (rng.random((40, 6)) < 0.3)
+    values = []
+    for kind in (np.asarray, sparse.csr_array):
+        program = Program()
+        program.numbers(3)
+        places = program.numbers(6)
+        program.nonnegative(Affine(kind(factors), places, np.ones(40)))
+        program.nonnegative(Affine(np.eye(6), places, np.full(6, 5.0)))
+        program.nonnegative(Affine(-np.eye(6), places, np.full(6, 5.0)))
+        program.nonnegative(Affine(np.eye(3), np.arange(3), np.zeros(3)))
+        program.cost = {int(place): 1.0 for place in places}
+        values.append(program.solve().value)
+        assert program.blocks[0].rows.at(np.ones(9)) == pytest.approx(factors.sum(axis=1) + 1)
+    assert values[0] == pytest.approx(values[1], abs=CLOSE)
+    assert values[0] > -30.0
+
+
+def test_rows_with_a_spread_constant() -> None:
+    rows = Affine.of([2, 0], [[1.0, 2.0], [3.0, 4.0]], 5.0)
+    assert rows.at(np.array([1.0, 100.0, 10.0])) == pytest.approx([17.0, 39.0])
+
+
+def round_about(gradual: bool) -> Program:
+    """Least x + 2 y within 4000 half-planes round a disc of radius 2: -2 sqrt 5."""
+    program = Program()
+    x, y = map(int, program.numbers(2))
+    angle = np.arange(4000) * (2 * np.pi / 4000)
+    rows = Affine(-np.array([np.cos(angle), np.sin(angle)]).T, np.array([x, y]), np.full(4000, 2.0))
+    block = Block("nonnegative", rows, name="radius", slope=fixed(*np.ones(4000)))
+    if gradual:
+        program.gradually(block)
+    else:
+        program.blocks.append(block)
+    program.cost = {x: 1.0, y: 2.0}
+    return program
+
+
+def test_rows_that_are_taken_in_one_by_one() -> None:
+    """Few of them, with the same result and the same price."""
+    program, whole = round_about(True), round_about(False).solve()
+    found = program.solve()
+    assert found.value == pytest.approx(whole.value, abs=1e-7)
+    assert found.x == pytest.approx(whole.x, abs=1e-5)
+    assert found.bound <= whole.value + 1e-9
+    assert found.prices["radius"] == pytest.approx(np.sqrt(5), rel=1e-5)
+    assert sum(block.groups for block in program.blocks) < 400
+    assert program.waiting[0].slack(found.x).min() > -1e-8
+    assert program.without({"radius"}).waiting == []
+
+
+def test_what_is_taken_in_serves_the_parent_too() -> None:
+    program = round_about(True)
+    start = len(program.blocks)
+    copy = program.copy()
+    copy.solve()
+    assert len(program.blocks) > start
+    assert len(program.blocks) == len(copy.blocks)
+
+
+def test_lifts_let_go_of_their_squares() -> None:
+    program = Program()
+    lift, y = map(int, program.numbers(2))
+    program.rotated(row([lift], [1.0]), fixed(1.0), row([y], [1.0]), lift)
+    program.nonnegative(row([lift], [1.0], 7.0))
+    program.zero(row([y], [1.0], -2.0))
+    program.cost = {lift: 1.0}
+    assert program.solve().value == pytest.approx(4.0, abs=1e-7)
+    assert program.without_squares({lift}).solve().value == pytest.approx(-7.0, abs=1e-7)
+    assert program.without_squares({y}).solve().value == pytest.approx(4.0, abs=1e-7)

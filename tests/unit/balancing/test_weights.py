@@ -1,0 +1,248 @@
+"""Added masses: their numbers against integrals over real bodies, and the edges of their sets.
+
+Integrals are exact to rounding.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+
+from equipoise.balancing.parts import MovedCenter
+from equipoise.balancing.program import Affine, NoSolutionError, Program
+from equipoise.balancing.weights import AddedWeight
+from equipoise.mechanism.balance import SHAPES, CenterMove, Shape, Weight, largest_mass
+from unit.balancing.bodies import ROOMS, Array, machine_with_a_room, part_of, random_numbers
+
+SHAPED = pytest.mark.parametrize("shape", SHAPES)
+SEEDS = pytest.mark.parametrize("seed", range(5))
+
+
+def program_of(part: AddedWeight) -> tuple[Program, Array]:
+    program = Program()
+    places = program.numbers(part.count)
+    part.constrain(program, places)
+    return program, places
+
+
+def holds(part: AddedWeight, numbers: Array, slack: float = 1e-9) -> bool:
+    """Whether numbers are allowed, but for slack."""
+    program, places = program_of(part)
+    rows = np.eye(part.count)
+    program.nonnegative(Affine(rows, places, slack - numbers))
+    program.nonnegative(Affine(-rows, places, slack + numbers))
+    return program.feasible()
+
+
+def least(part: AddedWeight, cost: dict[str, float]) -> Array:
+    """Numbers at the least cost, given by their names."""
+    program, places = program_of(part)
+    program.cost = {int(places[part.names.index(name)]): x for name, x in cost.items()}
+    return np.asarray(program.solve().x[places])
+
+
+@SHAPED
+@SEEDS
+def test_effect_is_that_of_a_real_body(shape: Shape, seed: int) -> None:
+    part = part_of(ROOMS[shape])
+    numbers, wanted = random_numbers(part, np.random.default_rng(seed))
+    scale = np.array([1, part.reach, part.reach, part.reach**2]) * wanted[0]
+    assert (numbers @ part.effect - wanted) / scale == pytest.approx(np.zeros(4), abs=1e-12)
+
+
+@SHAPED
+@SEEDS
+def test_every_real_body_is_allowed(shape: Shape, seed: int) -> None:
+    part = part_of(ROOMS[shape])
+    numbers, _ = random_numbers(part, np.random.default_rng(seed))
+    assert holds(part, numbers, 1e-9)
+
+
+@pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
+def test_no_body_reaches_beyond_its_room(shape: Shape) -> None:
+    """The largest first moment of a given mass, by the bodies' own formulas."""
+    weight = replace(ROOMS[shape], at_most=None, mass=0.3)
+    part = part_of(weight)
+    found = least(part, {"x": -1.0})
+    plate, room, inner = 0.008 * 7850.0, weight.radius, weight.inner_radius
+    half = 0.3 / (plate * (room**2 - inner**2))
+    wanted = {
+        "any": 0.3 * room,
+        "point": 0.3 * room,
+        "disc": 0.3 * (room - np.sqrt(0.3 / (pi * plate))),
+        "sector": 2 / 3 * plate * (room**3 - inner**3) * np.sin(half),
+    }[shape]
+    assert found[1] * part.mass_unit * part.reach == pytest.approx(wanted, rel=1e-7)
+
+
+@pytest.mark.parametrize("angle", [0.3, 1.2, pi / 2, 2.4, 3.1])
+def test_moment_of_a_sector_follows_the_sine(angle: float) -> None:
+    """Its half angle: past a right angle more mass throws less."""
+    weight = ROOMS["sector"]
+    mass = 0.008 * 7850.0 * (weight.radius**2 - weight.inner_radius**2) * angle
+    part = part_of(replace(weight, mass=mass))
+    found = least(part, {"x": -0.6, "y": -0.8})
+    most = 2 / 3 * 0.008 * 7850.0 * (weight.radius**3 - weight.inner_radius**3)
+    moment = np.hypot(*found[1:]) * part.mass_unit * part.reach
+    assert moment == pytest.approx(most * np.sin(angle), rel=1e-6)
+
+
+def test_the_best_sector_is_half_a_ring() -> None:
+    part = part_of(ROOMS["sector"])
+    found = least(part, {"x": -1.0})
+    assert found[0] * part.mass_unit == pytest.approx(largest_mass(part.weight) / 2, rel=1e-4)
+
+
+def test_sectors_that_there_can_be_are_not_cut_off() -> None:
+    program, _ = program_of(part_of(ROOMS["sector"]))
+    (cutter,) = program.cutters
+    assert not cutter(np.array([0.5, 0.1, 0.1]))
+    cuts = cutter(np.array([0.5, 0.7, 0.7]))
+    assert len(cuts) > 1
+    assert all(block.slack(np.array([0.5, 0.7, 0.7]))[0] < 0 for block in cuts)
+    assert all(block.slack(np.array([0.5, 0.1, 0.1]))[0] > 0 for block in cuts)
+
+
+def test_the_best_disc() -> None:
+    """m (R - sqrt(m / (pi plate))) is largest where the disc's radius is two thirds of the room."""
+    part = part_of(ROOMS["disc"])
+    found = least(part, {"y": -1.0})
+    plate = 0.008 * 7850.0
+    assert found[0] * part.mass_unit == pytest.approx(plate * pi * (0.04) ** 2, rel=1e-4)
+    assert found[2] * part.mass_unit * part.reach == pytest.approx(plate * pi * 0.04**2 * 0.02)
+
+
+@pytest.mark.parametrize("shape", ["disc", "ring", "sector"])
+def test_no_more_mass_than_fits(shape: Shape) -> None:
+    part = part_of(ROOMS[shape])
+    found = least(part, {"m": -1.0})
+    assert found[0] * part.mass_unit == pytest.approx(largest_mass(part.weight), rel=1e-6)
+
+
+@SHAPED
+def test_price_of_the_most_mass(shape: Shape) -> None:
+    """Named after its link, for each kg."""
+    part = part_of(replace(ROOMS[shape], at_most=0.1))
+    program, places = program_of(part)
+    program.cost = {int(places[0]): -1.0}
+    assert program.solve().prices["mass on crank"] == pytest.approx(1 / part.mass_unit, rel=1e-6)
+
+
+def test_price_of_the_radius() -> None:
+    """Of a point of 0.7 kg thrown outwards: 0.7 kg m for each m."""
+    part = part_of(ROOMS["point"])
+    program, places = program_of(part)
+    outwards = -part.mass_unit * part.reach
+    program.cost = {int(places[1]): 0.6 * outwards, int(places[2]): 0.8 * outwards}
+    assert program.solve().prices["radius on crank"] == pytest.approx(0.7, rel=1e-6)
+
+
+def test_price_of_the_radius_for_inertia() -> None:
+    part = part_of(ROOMS["any"])
+    program, places = program_of(part)
+    program.cost = {int(places[3]): -part.mass_unit * part.reach**2}
+    assert program.solve().prices["radius on crank"] == pytest.approx(0.7 * 2 * 0.06, rel=1e-6)
+
+
+def test_a_given_mass_is_kept() -> None:
+    part = part_of(Weight("any", 0.06, mass=0.2))
+    assert least(part, {"m": -1.0})[0] * part.mass_unit == pytest.approx(0.2)
+    part = part_of(Weight("point", mass=0.2))  # in a room without end
+    assert least(part, {"m": 1.0})[0] * part.mass_unit == pytest.approx(0.2)
+
+
+@pytest.mark.parametrize("shape", ["point", "disc", "ring"])
+def test_squares_lie_on_or_above_their_parabolas(shape: Shape) -> None:
+    part = part_of(ROOMS[shape])
+    program, places = program_of(part)
+    squares = part.constrain(Program(part.count), places)
+    assert len(squares) == {"point": 2, "disc": 3, "ring": 1}[shape]
+    program.cost = {square.lift: -1.0 for square in squares} | {int(places[0]): 0.5}
+    x = program.solve().x
+    assert all(square.missed(x) >= -1e-8 for square in squares)
+    tight = part.tightened(x[places], np.ones(part.count, bool))
+    full = np.zeros(program.count)
+    full[places] = tight
+    assert [square.missed(full) for square in squares] == pytest.approx([0] * len(squares))
+
+
+def test_inertia_that_does_not_matter_is_least() -> None:
+    part = part_of(ROOMS["any"])
+    numbers = np.array([0.5, 0.2, 0.1, 0.4])
+    matters = np.array([True, True, True, False])
+    assert part.tightened(numbers, matters)[3] == pytest.approx((0.2**2 + 0.1**2) / 0.5)
+    assert part.tightened(numbers, ~matters)[3] == pytest.approx(0.4)
+
+
+def test_a_trace_of_mass_is_none() -> None:
+    part = part_of(ROOMS["point"])
+    found = part.tightened(np.array([1e-8, 1e-8, 0, 1e-8, 0]), np.ones(5, bool))
+    assert not np.any(found)
+    (change,) = part.changes(found)
+    assert change.values["pieces"] == []
+    assert change.values["moment"] == change.values["radius"] == 0.0
+
+
+@SHAPED
+def test_change_as_the_workshop_reads_it(shape: Shape) -> None:
+    part = part_of(ROOMS[shape])
+    numbers, (mass, x, y, _) = random_numbers(part, np.random.default_rng(8))
+    (change,) = part.changes(numbers)
+    moment = complex(x, y) - mass * part.center
+    told = change.to_dict()
+    assert (told["kind"], told["link"], told["at"]) == ("added mass", "crank", "R")
+    assert told["mass"] == pytest.approx(mass, rel=1e-5)
+    assert told["moment"] == pytest.approx(abs(moment), rel=1e-4, abs=1e-9)
+    if shape != "ring":
+        assert told["direction"] == pytest.approx(np.angle(moment), abs=1e-5)
+        assert told["radius"] == pytest.approx(abs(moment) / mass, rel=1e-4)
+
+
+# -- moved centres of mass -------------------------------------------------------------------------
+
+
+def moved(**room: object) -> MovedCenter:
+    return MovedCenter(machine_with_a_room(), CenterMove("rocker", **room))  # type: ignore[arg-type]
+
+
+def best_center(part: MovedCenter, *cost: float) -> tuple[Array, dict[str, float]]:
+    program = Program()
+    places = program.numbers(4)
+    part.constrain(program, places)
+    program.cost = dict(zip(map(int, places), cost, strict=True))
+    found = program.solve()
+    return found.x[places], found.prices
+
+
+def test_effect_of_a_moved_center() -> None:
+    part = moved(x=(-0.2, 0.3), y=(-0.1, 0.1))
+    mass = 0.5
+    numbers = part.tightened(np.array([0.3, -0.1, 9.0, 9.0]), np.ones(4, bool))
+    place = np.array([0.3, -0.1]) * part.length
+    wanted = mass * np.array([0, *place, place @ place])
+    assert numbers @ part.effect == pytest.approx(wanted)
+    (change,) = part.changes(numbers)
+    assert change.values["to"] == pytest.approx(tuple(place))
+    assert change.values["from"] == pytest.approx((0.4 * 0.8 + 0.01, 0.03))
+
+
+def test_center_stays_in_its_rectangle() -> None:
+    part = moved(x=(-0.2, 0.3), y=(-0.1, 0.1))
+    found, _ = best_center(part, -1.0, 1.0, 0.0, 0.0)
+    assert found[:2] * part.length == pytest.approx([0.3, -0.1], abs=1e-7)
+    lifted, _ = best_center(part, 0.0, 0.0, -1.0, -1.0)
+    assert lifted[2] * part.length**2 == pytest.approx(0.3**2)
+    with pytest.raises(NoSolutionError):
+        best_center(moved(x=(0.3, -0.2)), 0.0, 0.0, 0.0, 0.0)
+
+
+def test_center_stays_in_its_circle() -> None:
+    """And a unit more of radius moves it a unit farther."""
+    part = moved(center=(0.1, 0.05), radius=0.04)
+    found, prices = best_center(part, -0.6, -0.8, 0.0, 0.0)
+    assert found[:2] * part.length == pytest.approx([0.124, 0.082], abs=1e-7)
+    (price,) = prices.values()
+    assert price * part.length == pytest.approx(1.0, rel=1e-6)
