@@ -21,6 +21,8 @@ EXAMPLES = (
     "balance-geared-b",
     "balance-geared-c",
     "balance-rig",
+    "balance-shafts",
+    "balance-spring",
     "class-three",
     "drag-link",
     "exudyn-slider-crank",

@@ -113,7 +113,7 @@ def test_prices_of_masses() -> None:
     text = run(*CRANK, *FORCE, "--radius", "40 mm", "--limit", "added_mass <= 300 g")
     assert cells(text, "added mass")[:3] == ["300.0", "300.0", "g"]
     text = run(*words, "--objective", "drive_torque")
-    assert cells(text, "mass on crank")[-3:] == ["%", "per", "g"]
+    assert cells(text, "mass on crank")[-5:] == ["%", "of", "all", "per", "g"]
 
 
 SHAPES = {
@@ -246,7 +246,7 @@ def test_a_second_geared_counterweight_has_a_name_of_its_own() -> None:
 
 def test_a_range_of_ratios_is_proved_one_by_one() -> None:
     text = run(*GEARED, "--ratio", "0.8, 0.81")
-    assert "choices of gears; proved for each of them: nothing that is allowed" in text
+    assert "choices of gears; proved for each of the gears tried: nothing that is allowed" in text
     teeth = changed(
         "balance-geared-b",
         ('ratio = [0.2, 3]\npitch_radius = "50 mm"', 'teeth = [39, 41]\nmodule = "2.5 mm"'),

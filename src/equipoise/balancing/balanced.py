@@ -59,6 +59,7 @@ class Balanced:
     prices : of each limit, by name.
     looked_at : number of programs that were solved, or of arrangements of rows.
     phasing : of rows, where their phases were free.
+    scope : of what the bound is proved, where that is not all that the plan allows.
     """
 
     machine: Machine
@@ -73,6 +74,7 @@ class Balanced:
     looked_at: int
     notes: tuple[str, ...] = ()
     phasing: Phasing | None = None
+    scope: str = ""
 
     @property
     def gap(self) -> float | None:
@@ -145,6 +147,7 @@ class Balanced:
             "cost": self.cost,
             "bound": self.bound,
             "gap": self.gap,
+            "scope": self.scope,
             "changes": [change.to_dict() for change in self.changes],
             "prices": {name: asdict(price) for name, price in self.prices.items()},
             "added_mass": self.added_mass,

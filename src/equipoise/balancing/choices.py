@@ -114,13 +114,12 @@ def _scan(
             return inf
         found.append((mesh, one))
         least = min(least, one.best.value)
+        if progress is not None:
+            progress(min(len(found), most), most)
         return one.best.value
 
-    values = []
-    for done, mesh in enumerate(meshes, 1):
-        values.append(at(mesh))
-        if progress is not None:
-            progress(done, len(meshes))
+    most = len(meshes) + (BEST_CHOICES * MOST_STEPS if gearing.ranges else 0)
+    values = [at(mesh) for mesh in meshes]
     if not found:
         raise problems[0]
     for k in np.argsort(values)[:BEST_CHOICES]:
@@ -139,7 +138,8 @@ def _lightest(
     ties = {mesh for mesh, one in found if one.best.value <= least + TIE}
     equal = sorted(ties, key=lambda mesh: (mesh.ratio, mesh.direction))
     best = [solved(mesh) for mesh in equal[:: max(1, len(equal) // MOST_TIES)]]
-    return min(best, key=lambda one: one.problem.mass_added(one.numbers))
+    lightest = min(best, key=lambda one: one.problem.mass_added(one.numbers))
+    return replace(lightest, ties=len(equal))
 
 
 def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> None:
@@ -150,8 +150,8 @@ def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> Non
     ranges = gearing.ranges
 
     def at(numbers: Array) -> float:
-        here = first | {name: float(x) for name, x in zip(ranges, numbers, strict=True)}
-        mesh = gearing.mesh(**here)
+        here = {name: float(x) for name, x in zip(ranges, numbers, strict=True)}
+        mesh = gearing.near(start, here)
         return cost(mesh) if gearing.is_clear(mesh) else inf
 
     begin = np.array([first[name] for name in ranges])

@@ -71,7 +71,7 @@ def _way_out(problem: Problem, clash: list[str]) -> str:
     )
     try:
         asked = Problem(problem.machine, relaxed, problem.start, problem.parts, problem.close)
-        least = asked.built.program.solve().value * asked.before[limit.name]
+        least = asked.built.program.solve().value * asked.scale(limit.objective)
     except NoSolutionError:
         return "allow more of one of them"
     least /= limit.objective.weight

@@ -37,10 +37,7 @@ def closed_form(problem: Problem) -> list[Array] | None:
     found = _least_squares(problem, places, _given_numbers(problem))
     if found is None:
         return None
-    return [
-        part.tightened(found[start : start + part.count], np.zeros(part.count, bool))
-        for part, start in zip(problem.parts, counts, strict=False)
-    ]
+    return problem.tightened(np.split(found, counts[1:-1]))
 
 
 def _free_numbers(part: Part) -> Array | None:
@@ -58,8 +55,8 @@ def _given_numbers(problem: Problem) -> Array:
     """All numbers, with those that are given and 0 elsewhere."""
     numbers = [np.zeros(part.count) for part in problem.parts]
     for part, own in zip(problem.parts, numbers, strict=True):
-        if part.mass_place is not None:
-            own[part.mass_place] = 1.0  # a given mass is its own unit
+        if isinstance(part, AddedWeight) and part.weight.mass is not None:
+            own[0] = part.weight.mass / part.mass_unit
     return np.concatenate(numbers)
 
 

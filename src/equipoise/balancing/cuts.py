@@ -87,7 +87,7 @@ def _sector(weight: Weight, mass: float, half: float, direction: float, center: 
         "outer_radius": outer,
         "inner_radius": inner,
         "angle": 2 * half,
-        "direction": direction,
+        "direction": phase(rect(1.0, direction)),
         "thickness": weight.thickness,
     }
     return _piece("sector", mass, rect(distance, direction), center) | sizes

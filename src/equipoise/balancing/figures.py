@@ -48,7 +48,8 @@ def _signals(found: Forces) -> list[tuple[str, Array, tuple[Measure, ...]]]:
         ("drive_torque", found.drive_torque, OF_TORQUE),
     ]
     joints = [(f"joints.{name}", joint.value, OF_FORCE) for name, joint in found.joints.items()]
-    return signals + joints
+    gears = [(f"gears.{name}", mesh.value, OF_FORCE) for name, mesh in found.gears.items()]
+    return signals + joints + gears
 
 
 def signal_columns(before: Machine, after: Machine) -> list[tuple[str, str, Array]]:

@@ -50,6 +50,12 @@ class Mesh:
         return float(self.driver / self.shaft)
 
 
+def geared_range(geared: GearedWeight) -> bool:
+    """Whether ratio or direction may be any number between two, of which some are tried."""
+    ranges = (geared.ratio, geared.direction)
+    return any(one is not None and one[0] < one[1] for one in ranges)
+
+
 class Gearing:
     """A geared counterweight that is to be added to a machine."""
 
@@ -157,6 +163,12 @@ class Gearing:
         }
         return sorted(float(f) for f in fractions if low <= f <= high)
 
+    def near(self, start: Mesh, numbers: dict[str, float]) -> Mesh:
+        """A choice of gears with another ratio or direction; teeth stay as they are."""
+        if start.teeth is not None:
+            return replace(start, direction=numbers["direction"])
+        return self.mesh(**({"ratio": start.ratio, "direction": start.direction} | numbers))
+
     def mesh(self, ratio: float, direction: float) -> Mesh:
         """Gears of a ratio, with the shaft in a direction from the driver's pin."""
         if self.geared.axis is not None:
@@ -224,6 +236,9 @@ class Gearing:
             "pitch_radii": (mesh.driver, mesh.shaft),
             "axis": (axis.real, axis.imag),
         }
+        masses = self._gear(mesh.driver)[0], self._gear(mesh.shaft)[0]
+        if any(masses):
+            values["masses"] = masses
         if mesh.teeth is not None:
             values["teeth"] = mesh.teeth
             values["module"] = self.geared.module

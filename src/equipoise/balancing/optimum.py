@@ -32,7 +32,10 @@ SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Best numbers of one problem, the machine that they make, and the gears it has."""
+    """Best numbers of one problem, the machine that they make, and the gears it has.
+
+    ties : choices of gears that are as good.
+    """
 
     problem: Problem
     best: Best
@@ -40,6 +43,7 @@ class Solution:
     machine: Machine
     method: str
     meshes: tuple[Change, ...] = ()
+    ties: int = 1
 
 
 def solve_problem(
@@ -108,6 +112,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     except NoSolutionError:
         raise explained(problem) from None
     numbers = problem.split(best.x) if above < inf else _lightest(problem, best)
+    numbers = problem.lightened(numbers)
     method = "cone program" if best.nodes == 1 else "branch and bound"
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)
 
@@ -115,9 +120,9 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
 def _lightest(problem: Problem, best: Best) -> list[Array]:
     """Of the numbers that are as good, those that add the least mass."""
     found = problem.split(best.x)
-    if not problem.leaves_masses_open:
-        return found
     masses, units = problem.added_masses(problem.built.places)
+    if not len(masses) or (problem.reads_gauges and not problem.leaves_masses_open):
+        return found
     program = best.program.copy()
     terms = np.array(list(program.cost))
     weights = np.array([program.cost[int(term)] for term in terms])

@@ -136,6 +136,10 @@ class Part(ABC):
         """
         return numbers
 
+    def lightened(self, numbers: Array, matters: Array) -> Array:
+        """Numbers that do the same with the least mass."""
+        return numbers
+
     def bounds(self, numbers: Array) -> list[Bound]:
         """Limits that have a price."""
         return []
@@ -206,7 +210,9 @@ class MovedCenter(Part):
         return -inf, inf
 
     def tightened(self, numbers: Array, matters: Array) -> Array:
-        return np.concatenate([numbers[:2], numbers[:2] ** 2])
+        before = np.array(self.before) / self.length
+        place = np.where(matters[:2] | matters[2:], numbers[:2], before)  # else it may stay
+        return np.concatenate([place, place**2])
 
     @property
     def _room(self) -> str:

@@ -14,6 +14,7 @@ from equipoise.balancing.gauges import Near, gauge_signals, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
 from equipoise.balancing.parts import MovedCenter, Part, Square, with_parameters
 from equipoise.balancing.program import Affine, Program
+from equipoise.balancing.rowed import counts_rows, of_all_rows
 from equipoise.balancing.springs import FreeSpring
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
@@ -27,6 +28,8 @@ WITHOUT_EFFECT = 1e-9
 """Over the RMS of an output: change by a unit of every number that is taken for none."""
 ROUNDING = 1e-11
 """Over the effect of a unit of a number: an objective that is nothing but rounding."""
+HIGHEST = 100
+"""Order that is told; what 720 angles in a turn tell well."""
 ADDED = "added mass"
 
 
@@ -99,7 +102,7 @@ class Problem:
     def cost_of(self, machine: Machine) -> float:
         """What is to become small, for a machine; 1 for each unit of weight before."""
         return self.plan.combined(
-            [self.value_of(machine, one) / self._scale(one) for one in self.plan.objectives]
+            [self.value_of(machine, one) / self.scale(one) for one in self.plan.objectives]
         )
 
     def cost_at(self, numbers: list[Array]) -> float:
@@ -112,8 +115,12 @@ class Problem:
             ]
         )
 
-    def _scale(self, objective: Objective) -> float:
-        return self.before[objective.name] or 1.0
+    def scale(self, objective: Objective) -> float:
+        """What an objective or limit is told over: its value before, or where that is nothing but
+        rounding, what a unit of the numbers does.
+        """
+        before, effect = self.before[objective.name], self._effect(objective)
+        return before if before > ROUNDING * effect else effect or 1.0
 
     @cached_property
     def effects(self) -> Effects:
@@ -121,20 +128,33 @@ class Problem:
 
     @cached_property
     def signals(self) -> dict[str, list[Signal]]:
-        """Signals of each objective and limit, over the value before."""
-        found = {}
-        for one in self.asked:
-            if one.name not in found:
-                signals = _signals(self.effects, one, self.close)
-                found[one.name] = [signal.divided(self._scale(one)) for signal in signals]
-        return found
+        """Signals of each objective and limit, over its scale."""
+        return {
+            one.name: [signal.divided(self.scale(one)) for signal in self._raw[one.name]]
+            for one in self.asked
+        }
+
+    @cached_property
+    def _raw(self) -> dict[str, list[Signal]]:
+        """Signals of each objective and limit, in SI units."""
+        unique = {one.name: one for one in self.asked}
+        return {name: _signals(self.effects, one, self.close) for name, one in unique.items()}
 
     def check_influence(self) -> None:
         """Refuse an objective that is 0 already, or that nothing free can change."""
+        turns = self.effects.motion.turns
+        for one in self.asked:
+            for order in one.orders:
+                whole = abs(order * turns - round(order * turns)) < 1e-9
+                if order > HIGHEST or not whole:
+                    raise UsageError(
+                        f"the {one.name}: there is no order {order:g}; orders are whole numbers"
+                        f"{f' over {turns}' if turns > 1 else ''} up to {HIGHEST}"
+                    )
         for one in self.plan.objectives:
             if self._is_nothing(one):
                 raise UsageError(f"the {one.name} is 0 already; choose another objective")
-            if self._effect(one) < WITHOUT_EFFECT:
+            if self._effect(one) < WITHOUT_EFFECT * self.scale(one):
                 raise UsageError(
                     f"nothing that is free to change has an effect on the {one.name}; free "
                     "something else, or choose another objective"
@@ -148,12 +168,11 @@ class Problem:
 
     def _is_nothing(self, objective: Objective) -> bool:
         """Whether a value before is but rounding beside what a unit of any number does."""
-        effect = self._effect(objective) * self._scale(objective)
-        return self.before[objective.name] < ROUNDING * effect
+        return self.before[objective.name] < ROUNDING * self._effect(objective)
 
     def _effect(self, objective: Objective) -> float:
-        """The largest effect of a unit of any number, over the value before."""
-        signals = self.signals[objective.name]
+        """The largest effect of a unit of any number, SI."""
+        signals = self._raw[objective.name]
         return max(float(np.max(np.abs(signal.columns), initial=0.0)) for signal in signals)
 
     @cached_property
@@ -200,7 +219,7 @@ class Problem:
         return int(term[0])
 
     def _limit(self, program: Program, numbers: Array, limit: Limit) -> None:
-        scale = self._scale(limit.objective)
+        scale = self.scale(limit.objective)
         at_most = limit.ratio if limit.at_most is None else limit.at_most / scale
         bound = Affine.of([], np.zeros((1, 0)), at_most)
         for signal in self.signals[limit.name]:
@@ -265,6 +284,12 @@ class Problem:
         triples = zip(self.parts, numbers, matters, strict=True)
         return [part.tightened(own, matter) for part, own, matter in triples]
 
+    def lightened(self, numbers: list[Array]) -> list[Array]:
+        """Numbers that do the same with the least mass of each weight."""
+        ends = np.cumsum([part.count for part in self.parts])[:-1]
+        triples = zip(self.parts, numbers, np.split(self._matters, ends), strict=True)
+        return [part.lightened(own, matter) for part, own, matter in triples]
+
     def machine_with(self, numbers: list[Array]) -> Machine:
         """The machine that the parts' numbers make."""
         machine = self.start
@@ -304,5 +329,5 @@ def _signals(effects: Effects, objective: Objective, close: Near) -> list[Signal
     """Signals whose largest measure an objective is: one for each speed at which it is read."""
     if objective.output.startswith("gauges."):
         return gauge_signals(effects, objective, close)
-    signal = effects.signal(objective.output, objective.about)
-    return [signal.kept(objective.orders)]
+    read = of_all_rows if counts_rows(effects, objective.output) else Effects.signal
+    return [read(effects, objective.output, objective.about).kept(objective.orders)]

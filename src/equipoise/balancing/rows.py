@@ -14,8 +14,7 @@ from equipoise.balancing.phase_search import Search
 from equipoise.balancing.phases import Phasing, choose_phases
 from equipoise.balancing.telling import told
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Balance, Objective, Phases
-from equipoise.mechanism.balance_outputs import OF_ROWS
+from equipoise.mechanism.balance import Balance, Phases
 from equipoise.mechanism.model import Machine
 
 Progress = Callable[[int, int], None]
@@ -34,19 +33,13 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     assert plan.phases is not None
     if plan.limits:
         raise UsageError("limits are not kept while phases are looked for; leave one of them out")
-    linkage = replace(plan, phases=None, objectives=_of_linkage(plan))
+    linkage = replace(plan, phases=None)
     found: Balanced | None = None
     if not linkage.changes_nothing:
-        if not linkage.objectives:
-            raise UsageError("the linkage itself has no roll and yaw; give another objective too")
         found = told(machine, linkage, solve(machine, linkage, progress))
     start = machine if found is None else found.machine
     phasing = choose_phases(start, plan.objectives, plan.phases, plan.combine, progress)
     return _joined(machine, plan, found, phasing)
-
-
-def _of_linkage(plan: Balance) -> tuple[Objective, ...]:
-    return tuple(one for one in plan.objectives if one.output not in OF_ROWS)
 
 
 def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Phasing) -> Balanced:

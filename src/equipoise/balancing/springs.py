@@ -21,8 +21,9 @@ Array = np.ndarray[Any, Any]
 
 NOTHING = 1e-6
 """Over the most: stiffness, and its product with the free length, that are none."""
-LONGEST = 100.0
-"""Free length over lengths of the machine where none is given: all but a constant push."""
+LONGEST = 2.0
+"""Free length over the largest distance of points, where none is given: longer and softer springs
+would pull ever more evenly, and have no end."""
 
 
 class FreeSpring(Part):
@@ -65,6 +66,11 @@ class FreeSpring(Part):
     def bounds(self, numbers: Array) -> list[Bound]:
         most = self.choice.stiffness
         return [Bound(self._name, most, float(numbers[0]) * most, "N/m")]
+
+    def is_capped(self, numbers: Array) -> bool:
+        """Whether the free length has come to where it was stopped without being asked for."""
+        longest = LONGEST * float(numbers[0])
+        return self.choice.free_length is None and 0 < 0.999 * longest < float(numbers[1])
 
     def columns(self, motion: Motion, output: str) -> Array:
         """Effect (2, N) on the drive's torque or on a joint's force."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from equipoise.balancing.balanced import Balanced, Price
+from equipoise.balancing.geared import geared_range
 from equipoise.balancing.measures import unit_of
 from equipoise.balancing.optimum import Solution
 from equipoise.balancing.parts import Bound
 from equipoise.balancing.problem import ADDED
+from equipoise.balancing.springs import FreeSpring
 from equipoise.balancing.weights import AddedWeight
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
@@ -35,18 +37,39 @@ def told(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         _prices(found),
         found.best.nodes,
         tuple(_notes(found)),
+        scope=_scope(found),
     )
+
+
+def _scope(found: Solution) -> str:
+    """Of what the bound is proved, where that is not all that the plan allows."""
+    problem, told = found.problem, []
+    pairs = zip(problem.parts, found.numbers, strict=True)
+    if problem.reads_gauges and problem.supports_more:
+        told.append("for small changes about it")
+    capped = (
+        part.is_capped(own) for part, own in pairs if isinstance(part, AddedWeight | FreeSpring)
+    )
+    if any(capped):
+        told.append("within where it was stopped")
+    if any(geared_range(geared) for geared in problem.plan.geared):
+        told.append("for each of the gears tried")
+    return " and ".join(told)
 
 
 def _prices(found: Solution) -> dict[str, Price]:
     """Prices of the limits, in SI units."""
     problem, plan = found.problem, found.problem.plan
     only = plan.objectives[0] if len(plan.objectives) == 1 else None
-    unit = 1.0 if only is None else (problem.before[only.name] or 1.0) / only.weight
+    unit = 1.0 if only is None else problem.scale(only) / only.weight
     prices = {}
     for limit in plan.limits:
-        scale = problem.before[limit.name] or 1.0
-        at_most = limit.at_most if limit.at_most is not None else (limit.ratio or 0.0) * scale
+        scale = problem.scale(limit.objective)
+        at_most = (
+            limit.at_most
+            if limit.at_most is not None
+            else (limit.ratio or 0.0) * problem.before[limit.name]
+        )
         used = problem.value_of(found.machine, limit.objective)
         paid = found.best.prices.get(limit.name, 0.0) * unit / scale
         paid = _rounded(paid, unit / scale)
@@ -76,7 +99,7 @@ def _rounded(price: float, scale: float) -> float:
 
 def _notes(found: Solution) -> Iterator[str]:
     """What a reader has to know."""
-    problem = found.problem
+    problem, rows = found.problem, len(found.problem.machine.rows)
     if problem.machine.drive.acceleration:
         yield "the drive's acceleration is left out: the crank is taken as turning steadily"
     if problem.reads_gauges and problem.supports_more:
@@ -90,6 +113,18 @@ def _notes(found: Solution) -> Iterator[str]:
                 f"the weight on {part.link} has come to ten times the mass of the links, where it "
                 "was stopped; more would do better still: give it at_most"
             )
+        if isinstance(part, FreeSpring) and part.is_capped(own):
+            yield (
+                f"the spring on {part.link} has come to twice the largest distance of points, "
+                "where its free length was stopped; give it free_length"
+            )
+    if rows > 1 and any(part.mass_place is not None for part in problem.parts):
+        yield f"masses are those of one row; the machine has {rows}"
+    if found.ties > 1:
+        yield (
+            f"{found.ties} of the ratios tried are as good, and the lightest was taken; drive and "
+            "joints may tell them apart: give them a limit"
+        )
     if found.best.nodes >= 1 and found.best.value - found.best.bound > 1e-7:
         yield (
             "the search ended before it had proved that nothing better exists; the gap tells how "

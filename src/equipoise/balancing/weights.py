@@ -14,7 +14,7 @@ the moment of inertia about the centre of the room of radius R:
 from __future__ import annotations
 
 from dataclasses import replace
-from math import cos, isfinite, pi, sin, sqrt
+from math import asin, cos, isfinite, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
@@ -63,6 +63,49 @@ class AddedWeight(Part):
         self.mass_unit = min(self.most, masses or 1.0)
         self.reach = weight.radius if isfinite(weight.radius) else size_of(body.points) or 1.0
         self.name = f"mass on {link}"
+
+    def lightened(self, numbers: Array, matters: Array) -> Array:
+        if self.weight.mass is not None or matters[0] or not isfinite(self.weight.radius):
+            return numbers
+        found = np.array(numbers)
+        found[0] = min(self._least_mass(numbers, matters), float(numbers[0]))
+        return self.tightened(found, matters)
+
+    def _least_mass(self, numbers: Array, matters: Array) -> float:
+        """The least mass, scaled, of the same moment, and of the same inertia where it matters."""
+        now, shape, room = float(numbers[0]), self.weight.shape, self._room
+        if shape == "ring":
+            return now if np.any(matters) else 0.0
+        moment = float(np.hypot(numbers[1], numbers[2]))
+        if shape == "any" and matters[3]:
+            inertia = float(numbers[3])
+            return max(moment**2 / inertia, inertia / room**2) if inertia else 0.0
+        if np.any(matters[3:]):
+            return now
+        if shape == "sector":
+            most, _ = self._bound(pi / 2 * self._per_angle)
+            return float(self._per_angle * asin(min(1.0, moment / most)))
+        return self._least_disc(moment, now) if shape == "disc" else moment / room
+
+    def _least_disc(self, moment: float, now: float) -> float:
+        """The smaller solution m of moment + c m^(3/2) = R m."""
+        from scipy.optimize import brentq
+
+        c: float = sqrt(self.mass_unit / (pi * self._plate)) / self.reach
+        top = min(now, (2 * self._room / (3 * c)) ** 2)  # beyond which a disc only loses moment
+
+        def spare(m: float) -> float:
+            return float(self._room * m - c * m**1.5 - moment)
+
+        if spare(top) <= 0 or moment == 0:
+            return now
+        return float(brentq(spare, 0.0, top))
+
+    @property
+    def _per_angle(self) -> float:
+        """Mass, scaled, of a radian of half a sector's angle."""
+        outer, inner = self.weight.radius, self.weight.inner_radius
+        return self._plate * (outer**2 - inner**2) / self.mass_unit
 
     @property
     def _radius_name(self) -> str:
@@ -210,7 +253,7 @@ class AddedWeight(Part):
         """The largest moment of sectors of a mass, and its slope; scaled."""
         outer, inner = self.weight.radius, self.weight.inner_radius
         c = 2 / 3 * self._plate * (outer**3 - inner**3) / (self.mass_unit * self.reach)
-        d = self._plate * (outer**2 - inner**2) / self.mass_unit
+        d = self._per_angle
         return c * sin(m / d), c / d * cos(m / d)
 
     def _add_tangent(self, program: Program, place: int, moment: Affine, m: float) -> None:
@@ -233,9 +276,7 @@ class AddedWeight(Part):
 
     def _bend(self, m: float) -> float:
         """Second derivative of the bound, its size; scaled."""
-        value, _ = self._bound(m)
-        outer, inner = self.weight.radius, self.weight.inner_radius
-        return abs(value) * (self.mass_unit / (self._plate * (outer**2 - inner**2))) ** 2
+        return abs(self._bound(m)[0]) / self._per_angle**2
 
     def tightened(self, numbers: Array, matters: Array) -> Array:
         found = np.array(numbers) if numbers[0] > NOTHING else np.zeros(self.count)

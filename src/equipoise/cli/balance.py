@@ -80,7 +80,8 @@ def balance(
     crank_counterweight
         Free a counterweight on the crank's axis.
     counterweight
-        Free a counterweight on this link, about its pin in the frame.  May be repeated.
+        Free a counterweight on this link, about its pin in the frame, or its first point where it
+        has none.  May be repeated.
     geared_counterweight
         Free a counterweight on a shaft geared to this link.
     ratio
@@ -201,15 +202,22 @@ def _balance(machine: Machine, plan: Balance, out: str | None, wanted: Wanted) -
 
     with counted("program") as progress:
         found = solve(machine, plan, progress)
-    if out is not None:
-        _save(found, out)
+
+    def save() -> None:  # after tables and pictures, which may fail
+        if out is not None:
+            _save(found, out)
 
     def show() -> None:
         from equipoise.terminal.balance import print_balanced
 
+        save()
         print_balanced(found)
 
-    wanted.give(found.columns, lambda: _drawings(found), found.to_dict, show)
+    def values() -> dict[str, object]:
+        save()
+        return found.to_dict()
+
+    wanted.give(found.columns, lambda: _drawings(found), values, show)
 
 
 def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:

@@ -18,6 +18,14 @@ if TYPE_CHECKING:
 MEASURES = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """As in `mechanism.balance`, which would bring NumPy into every start of the command line."""
 SHORT = {"shaking_energy": "area shaking_moment"}
+SPELT = {
+    "peak to peak": "peak_to_peak",
+    "area under": "area",
+    "rms": "rms",
+    "ripple": "ripple",
+    "peak(?! to)": "peak",
+}
+"""Measures as they are printed."""
 WORDS = r"orders?|about|weight|speeds?"
 EXAMPLE = '"peak shaking_moment about D", "rms shaking_force.y orders 1,2" or "drive_torque"'
 
@@ -201,9 +209,13 @@ def read_objective(option: str, text: str) -> Objective:
 
     for short, long in SHORT.items():
         text = re.sub(rf"\b{short}\b", long, text)
+    for spelt, measure in SPELT.items():
+        text = re.sub(rf"^\s*{spelt}\s+(of\s+)?", f"{measure} ", text)
     head, *rest = re.split(rf"\s+({WORDS})\s+", text.strip())
     words = head.split()
     measure = words.pop(0) if words and words[0] in MEASURES else "rms"
+    if words and words[0].startswith("joints."):  # of sliders, such as joints.piston on frame
+        words = [" ".join(words)]
     if len(words) != 1:
         raise UsageError(f"{option}: got {text!r}; give such as {EXAMPLE}")
     values: dict[str, Any] = {}

@@ -255,7 +255,7 @@ class GearedWeight(Weighted):
 
 
 class BalanceShafts(Weighted):
-    """Two shafts with equal weights that turn against each other."""
+    """Two shafts that turn against each other, each with a weight of its own."""
 
     model_config = _weight_with({"properties": {"shape": {"not": {"const": "ring"}}}})
 

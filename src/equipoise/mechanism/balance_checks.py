@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 LISTS = ("moves", "masses", "geared", "shafts", "springs", "objectives", "limits")
 MOST = 200
 """Far beyond any machine, as in `mechanism.checks`."""
+LEAST_TEETH = 5
+"""Of a gear that can be cut; involutes are undercut below about 17."""
 LARGEST_RATIO = 1000.0
 """Of a pair of gears; far beyond any."""
 COMBINED = ("sum", "squares")
@@ -173,8 +175,9 @@ def _wrong_sizes(where: str, geared: GearedWeight) -> Iterator[ModelError]:
 
 
 def _wrong_teeth(where: str, geared: GearedWeight, teeth: tuple[int, int]) -> Iterator[ModelError]:
-    if min(teeth) < 1:
-        yield ModelError(f"{where}.teeth", f"got {list(teeth)}; give two positive numbers")
+    if min(teeth) < LEAST_TEETH:
+        sentence = f"got {min(teeth)}; no gear has less than {LEAST_TEETH} teeth"
+        yield ModelError(f"{where}.teeth", sentence)
     yield from _range(f"{where}.teeth", teeth, 1.0, "")
     if geared.module is None:
         yield ModelError(f"{where}.module", 'missing; with teeth give it, such as "2 mm"')

@@ -15,20 +15,21 @@ from equipoise.terminal.tables import PER_RPM, Row, number, table
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
     from equipoise.balancing.front import Front
-    from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
 
 EXACT = 1e-12
-SAME = 1e-9
-"""Over the figure before: a change that is rounding."""
+WORSE, MOST_WORSE = 0.1, 4
+"""Growth that is told by itself; of how many figures at the most."""
+SAME = 1e-8
+"""Over the figure before: a change that is rounding, or the solver's."""
 NAMES = {
     "rms": "RMS",
-    "ripple": "RMS about the mean",
+    "ripple": "ripple",
     "peak": "peak",
     "peak_to_peak": "peak to peak",
     "area": "area in a turn",
 }
-FORCE = re.compile("force|joints")
+FORCE = re.compile("force|joints|gears")
 
 
 def print_balanced(found: Balanced) -> None:
@@ -41,6 +42,8 @@ def print_balanced(found: Balanced) -> None:
     for change in found.changes:
         for line in told(change):
             print(f"  {line}")
+    if worse := [*_worse(found)]:
+        print(f"\n  worse by it: {', '.join(worse)}")
     if found.phasing is not None:
         print(phasing_told(found.phasing))
     print(f"\n{_proof(found)}")
@@ -58,25 +61,37 @@ def _objectives(found: Balanced) -> Iterator[Row]:
     for one in found.plan.objectives:
         before, after = found.objectives[one.name]
         scale, unit = _scaled(found.units[one.name])
-        change = f"{100 * (after / before - 1):+.2f} %" if before else ""
+        change = _change(before, after, 2)
         yield one.name, number(before * scale), number(after * scale, before * scale), unit, change
+    if len(found.plan.objectives) > 1:
+        whole = found.plan.combined([1.0] * len(found.plan.objectives))
+        share = found.cost / whole
+        yield "together", "100.0", number(100 * share), "%", f"{100 * (share - 1):+.2f} %"
+
+
+def _worse(found: Balanced) -> Iterator[str]:
+    """What has become larger by more than a tenth, the worst first."""
+    shares = {
+        name: found.after.get(name, 0.0) / old - 1
+        for name, old in found.before.items()
+        if old > EXACT and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
+    }
+    worst = sorted(shares, key=shares.__getitem__, reverse=True)[:MOST_WORSE]
+    for name in worst:
+        if shares[name] > WORSE:
+            what, _, _ = _named(name, found.machine)
+            yield f"{what} {100 * shares[name]:+.0f} %"
 
 
 def _proof(found: Balanced) -> str:
     if found.gap is None:
         return f"found among {found.method}; that nothing better exists is not proved of phases"
     gap = max(found.gap, EXACT)
-    proved = "proved for each of them" if gears_are_followed(found.plan) else "proved"
+    proved = f"proved {found.scope}".strip()
     return (
         f"found by {found.method}; {proved}: nothing that is allowed is better by more than "
         f"{gap:.0e} of the value before"
     )
-
-
-def gears_are_followed(plan: Balance) -> bool:
-    """Whether ratios or directions may be any between two, of which some were tried."""
-    ranges = (one for geared in plan.geared for one in (geared.ratio, geared.direction))
-    return any(one is not None and one[0] < one[1] for one in ranges)
 
 
 def _figures(found: Balanced) -> Iterator[Row]:
@@ -95,11 +110,11 @@ def _figures(found: Balanced) -> Iterator[Row]:
         yield what, unit, *told, change
 
 
-def _change(old: float, new: float) -> str:
+def _change(old: float, new: float, digits: int = 1) -> str:
     if old <= max(EXACT, SAME * new):
         return ""
     share = new / old - 1
-    return f"{100 * share:+.1f} %" if abs(share) > SAME else "same"
+    return f"{100 * share:+.{digits}f} %" if abs(share) > SAME else "same"
 
 
 def _named(name: str, machine: Machine) -> tuple[str, float, str]:
@@ -112,6 +127,8 @@ def _named(name: str, machine: Machine) -> tuple[str, float, str]:
         return f"{output} {NAMES[measure]}", *_scaled(unit_of(Objective(output), machine))
     if first == "rows":
         output = f"all rows, {output.removeprefix('rows.')}"
+    elif len(machine.rows) > 1:
+        output = f"one row, {output}"
     unit = "J" if measure == "area" else "N" if FORCE.search(output) else "N m"
     return f"{output} {NAMES[measure]}", 1.0, unit
 
@@ -134,7 +151,7 @@ def _price(found: Balanced, price: Price, only: str | None, scale: float, unit: 
         return "nothing"
     if only is None:
         whole = found.plan.combined([1.0] * len(found.plan.objectives))
-        return f"{number(100 * price.price / scale / whole)} % per {unit}"
+        return f"{number(100 * price.price / scale / whole)} % of all per {unit}"
     by, in_unit = _scaled(found.units[only])
     return f"{number(price.price * by / scale)} {in_unit} per {unit}"
 
@@ -169,5 +186,5 @@ def print_front(found: Front) -> None:
     header = tuple(f"{name} [{unit}]" for name, (_, unit) in zip(names, scales, strict=True))
     print(table("Trade-off", header, rows, 0))
     gap = max(found.gap, EXACT)
-    gears = " with the gears that were tried" if gears_are_followed(found.points[0].plan) else ""
-    print(f"\nevery point is as good as any can be{gears}, to {gap:.0e} of the value before")
+    scope = f", {found.points[0].scope}" * bool(found.points[0].scope)
+    print(f"\nevery point is as good as any can be{scope}, to {gap:.0e} of the value before")

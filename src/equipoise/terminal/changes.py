@@ -83,7 +83,11 @@ def _gears(link: str, values: dict[str, Any]) -> str:
     if "teeth" in values:
         first, second = values["teeth"]
         text += f" by {first} and {second} teeth of module {number(values['module'] * 1e3)} mm,"
-    return f"{text} with the ratio {number(values['ratio'])}, pitch radii {radii}"
+    text += f" with the ratio {number(values['ratio'])}, pitch radii {radii}"
+    if "masses" not in values:
+        return text
+    on_driver, on_shaft = map(_grams, values["masses"])
+    return f"{text}; the gears add {on_driver} to {values['driver']} and {on_shaft} to the shaft"
 
 
 def _place(place: tuple[float, float]) -> str:
@@ -93,7 +97,8 @@ def _place(place: tuple[float, float]) -> str:
 
 
 def _degrees(angle: float) -> str:
-    return f"{round(degrees(angle), 2) + 0.0:.2f}"  # + 0.0 takes the sign off a zero
+    shown = round(degrees(angle), 2) + 0.0  # + 0.0 takes the sign off a zero
+    return f"{shown if shown > -180 else shown + 360:.2f}"
 
 
 def _grams(mass: float) -> str:

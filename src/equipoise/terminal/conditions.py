@@ -41,7 +41,7 @@ def print_conditions(
 ) -> None:
     """Conditions, one table for each kind, and whether they can be met."""
     print(machine.title)
-    print("moments and inertia are about the origin of each link's axes, at constant crank speed")
+    print("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")
     for one in found:
         print(_conditions(one))
     if told is not None:

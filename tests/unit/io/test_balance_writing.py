@@ -47,6 +47,7 @@ number = st.just(0.0) | length | length.map(lambda x: -x)
 places = st.tuples(number, number)
 ranges = st.tuples(number, number).map(sorted).map(tuple)
 sizes = st.tuples(length, length).map(sorted).map(tuple)
+ratios = st.tuples(*[st.floats(1e-6, 1e3)] * 2).map(sorted).map(tuple)
 masses = st.none() | mass
 density = st.sampled_from([*MATERIALS.values()]) | st.floats(1.0, 2e4)
 
@@ -54,7 +55,7 @@ density = st.sampled_from([*MATERIALS.values()]) | st.floats(1.0, 2e4)
 @st.composite
 def weights(draw: Any, shapes: tuple[Any, ...] = SHAPES) -> Weight:
     shape = draw(st.sampled_from(shapes))
-    radius, most = draw(length), draw(masses)
+    radius, most = draw(st.floats(1e-6, 1e3)), draw(masses)
     if shape in {"any", "point"}:
         given = Weight(shape, mass=radius), Weight(shape, radius, at_most=most)
         return given[draw(st.integers(0, 1))]
@@ -67,9 +68,13 @@ moves = st.builds(CenterMove, st.just("crank"), x=st.none() | ranges, y=ranges) 
 )
 added = st.builds(AddedMass, st.just("crank"), st.sampled_from("AB"), weights())
 gears = st.fixed_dictionaries(
-    {"ratio": sizes, "pitch_radius": length, "direction": st.none() | ranges}
+    {
+        "ratio": st.tuples(*[st.floats(1e-6, 1e3)] * 2).map(sorted).map(tuple),
+        "pitch_radius": length,
+        "direction": st.none() | ranges,
+    }
 ) | st.fixed_dictionaries(
-    {"teeth": st.tuples(st.integers(1, 20), st.integers(20, 99)), "module": length}
+    {"teeth": st.tuples(st.integers(5, 20), st.integers(20, 99)), "module": length}
 )
 plates = st.just({}) | st.fixed_dictionaries({"gear_thickness": length, "gear_density": density})
 

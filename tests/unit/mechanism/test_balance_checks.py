@@ -154,7 +154,7 @@ DIRECTED = replace(GEARED, driver="crank", direction=(0.0, 0.0))
         (replace(GEARED, axis=(1.2, 0.0)), ".pitch_radius",
          "axis and ratio determine it already; leave it out"),
         (replace(GEARED, pitch_radius=-0.1), ".pitch_radius", "got -0.1 m; give more than 0"),
-        (replace(TEETH, teeth=(0, 80)), ".teeth", "got [0, 80]; give two positive numbers"),
+        (replace(TEETH, teeth=(0, 80)), ".teeth", "got 0; no gear has less than 5 teeth"),
         (replace(TEETH, teeth=(80, 17)), ".teeth", "got 80 to 17; give the smaller one first"),
         (replace(TEETH, module=None), ".module", 'missing; with teeth give it, such as "2 mm"'),
         (replace(TEETH, module=0.0), ".module", "got 0 m; give more than 0"),

@@ -1,0 +1,92 @@
+"""Outputs of all rows: against sums of signals in time, and against changed machines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.problem import Problem
+from equipoise.balancing.rowed import of_all_rows
+from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
+from equipoise.mechanism.support import Row
+
+Array = np.ndarray[Any, Any]
+
+ROWS = (
+    Row(0.3, -0.2, (0.01, 0.02)),
+    Row(2.0, 0.1, (0.0, 0.0)),
+    Row(4.5, 0.35, (-0.03, 0.04)),
+)
+MACHINE = replace(eq.load("yamashita-1"), rows=ROWS)
+COUNTER = AddedMass("crank", "A", Weight("any", 0.06, at_most=0.5))
+OUTPUTS = ("shaking_force.x", "shaking_force.y", "shaking_moment", "frame_force.y", "frame_moment",
+           "drive_torque", "roll_moment", "yaw_moment")  # fmt: skip
+EXACT = 1e-9
+
+
+def in_time(machine: eq.Machine, output: str, about: complex) -> Array:
+    """The sum over rows at 720 angles, each row moved to its place and ahead by its phase."""
+    total: Array = np.zeros(720)
+    for row in machine.rows:
+        angles = np.arange(720) * np.pi / 360 + row.phase
+        found = eq.forces(eq.move(machine, angles), about - complex(*row.offset))
+        signals = {
+            "shaking_force.x": found.shaking_force.x,
+            "shaking_force.y": found.shaking_force.y,
+            "shaking_moment": found.shaking_moment,
+            "frame_force.y": found.frame_force.y,
+            "frame_moment": found.frame_moment,
+            "drive_torque": found.drive_torque,
+            "roll_moment": -row.lateral * found.shaking_force.y,
+            "yaw_moment": row.lateral * found.shaking_force.x,
+        }
+        total = total + signals[output]
+    return total
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_sum_in_time(output: str) -> None:
+    signal = of_all_rows(Effects(MACHINE, ()), output)
+    wanted = in_time(MACHINE, output, 0j)
+    np.testing.assert_allclose(signal.start, wanted, rtol=0, atol=EXACT * np.max(np.abs(wanted)))
+
+
+def test_about_another_point() -> None:
+    signal = of_all_rows(Effects(MACHINE, ()), "shaking_moment", "D")
+    wanted = in_time(MACHINE, "shaking_moment", complex(*MACHINE.frame["D"]))
+    np.testing.assert_allclose(signal.start, wanted, rtol=0, atol=EXACT * np.max(np.abs(wanted)))
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_columns_are_those_of_changed_machines(output: str) -> None:
+    plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force.x"),))
+    problem = Problem.of(MACHINE, plan)
+    numbers = np.array([0.7, 0.3, -0.2, 0.5])
+    changed = problem.machine_with([numbers])
+    signal = of_all_rows(problem.effects, output)
+    wanted = in_time(changed, output, 0j)
+    atol = EXACT * np.max(np.abs(wanted))
+    np.testing.assert_allclose(signal.at(numbers), wanted, rtol=0, atol=atol)
+
+
+def test_a_counterweight_against_rows_that_cancel_already() -> None:
+    """Two rows opposed leave no first order, and a counterweight has nothing to do."""
+    rows = (Row(0.0), Row(np.pi))
+    machine = replace(eq.load("yamashita-1"), rows=rows)
+    plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force"),))
+    with pytest.raises(eq.EquipoiseError, match="nothing that is free to change has an effect"):
+        eq.balance(machine, plan)
+
+
+def test_roll_is_balanced_by_what_is_free() -> None:
+    found = eq.balance(MACHINE, Balance(masses=(COUNTER,), objectives=(Objective("roll_moment"),)))
+    before, after = found.objectives["rms of roll_moment"]
+    assert before == pytest.approx(np.sqrt(np.mean(in_time(MACHINE, "roll_moment", 0j) ** 2)))
+    assert after == pytest.approx(np.sqrt(np.mean(in_time(found.machine, "roll_moment", 0j) ** 2)))
+    assert after < 0.7 * before
+    assert any("masses are those of one row" in note for note in found.notes)
