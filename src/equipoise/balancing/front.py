@@ -23,7 +23,7 @@ Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 
 POINTS = 21
-SAME, HELD = 1e-7, 1e-8
+SAME, HELD = 1e-7, 3e-9
 """Over the value before: less than this between the ends is no trade-off; how exactly the least
 second objective is held while the first is made small."""
 TOUCH = 1e-4
@@ -139,8 +139,16 @@ def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Bal
         found = balance(machine, replace(plan, objectives=(first,), limits=(*plan.limits, limit)))
     except UsageError:  # as near to the least as that, there may be no room to move
         return least
-    better = Problem.value_of(found.machine, first) < Problem.value_of(least.machine, first)
-    return found if better else least
+    if Problem.value_of(found.machine, first) >= Problem.value_of(least.machine, first):
+        return least
+    value = Problem.value_of(found.machine, second)
+    return replace(
+        least,  # whose bound is that of the second objective
+        machine=found.machine,
+        changes=found.changes,
+        objectives={second.name: (before, value)},
+        cost=least.cost * value / after if after else least.cost,
+    )
 
 
 def _spaced(low: float, high: float, count: int) -> list[float]:

@@ -24,8 +24,9 @@ Progress = Callable[[int, int], None]
 SLACK, WORSE = 2e-9, 5e-9
 """Over the value before: by how much the cost may rise where that saves mass, as asked of the
 solver and as read off the signals."""
-STILL, ROUNDS = 1e-9, 50
-"""Change of the cost at which gauges have been read near enough; steps from near to nearer."""
+STILL, SETTLED, ROUNDS = 1e-9, 1e-8, 20
+"""Changes of cost and of numbers at which gauges have been read near enough; steps from near to
+nearer."""
 SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
 """Of a step towards the best of a nearby problem that are tried."""
 
@@ -61,11 +62,24 @@ def solve_problem(
     for _ in range(ROUNDS):
         near = problem.near(found.numbers)
         towards = _solve_once(near, progress)
-        better = _on_the_way(near, found, towards, cost)
+        if _limits_gauges(problem):  # which are kept where they are read, not a step before
+            better = towards if _apart(found, towards) > SETTLED else None
+        else:
+            better = _on_the_way(near, found, towards, cost)
         if better is None:
             return replace(found, best=towards.best)
         found, cost = better, problem.cost_of(better.machine)
     return found
+
+
+def _limits_gauges(problem: Problem) -> bool:
+    return any(one.objective.output.startswith("gauges.") for one in problem.plan.limits)
+
+
+def _apart(one: Solution, other: Solution) -> float:
+    """The largest difference of any number, scaled."""
+    pairs = zip(one.numbers, other.numbers, strict=True)
+    return max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
 
 
 def _begun(problem: Problem) -> Problem:
@@ -104,9 +118,8 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
         best = as_best(problem, problem.cost_of(machine))
         return Solution(problem, best, numbers, machine, "closed form")
     built = problem.built
-    scale = sum(one.weight for one in problem.plan.objectives)
     try:
-        best = minimise(built.program, built.squares, scale, progress, above)
+        best = minimise(built.program, built.squares, problem.whole, progress, above)
     except StalledError as error:
         raise UsageError(f"{error}; change a limit a little, or free less") from error
     except NoSolutionError:
@@ -126,12 +139,11 @@ def _lightest(problem: Problem, best: Best) -> list[Array]:
     program = best.program.copy()
     terms = np.array(list(program.cost))
     weights = np.array([program.cost[int(term)] for term in terms])
-    scale = sum(one.weight for one in problem.plan.objectives)
-    program.nonnegative(Affine.of(terms, -weights, best.value + SLACK * scale))
+    program.nonnegative(Affine.of(terms, -weights, best.value + SLACK * problem.whole))
     program.cost = {int(m): float(u) for m, u in zip(masses, units / np.max(units), strict=True)}
     try:
         lighter = problem.split(program.solve().x)
     except NoSolutionError:  # as near to the best as that, there may be no room to move
         return found
     worse = problem.cost_at(lighter) - best.value
-    return lighter if worse <= WORSE * scale else found
+    return lighter if worse <= WORSE * problem.whole else found

@@ -105,6 +105,11 @@ class Problem:
             [self.value_of(machine, one) / self.scale(one) for one in self.plan.objectives]
         )
 
+    @property
+    def whole(self) -> float:
+        """What is to become small, for the machine as it is."""
+        return self.plan.combined([1.0] * len(self.plan.objectives))
+
     def cost_at(self, numbers: list[Array]) -> float:
         """The same for the parts' numbers, as the program has it."""
         x = np.concatenate(numbers)

@@ -151,3 +151,34 @@ def test_orders_that_there_are_not(order: float) -> None:
     )
     with pytest.raises(UsageError, match=f"there is no order {order:g}"):
         eq.balance(MACHINE, plan)
+
+
+@pytest.mark.parametrize("ratio", [0.45, 0.5])
+def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
+    """Added mass makes the support heavier: what counts is the machine that comes out."""
+    machine = eq.load("balance-rig")
+    assert machine.balance is not None
+    gauge, joint = machine.balance.objectives[0], Objective("joints.A", "peak")
+    plan = Balance(
+        masses=machine.balance.masses, objectives=(joint,), limits=(Limit(gauge, None, ratio),)
+    )
+    found = eq.balance(machine, plan)
+    price = found.prices[gauge.name]
+    assert price.used == pytest.approx(price.at_most, rel=1e-7)
+    assert price.active
+    assert found.gap is not None and found.gap < 1e-8
+
+
+def test_the_ends_of_a_front() -> None:
+    """At the far end the second is least, and of all those the first."""
+    rocker = AddedMass("rocker", "D", Weight("any", 0.05, at_most=0.5))
+    crank = AddedMass("crank", "A", Weight("any", 0.05, at_most=0.5))
+    first, second = Objective("shaking_force", "peak"), Objective("joints.D")
+    plan = Balance(masses=(rocker, crank))
+    front = eq.trade_off(MACHINE, first, second, plan, points=4)
+    alone = eq.balance(MACHINE, replace(plan, objectives=(second,)))
+    least = alone.objectives[second.name][1]
+    assert front.values[-1, 1] == pytest.approx(least, rel=1e-7)
+    assert np.all(np.diff(front.values[:, 0]) > 0)
+    assert np.all(np.diff(front.values[:, 1]) < 1e-9)
+    assert front.gap < 1e-8
