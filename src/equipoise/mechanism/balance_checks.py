@@ -20,6 +20,7 @@ from equipoise.mechanism.balance import (
 from equipoise.mechanism.balance_outputs import wrong_limit, wrong_objective
 from equipoise.mechanism.balance_weights import positive, wrong_weight
 from equipoise.mechanism.checks import FRAME, LONGEST_NAME, unknown
+from equipoise.mechanism.spring import wrong_ends
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
@@ -264,19 +265,7 @@ def _wrong_names(balance: Balance, machine: Machine) -> Iterator[ModelError]:
 
 
 def _wrong_spring(where: str, spring: SpringChoice, machine: Machine) -> Iterator[ModelError]:
-    if spring.link not in machine.links:
-        yield ModelError(f"{where}.link", unknown(spring.link, machine.links, "link"))
-    elif spring.point not in (points := machine.links[spring.link].points):
-        sentence = unknown(spring.point, points, f"point of {spring.link}")
-        yield ModelError(f"{where}.point", sentence)
-    elif spring.to not in machine.frame:
-        yield ModelError(f"{where}.to", unknown(spring.to, machine.frame, "point of the frame"))
-    elif spring.point in machine.frame:
-        yield ModelError(
-            f"{where}.point",
-            f"{spring.point!r} is pinned to the frame, where a spring does nothing; give a point "
-            "that moves",
-        )
+    yield from wrong_ends(where, spring, machine)
     yield from positive(f"{where}.stiffness", spring.stiffness, "N/m")
     lengths = spring.free_length
     if lengths is not None and min(lengths) < 0:

@@ -12,6 +12,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.frozen import Frozen
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.balance import SpringChoice
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.motion import Motion
 
@@ -48,11 +49,12 @@ def wrong_springs(machine: Machine) -> Iterator[ModelError]:
         count = len(machine.springs)
         yield ModelError("springs", f"got {count}; at most {MOST} are computed with")
     for number, spring in enumerate(machine.springs, 1):
-        yield from _wrong_ends(f"springs[{number}]", spring, machine)
+        yield from wrong_ends(f"springs[{number}]", spring, machine)
         yield from _wrong_numbers(f"springs[{number}]", spring)
 
 
-def _wrong_ends(where: str, spring: Spring, machine: Machine) -> Iterator[ModelError]:
+def wrong_ends(where: str, spring: Spring | SpringChoice, machine: Machine) -> Iterator[ModelError]:
+    """What is wrong with the two points of a spring, or of one that may be set."""
     if spring.link not in machine.links:
         yield ModelError(f"{where}.link", unknown(spring.link, machine.links, "link"))
         return
