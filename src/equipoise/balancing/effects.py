@@ -31,13 +31,19 @@ class Effects:
     """Outputs of a machine as signals of its free numbers.
 
     machine : from which the numbers count.  parts : whose numbers they are, K in all.
+    like : a machine of the same links, whose gears are in contact on the flanks that are taken.
     """
 
     def __init__(
-        self, machine: Machine, parts: Sequence[Part], motion: Motion | None = None
+        self,
+        machine: Machine,
+        parts: Sequence[Part],
+        motion: Motion | None = None,
+        like: Machine | None = None,
     ) -> None:
         self.machine, self.parts = machine, tuple(parts)
         self.motion = move(machine, ANGLES, acceleration=0.0) if motion is None else motion
+        self.like = like
         self.count = sum(part.count for part in parts)
 
     def at(self, speed: float) -> Effects:
@@ -84,7 +90,7 @@ class Effects:
         if name not in self._start.joints:
             raise UsageError(unknown(name, self._start.joints, "joint"))
         columns = self._in_all(self._solved.joints[name].value, f"joints.{name}")
-        return self._start.joints[name].value, columns
+        return self._start.solved_like(self._flanks).joints[name].value, columns
 
     def weight_moment(self, about: complex) -> Signal:
         """Moment of the weight about a point."""
@@ -155,7 +161,15 @@ class Effects:
                     demands[part.link], self._inertia, self._weight, strict=True
                 ):
                     whole[rows] = one[rows] + other[rows]
-        return reactions(self.motion, demands, self._start.solved)
+        return reactions(self.motion, demands, self._flanks)
+
+    @cached_property
+    def _flanks(self) -> Pass:
+        """A run whose gears are in contact on the flanks that count."""
+        if self.like is None or not self.machine.gears:
+            return self._start.solved
+        motion = move(self.like, ANGLES, acceleration=0.0)
+        return forces(motion.at(self.motion.speed)).solved
 
     def _in_all(self, columns: Array, output: str) -> Array:
         """Columns (K, N) of masses, with those of springs beside them."""

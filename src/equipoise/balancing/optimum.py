@@ -50,13 +50,15 @@ class Solution:
 def solve_problem(
     problem: Problem, progress: Progress | None = None, above: float = inf
 ) -> Solution:
-    """The best numbers of one problem; where gauges are read, step by step from near to near.
+    """The best numbers of one problem; step by step from near to near, where gauges are read or
+    gears may change their flanks.
 
     above : of several problems, the least cost so far.
     """
     problem = _begun(problem)
     found = _solve_once(problem, progress, above)
-    if not problem.reads_gauges or not problem.supports_more:
+    bent = problem.reads_gauges and problem.supports_more
+    if not bent and not problem.flips:
         return found
     cost = problem.cost_of(found.machine)
     for _ in range(ROUNDS):

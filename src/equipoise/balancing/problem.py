@@ -70,8 +70,16 @@ class Problem:
     def near(self, numbers: list[Array]) -> Problem:
         """The same, with gauges read as they are near the machine of some numbers."""
         there = replace(self, close=Near(self.machine_with(numbers), np.concatenate(numbers)))
-        there.__dict__.update(before=self.before, effects=self.effects)
+        effects = self.effects
+        if self.flips:
+            effects = Effects(self.start, self.parts, effects.motion, there.close.machine)
+        there.__dict__.update(before=self.before, effects=effects)
         return there
+
+    @property
+    def flips(self) -> bool:
+        """Whether joints count in which it matters on which flank gears are in contact."""
+        return bool(self.start.gears) and any(o.output.startswith("joints.") for o in self.asked)
 
     @cached_property
     def supports_more(self) -> bool:

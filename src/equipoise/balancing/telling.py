@@ -52,6 +52,8 @@ def _scope(found: Solution) -> str:
     )
     if any(capped):
         told.append("within where it was stopped")
+    if problem.flips:
+        told.append("for the flanks of gears in contact here")
     if any(geared_range(geared) for geared in problem.plan.geared):
         told.append("for each of the gears tried")
     return " and ".join(told)
@@ -130,5 +132,3 @@ def _notes(found: Solution) -> Iterator[str]:
             "the search ended before it had proved that nothing better exists; the gap tells how "
             "far it came"
         )
-    if found.machine.gears and any(one.output.startswith("joints.") for one in problem.asked):
-        yield "forces in bearings of gears are those with the flank in contact that was so before"

@@ -102,11 +102,15 @@ class Forces:
     @cached_property
     def solved(self) -> Pass:
         """The run over the joints that belongs to all demands together."""
+        return self.solved_like(None)
+
+    def solved_like(self, other: Pass | None) -> Pass:
+        """The same with the flanks of gears in contact that are so in another run."""
         total = dict(self.inertia)
         for more in (self.weights, self.loads, self.springs):
             for link, (force, moment) in more.items():
                 total[link] = (total[link][0] + force, total[link][1] + moment)
-        return reactions(self.motion, total)
+        return reactions(self.motion, total, other)
 
     @property
     def frame_force(self) -> VectorSignal:
