@@ -83,7 +83,7 @@ class Analysis:
                 f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
                 "high ones are taken for low ones"
             )
-        mass = sum(link.mass or 0.0 for link in self.machine.links.values())
+        mass = self.machine.mass
         signals = {
             "shaking_force.x": found.shaking_force.x,
             "shaking_force.y": found.shaking_force.y,

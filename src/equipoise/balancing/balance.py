@@ -15,6 +15,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.structures.choice import check_moving
 
 Progress = Callable[[int, int], None]
 
@@ -61,7 +62,6 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
             "nothing is to become small; give [[balance.objectives]], or an option such as "
             '--objective "shaking_force.y"'
         )
-    if machine.drive.speed == 0:
-        raise UsageError("a crank that stands still shakes nothing; give the drive a speed")
+    check_moving(machine)
     machine.with_balance(plan)  # checks that what it names is there
     return plan

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from equipoise.balancing.measures import unit_of
 from equipoise.balancing.problem import ADDED, Problem
 from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Balance, Limit
+from equipoise.mechanism.balance import Limit
 
 MOST_LIMITS = 40
 """Beyond which the fewest are not looked for."""
@@ -62,13 +63,7 @@ def _way_out(problem: Problem, clash: list[str]) -> str:
         return "allow more of it" if len(clash) == 1 else "allow more of one of them"
     plan = problem.plan
     others = tuple(other for other in plan.limits if other.name in clash and other != limit)
-    relaxed = Balance(
-        **{
-            **{key: getattr(plan, key) for key in plan.shapes},
-            "objectives": (limit.objective,),
-            "limits": others,
-        }
-    )
+    relaxed = replace(plan, objectives=(limit.objective,), limits=others)
     try:
         asked = Problem(problem.machine, relaxed, problem.start, problem.parts, problem.close)
         least = asked.built.program.solve().value * asked.scale(limit.objective)

@@ -31,7 +31,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     Gauges are read by the model that is usual for the support.
     """
     found = forces(move(machine, ANGLES, acceleration=0.0))
-    figures = {"mass": sum(link.mass or 0.0 for link in machine.links.values())}
+    figures = {"mass": machine.mass}
     for name, values, measures in _signals(found):
         for measure in measures:
             figures[f"{name}.{measure}"] = measured(values, measure)

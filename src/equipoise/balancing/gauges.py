@@ -145,8 +145,7 @@ def _wrench(effects: Effects, linear: Linear) -> Periodic:
 
 
 def _weight_of(machine: Machine) -> complex:
-    masses = sum(link.mass or 0.0 for link in machine.links.values())
-    return masses * complex(*machine.gravity)
+    return machine.mass * complex(*machine.gravity)
 
 
 def _moments(effects: Effects, step: Step, pivot: complex) -> Array:

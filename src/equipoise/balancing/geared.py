@@ -12,12 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.parts import Change
+from equipoise.balancing.parts import Change, with_parameters
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import BalanceShafts, GearedWeight
+from equipoise.mechanism.kernels import about
 from equipoise.mechanism.model import Gear, Link, Machine, Vector
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.parameters import parameter_values
 
 Array = np.ndarray[Any, Any]
 
@@ -249,16 +251,9 @@ def _with_gear(machine: Machine, link: str, pin: str, mass: float, inertia: floa
     """The machine with a disc about a pin of a link."""
     if not mass:
         return machine
-    body = machine.links[link]
-    assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
-    at, old = complex(*body.points[pin]), complex(*body.center_of_mass)
-    whole = body.mass + mass
-    center = (body.mass * old + mass * at) / whole
-    own = body.inertia + body.mass * abs(old - center) ** 2
-    own += inertia + mass * abs(at - center) ** 2
-    return machine.with_link(
-        link, mass=whole, center_of_mass=(center.real, center.imag), inertia=own
-    )
+    values = parameter_values(machine).reshape(-1, 4)[list(machine.links).index(link)]
+    m, moment, own = about(mass, 0j, inertia, -complex(*machine.links[link].points[pin]))
+    return with_parameters(machine, link, values + np.array([m, moment.real, moment.imag, own]))
 
 
 def nearest(motion: Motion, link: str, place: complex) -> float:

@@ -104,7 +104,7 @@ def _checked(machine: Machine, links: Sequence[str], free: Sequence[str]) -> lis
 
 def _row_scales(machine: Machine, found: Conditions) -> Array:
     """Size of each condition's terms (B,) at the machine's mass, in its own unit."""
-    mass = sum(link.mass or 0.0 for link in machine.links.values()) or 1.0
+    mass = machine.mass or 1.0
     sizes: Array = np.max(np.abs(found.coefficients * parameter_scales(machine)), axis=1) * mass
     return sizes
 

@@ -144,6 +144,10 @@ class Part(ABC):
         """Limits that have a price."""
         return []
 
+    def stopped(self, numbers: Array) -> str:
+        """What to tell where a number has come to an end that nobody asked for; else nothing."""
+        return ""
+
     @abstractmethod
     def changes(self, numbers: Array) -> list[Change]:
         """What the numbers (count,) mean."""

@@ -277,7 +277,7 @@ class Problem:
 
     def mass_added(self, numbers: list[Array]) -> float:
         """Mass of weights and gears, kg."""
-        masses = [sum(link.mass or 0.0 for link in m.links.values()) for m in self._ends]
+        masses = [machine.mass for machine in self._ends]
         pairs = zip(self.parts, numbers, strict=True)
         weights = [own @ part.effect[:, 0] for part, own in pairs]
         return masses[0] - masses[1] + float(sum(weights))

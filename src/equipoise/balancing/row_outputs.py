@@ -16,8 +16,9 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, wrong_objective
+from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, wrong_objective
 from equipoise.mechanism.dynamics import forces, place_of
+from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import Row
@@ -31,6 +32,8 @@ Array = np.ndarray[Any, Any]
 
 SHAKING, FRAME, TORQUE = 0, 3, 6
 """Among signals of one row: force x, y and moment about the drive's pivot, twice; drive torque."""
+UNIT = np.array([1.0, 1j, 0.0]), np.array([0.0, 0.0, 1.0])
+"""Force and moment of which force x, y and moment are 1 in turn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,17 +116,12 @@ class Rows:
         """Rows (C, 7) by which an output reads the signals of one row."""
         if output == "drive_torque":
             return np.eye(7)[TORQUE:]
-        if output in OF_ROWS:
-            lever = np.zeros((1, 7))
-            lever[0, :2] = (0.0, -row.lateral) if output == "roll_moment" else (row.lateral, 0.0)
-            return lever
         first = FRAME if output.startswith("frame") else SHAKING
         kind = output.removeprefix("frame_").removeprefix("shaking_")
         whole = np.eye(7)[first : first + 3]
-        if kind == "moment":
-            pole = self._pivot if about is None else place_of(self.machine, about)
-            arm = self._pivot + complex(*row.offset) - pole
-            return np.array([[-arm.imag, arm.real, 1.0]]) @ whole
+        if output.endswith("_moment"):
+            arm = arm_of(self.machine, self._motion, row, about)
+            return moment_of_row(output, row, arm, *UNIT)[None] @ whole
         return whole[{"force": [0, 1], "force.x": [0], "force.y": [1]}[kind]]
 
     @cached_property
@@ -131,11 +129,6 @@ class Rows:
         planting = self.machine.planting
         sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
         return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
-
-    @cached_property
-    def _pivot(self) -> complex:
-        """The drive's pivot in the frame."""
-        return complex(*self.machine.frame[self._motion.linkage.pivot])
 
     @cached_property
     def _one(self) -> Periodic:
@@ -165,6 +158,24 @@ class Rows:
     @cached_property
     def _linear(self) -> Linear:
         return Linear.of(self.machine, usual_step(self.machine))
+
+
+def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
+    """From the point about which moments are taken to a row's drive pivot, m."""
+    pivot = complex(*machine.frame[motion.linkage.pivot])
+    return pivot + complex(*row.offset) - (pivot if about is None else place_of(machine, about))
+
+
+def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Array) -> Array:
+    """What a row adds to a moment: (x, y, z) x F, with (x, y) the arm and z to the side, N m.
+
+    force : complex, in the row's plane, N.  moment : of the row about its own drive pivot, N m.
+    """
+    if output == "roll_moment":
+        return np.asarray(-row.lateral * force.imag)
+    if output == "yaw_moment":
+        return np.asarray(row.lateral * force.real)
+    return np.asarray(moment + cross(arm, force))
 
 
 def _padded(each: Sequence[Array]) -> Array:

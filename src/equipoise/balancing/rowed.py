@@ -11,9 +11,8 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.measures import Signal
+from equipoise.balancing.row_outputs import arm_of, moment_of_row
 from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS
-from equipoise.mechanism.dynamics import place_of
-from equipoise.mechanism.kernels import cross
 
 Array = np.ndarray[Any, Any]
 
@@ -38,28 +37,14 @@ def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Sign
     if output in OF_ROWS:
         total = Signal(total.start.real, total.columns.real, one.turns)
     for row in effects.machine.rows:
-        if output == "roll_moment":
-            here = _mapped(force, lambda f, z=row.lateral: -z * f.imag)
-        elif output == "yaw_moment":
-            here = _mapped(force, lambda f, z=row.lateral: z * f.real)
-        elif output.endswith("_moment"):
-            arm = _arm(effects, complex(*row.offset), about)
-            here = _added(one, _mapped(force, lambda f, a=arm: cross(a, f)))
-        else:
-            here = one
+        here = one
+        if output.endswith("_moment"):
+            arm = arm_of(effects.machine, effects.motion, row, about)
+            start = moment_of_row(output, row, arm, force.start, one.start)
+            columns = moment_of_row(output, row, arm, force.columns, one.columns)
+            here = Signal(start, columns, one.turns)
         total = _added(total, shifted(here, row.phase))
     return total
-
-
-def _arm(effects: Effects, offset: complex, about: str | None) -> complex:
-    """From the point about which moments are taken to a row's pivot."""
-    pivot = complex(*effects.machine.frame[effects.motion.linkage.pivot])
-    return pivot + offset - (pivot if about is None else place_of(effects.machine, about))
-
-
-def _mapped(signal: Signal, change: Any) -> Signal:
-    """A signal of which every value is changed alike, linearly."""
-    return Signal(change(signal.start), change(signal.columns), signal.turns)
 
 
 def _added(one: Signal, other: Signal) -> Signal:
@@ -75,4 +60,4 @@ def shifted(signal: Signal, phase: float) -> Signal:
         found: Array = np.fft.ifft(np.fft.fft(values) * turning)
         return found if np.iscomplexobj(values) else found.real
 
-    return _mapped(signal, turned)
+    return Signal(turned(signal.start), turned(signal.columns), signal.turns)

@@ -169,7 +169,7 @@ def _by_change(link: Link, columns: Array) -> Array:
 def _absent(machine: Machine, raw: Array) -> Array:
     """Which derivatives are only rounding, at the size and mass of the machine."""
     size = machine_size(machine)
-    mass = sum(link.mass or 0.0 for link in machine.links.values()) or 1.0
+    mass = machine.mass or 1.0
     scale = np.tile([mass, size, size, mass * size**2], len(machine.links))
     sizes = np.max(np.abs(raw), axis=1) * scale
     found: Array = sizes <= NOTHING * np.max(sizes)

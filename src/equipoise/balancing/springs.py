@@ -67,10 +67,14 @@ class FreeSpring(Part):
         most = self.choice.stiffness
         return [Bound(self._name, most, float(numbers[0]) * most, "N/m")]
 
-    def is_capped(self, numbers: Array) -> bool:
-        """Whether the free length has come to where it was stopped without being asked for."""
+    def stopped(self, numbers: Array) -> str:
         longest = LONGEST * float(numbers[0])
-        return self.choice.free_length is None and 0 < 0.999 * longest < float(numbers[1])
+        if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
+            return ""
+        return (
+            f"the spring on {self.link} has come to twice the largest distance of points, "
+            "where its free length was stopped; give it free_length"
+        )
 
     def columns(self, motion: Motion, output: str) -> Array:
         """Effect (2, N) on the drive's torque or on a joint's force."""

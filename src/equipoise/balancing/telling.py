@@ -10,8 +10,6 @@ from equipoise.balancing.measures import unit_of
 from equipoise.balancing.optimum import Solution
 from equipoise.balancing.parts import Bound
 from equipoise.balancing.problem import ADDED
-from equipoise.balancing.springs import FreeSpring
-from equipoise.balancing.weights import AddedWeight
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
 
@@ -47,10 +45,7 @@ def _scope(found: Solution) -> str:
     pairs = zip(problem.parts, found.numbers, strict=True)
     if problem.reads_gauges and problem.supports_more:
         told.append("for small changes about it")
-    capped = (
-        part.is_capped(own) for part, own in pairs if isinstance(part, AddedWeight | FreeSpring)
-    )
-    if any(capped):
+    if any(part.stopped(own) for part, own in pairs):
         told.append("within where it was stopped")
     if problem.flips:
         told.append("for the flanks of gears in contact here")
@@ -109,17 +104,8 @@ def _notes(found: Solution) -> Iterator[str]:
             "added mass makes the support heavier, which bends what is linear otherwise: the bound "
             "is that of small changes about this result"
         )
-    for part, own in zip(problem.parts, found.numbers, strict=True):
-        if isinstance(part, AddedWeight) and part.is_capped(own):
-            yield (
-                f"the weight on {part.link} has come to ten times the mass of the links, where it "
-                "was stopped; more would do better still: give it at_most"
-            )
-        if isinstance(part, FreeSpring) and part.is_capped(own):
-            yield (
-                f"the spring on {part.link} has come to twice the largest distance of points, "
-                "where its free length was stopped; give it free_length"
-            )
+    pairs = zip(problem.parts, found.numbers, strict=True)
+    yield from filter(None, (part.stopped(own) for part, own in pairs))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield f"masses are those of one row; the machine has {rows}"
     if found.ties > 1:

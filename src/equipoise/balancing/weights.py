@@ -57,10 +57,9 @@ class AddedWeight(Part):
         self.center = complex(*body.points[at])
         self.names = NAMES[weight.shape]
         self.count = len(self.names)
-        masses = sum(body.mass or 0.0 for body in machine.links.values())
-        self.cap = (masses or 1.0) * CAP
+        self.cap = (machine.mass or 1.0) * CAP
         self.most = min(weight.mass or weight.at_most or self.cap, largest_mass(weight))
-        self.mass_unit = min(self.most, masses or 1.0)
+        self.mass_unit = min(self.most, machine.mass or 1.0)
         self.reach = weight.radius if isfinite(weight.radius) else size_of(body.points) or 1.0
         self.name = f"mass on {link}"
 
@@ -91,7 +90,7 @@ class AddedWeight(Part):
         """The smaller solution m of moment + c m^(3/2) = R m."""
         from scipy.optimize import brentq
 
-        c: float = sqrt(self.mass_unit / (pi * self._plate)) / self.reach
+        c = self._disc_radius
         top = min(now, (2 * self._room / (3 * c)) ** 2)  # beyond which a disc only loses moment
 
         def spare(m: float) -> float:
@@ -106,6 +105,11 @@ class AddedWeight(Part):
         """Mass, scaled, of a radian of half a sector's angle."""
         outer, inner = self.weight.radius, self.weight.inner_radius
         return self._plate * (outer**2 - inner**2) / self.mass_unit
+
+    @property
+    def _disc_radius(self) -> float:
+        """Radius of a disc of mass 1; both scaled."""
+        return sqrt(self.mass_unit / (pi * self._plate)) / self.reach
 
     @property
     def _radius_name(self) -> str:
@@ -125,10 +129,14 @@ class AddedWeight(Part):
             found.append(Bound(self._radius_name, self.weight.radius, used, "m"))
         return found
 
-    def is_capped(self, numbers: Array) -> bool:
-        """Whether the mass has come to where it was stopped without anybody having asked for it."""
+    def stopped(self, numbers: Array) -> str:
         given = self.weight.mass is not None or self.weight.at_most is not None
-        return not given and float(numbers[0]) * self.mass_unit > self.cap * (1 - 1e-3)
+        if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
+            return ""
+        return (
+            f"the weight on {self.link} has come to ten times the mass of the links, where it "
+            "was stopped; more would do better still: give it at_most"
+        )
 
     @property
     def _plate(self) -> float:
@@ -238,9 +246,8 @@ class AddedWeight(Part):
         mass = Affine.of(at["m"], 1.0)
         program.rotated(Affine.of(int(w), 1.0), Affine.of(int(u), 1.0), mass)
         program.rotated(mass, one, Affine.of(int(u), 1.0))
-        radius = sqrt(self.mass_unit / (pi * self._plate)) / self.reach
         factors = np.zeros((3, 4))
-        factors[0, :2], factors[1:, 2:] = (self._room, -radius), moment.factors
+        factors[0, :2], factors[1:, 2:] = (self._room, -self._disc_radius), moment.factors
         columns = np.concatenate([[at["m"], w], moment.columns])
         program.cones(Affine(factors, columns, np.zeros(3)), 3)
 

@@ -301,6 +301,11 @@ class Machine(Frozen):
 
         return wrong_balance(self)
 
+    @property
+    def mass(self) -> float:
+        """Mass of all links of one linkage together, kg; one without a mass adds nothing."""
+        return sum(link.mass or 0.0 for link in self.links.values())
+
     def with_link(self, name: str, **changes: Any) -> Machine:
         """Return the machine with fields of one link changed."""
         if name not in self.links:

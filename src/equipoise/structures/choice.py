@@ -48,6 +48,12 @@ def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
     return "exact" if drive else usual_step(machine)
 
 
+def check_moving(machine: Machine) -> None:
+    """Refuse a machine of which nothing shakes, with a `UsageError`."""
+    if machine.drive.speed == 0:
+        raise UsageError("a crank that stands still shakes nothing; give the drive a speed")
+
+
 def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
     """Speed of the crank asked for, rad/s; refused where it cannot be had.
 

@@ -74,7 +74,7 @@ class Excitation:
 
     @cached_property
     def _links_mass(self) -> float:
-        return sum(link.mass or 0.0 for link in self.machine.links.values())
+        return self.machine.mass
 
     def pivot_of(self, row: Row) -> Array:
         x, y = row.offset
