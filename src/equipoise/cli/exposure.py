@@ -1,0 +1,274 @@
+"""The command `exposure`."""
+
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from equipoise.cli.app import SIGNED, app
+from equipoise.cli.options import check_belonging, check_folder, quantity
+from equipoise.cli.results import Kind, draw
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.exposure.daily import Exposure, Task
+    from equipoise.exposure.weighted import Weighted
+    from equipoise.io.accelerations import Accelerations
+
+INPUT = Parameter(name="INPUT", negative="")
+DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
+VALUE = re.compile(r"(?:(?P<name>[^:]*[^:\s])\s*:\s+)?(?P<a_hv>.*\S)\s+for\s+(?P<duration>.*)")
+LOOKS_LIKE_A_VALUE = re.compile(r"(?:[^:]+:\s)?\s*[+-]?[0-9.]+(?: .*)?")
+
+
+@dataclass(frozen=True)
+class Told:
+    """What is known of one task: its total value, m/s2, and how long a day, s, if that is told."""
+
+    name: str
+    a_hv: float
+    duration: float | None = None
+    weighted: Weighted | None = None
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the values of files are, and what is to be made of them."""
+
+    weighted: bool
+    single_axis: bool
+    bands: bool
+    periodic: bool
+
+
+@app.command
+def exposure(
+    *inputs: Annotated[str, INPUT],
+    duration: Annotated[list[str] | None, DURATION] = None,
+    idle: Annotated[str | None, SIGNED] = None,
+    racing: Annotated[str | None, SIGNED] = None,
+    bands: bool = False,
+    weighted: bool = False,
+    single_axis: bool = False,
+    periodic: bool = False,
+    json: bool = False,
+    plot: str | None = None,
+    format: Kind | None = None,
+) -> None:
+    """Hand-arm vibration: weighted acceleration, a day's exposure, and how long one may work.
+
+    Parameters
+    ----------
+    inputs
+        Values such as "7.4 m/s^2 for 2.5 h" or "mowing: 4.6 m/s^2 for 2 h", and paths of CSV files:
+        signals (columns "time [s]" and "x [m/s^2]", y, z), spectra ("frequency [Hz]" and the
+        same), tasks ("task", "acceleration [m/s^2]", "duration [h]").
+    duration
+        Time of exposure a day of a signal, a spectrum, or --idle and --racing, such as "2.5 h".
+        One for all of them, or repeated for each.
+    idle
+        Total value when idling, such as "3.1 m/s^2"; put together with --racing as in ISO 22867.
+    racing
+        Total value when racing.
+    bands
+        The spectra are in one-third-octave bands.
+    weighted
+        The values of signals and spectra are weighted already.
+    single_axis
+        Estimate the total value of one or two axes as 1.7 times the largest.
+    periodic
+        The signals are whole periods of a steady vibration, with nothing above half the sampling
+        rate, as simulated ones; any rate and duration will do then.
+    json
+        Print one JSON object in SI units, and nothing else.
+    plot
+        Draw the spectrum of every file, and the exposure against hours of work, into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
+    """
+    check_belonging("--plot", plot, format=format)
+    check_belonging("--racing", racing, idle=idle)
+    check_belonging("--idle", idle, racing=racing)
+    if plot is not None:
+        check_folder("--plot", plot)
+    told = [
+        each
+        for text in inputs
+        for each in _told(text, Options(weighted, single_axis, bands, periodic))
+    ]
+    if idle is not None and racing is not None:
+        told.append(_both_modes(idle, racing))
+    if not told:
+        raise UsageError('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file')
+    _check_options(told, weighted=weighted, single_axis=single_axis, bands=bands, periodic=periodic)
+    told = _timed(told, duration or [])
+    _give(told, json, plot, format or "svg")
+
+
+def _give(told: list[Told], json: bool, plot: str | None, kind: Kind) -> None:
+    """Draw, then print."""
+    day = _day(told)
+    measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
+    tools = [(each.name, each.a_hv) for each in told]
+    if plot is not None:
+        from equipoise.plotting.exposure import drawings
+
+        draw(drawings(measured, tools, day), plot, kind)
+    if json:
+        from equipoise.io.output import json_text
+
+        print(json_text(_values(measured, tools, day)))
+    else:
+        from equipoise.terminal.exposure import print_exposure
+
+        print_exposure(measured, tools, day)
+
+
+def _values(
+    measured: list[tuple[str, Weighted]], tools: list[tuple[str, float]], day: Exposure | None
+) -> dict[str, Any]:
+    """Everything as plain data; without times of exposure there is no daily exposure."""
+    from equipoise.exposure.daily import WorkingTimes
+
+    files = [{"name": name, **weighted.to_dict()} for name, weighted in measured]
+    if day is not None:
+        return {"measured": files, **day.to_dict()}
+    tasks = [
+        {"name": name, "a_hv": a_hv, "duration": None, **WorkingTimes(a_hv).to_dict()}
+        for name, a_hv in tools
+    ]
+    a_hv = tasks[0]["a_hv"] if len(tasks) == 1 else None
+    return {"measured": files, "tasks": tasks, "a_hv": a_hv, "a8": None}
+
+
+# -- what is told of tasks -------------------------------------------------------------------------
+
+
+def _told(text: str, options: Options) -> list[Told]:
+    """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
+    from equipoise.io.accelerations import Accelerations, read_accelerations
+
+    match = None if os.path.lexists(text) else VALUE.fullmatch(text)
+    if match is not None:
+        return [_value(text, match)]
+    if LOOKS_LIKE_A_VALUE.fullmatch(text) and not os.path.lexists(text):
+        raise UsageError(f'got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"')
+    found = read_accelerations(text)
+    if isinstance(found, Accelerations):
+        weighted = _weighted(text, found, options)
+        return [Told(os.path.basename(text), weighted.a_hv, None, weighted)]
+    return [Told(task.name, task.acceleration, task.duration) for task in found]
+
+
+def _value(text: str, match: re.Match[str]) -> Told:
+    a_hv = quantity(repr(text), match["a_hv"], "acceleration")
+    duration = quantity(repr(text), match["duration"], "time")
+    if a_hv < 0:
+        raise UsageError(f"got {text!r}; give an acceleration of 0 or more")
+    return Told(match["name"] or match["a_hv"], a_hv, duration)
+
+
+def _both_modes(idle: str, racing: str) -> Told:
+    from equipoise.exposure.iso_22867 import equivalent
+
+    values = [
+        quantity("--idle", idle, "acceleration"),
+        quantity("--racing", racing, "acceleration"),
+    ]
+    for option, text, value in zip(("--idle", "--racing"), (idle, racing), values, strict=True):
+        if value < 0:
+            raise UsageError(f"{option}: got {text!r}; give an acceleration of 0 or more")
+    return Told("idling and racing", equivalent(*values))
+
+
+def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
+    from equipoise.exposure.measured import weigh_signal, weigh_spectrum
+    from equipoise.io.files import printable
+
+    single = options.single_axis and len(found.axes) < 3
+    shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options.weighted}
+    try:
+        if found.kind == "time":
+            return weigh_signal(found.at, found.values, periodic=options.periodic, **shared)
+        return weigh_spectrum(found.at, found.values, bands=options.bands, **shared)
+    except UsageError as error:
+        raise UsageError(f"{printable(path)}: {error}") from error
+
+
+def _check_options(told: list[Told], **given: bool) -> None:
+    """An option that would do nothing is told, not passed over."""
+    files = [each.weighted for each in told if each.weighted is not None]
+    of_use = {
+        "weighted": bool(files),
+        "single_axis": any(file.single_axis for file in files),
+        "bands": any(file.kind == "bands" for file in files),
+        "periodic": any(file.kind == "signal" for file in files),
+    }
+    owners = {
+        "weighted": "a signal or a spectrum",
+        "single_axis": "a signal or a spectrum of one or two axes",
+        "bands": "a spectrum",
+        "periodic": "a signal",
+    }
+    for name, value in given.items():
+        if value and not of_use[name]:
+            option = name.replace("_", "-")
+            raise UsageError(f"--{option} belongs to {owners[name]}; give one, or leave it out")
+
+
+def _timed(told: list[Told], durations: list[str]) -> list[Told]:
+    """With the times of exposure that are given by an option."""
+    times = [_positive(text) for text in durations]
+    open_ended = [each for each in told if each.duration is None]
+    if times and not open_ended:
+        raise UsageError(
+            "--duration belongs to a signal, a spectrum, or --idle and --racing; leave it out"
+        )
+    if len(times) == 1:
+        times *= len(open_ended)
+    if times and len(times) != len(open_ended):
+        raise UsageError(
+            f"--duration: given {len(times)} times, but inputs without a time of their own are "
+            f"{len(open_ended)}; give one for all, or one for each"
+        )
+    rest = iter(times)
+    return [
+        each if each.duration is not None else replace(each, duration=next(rest, None))
+        for each in told
+    ]
+
+
+def _positive(text: str) -> float:
+    value = quantity("--duration", text, "time")
+    if value <= 0:
+        raise UsageError(f"--duration: got {text!r}; give more than 0 and at most 24 h a day")
+    return value
+
+
+def _day(told: list[Told]) -> Exposure | None:
+    """The exposure of a day; None if no time is told."""
+    from equipoise.exposure.daily import daily_exposure
+
+    known = [each for each in told if each.duration is not None]
+    if not known:
+        return None
+    for each in told:
+        if each.duration is None:
+            raise UsageError(
+                f"{each.name}: the time of exposure is missing; give it by --duration, as for the "
+                "other tasks"
+            )
+    return daily_exposure(_task(each) for each in known)
+
+
+def _task(each: Told) -> Task:
+    from equipoise.exposure.daily import Task
+
+    try:
+        return Task(each.name, each.a_hv, each.duration or 0.0)
+    except UsageError as error:
+        raise UsageError(f"{each.name}: {error}") from error

@@ -1,0 +1,279 @@
+"""`equipoise exposure` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.exposure.bands import NOMINAL
+from equipoise.exposure.weighting import factor
+from surface.running import equipoise, process, refused, succeeded
+
+RATE = 4000.0
+TIME = np.arange(int(8 * RATE)) / RATE
+WAVE = np.sqrt(2) * np.sin(2 * np.pi * 80.0 * TIME)
+TASKS = "task,acceleration [m/s^2],duration [h]\nbrush saw,4.6,2\nfelling,6,1\nstripping,3.6,2\n"
+
+
+def columns(header: str, *values: Any) -> str:
+    rows = [",".join(f"{cell:.6f}" for cell in row) for row in zip(*values, strict=True)]
+    return "\n".join([header, *rows]) + "\n"
+
+
+SIGNAL = columns("time [s],x [m/s^2],y [m/s^2],z [m/s^2]", TIME, 10 * WAVE, 2 * WAVE, -WAVE)
+LINES = columns("frequency [Hz],x [m/s^2],y [m/s^2]", [50, 100], [3, 4], [0, 1])
+BANDS = columns("frequency [Hz],x [m/s^2]", NOMINAL, np.linspace(1, 9, 24))
+FILES = {"signal.csv": SIGNAL, "lines.csv": LINES, "bands.csv": BANDS, "tasks.csv": TASKS}
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in a folder of its own, with good files in it."""
+    monkeypatch.chdir(tmp_path)
+    for name, text in FILES.items():
+        Path(name).write_text(text, encoding="utf-8")
+    return tmp_path
+
+
+def read(*words: str) -> dict[str, Any]:
+    """What `equipoise exposure ... --json` prints, and that it prints only that."""
+    result = equipoise("exposure", *words, "--json")
+    content: dict[str, Any] = json.loads(succeeded(result))
+    assert result.err == ""
+    assert result.out.count("\n") == 1
+    return content
+
+
+# -- a day -----------------------------------------------------------------------------------------
+
+
+def test_one_value() -> None:
+    """ISO 5349-2, E.2.1."""
+    shown = succeeded(equipoise("exposure", "7.4 m/s^2 for 2.5 h"))
+    assert re.search(
+        r"^7\.4 m/s\^2 +7\.400 +2\.500 +4\.137 +100 +0\.9131 +3\.652 +2\.000$", shown, re.M
+    )
+    assert "A(8) = 4.137 m/s^2, above the action value (2.5 m/s^2 action, 5 m/s^2 limit" in shown
+    assert "allowed, but the employer has to act" in shown
+    assert "reaches the action value after 54 min, the limit value after 3 h 39 min" in shown
+    assert "after 7.1 years (ISO 5349-1, Annex C)" in shown
+    assert "Japan, guideline of 2009: such work for at most 2 h a day" in shown
+
+
+def test_tasks_in_a_file_and_in_words_are_the_same() -> None:
+    words = (
+        "brush saw: 4.6 m/s^2 for 2 h",
+        "felling: 6 m/s^2 for 60 min",
+        "stripping: 3.6 m/s^2 for 2 h",
+    )
+    by_file, by_words = read("tasks.csv"), read(*words)
+    assert by_file == by_words
+    assert by_file["a8"] == pytest.approx(3.6097, abs=1e-4)
+    assert [task["name"] for task in by_file["tasks"]] == ["brush saw", "felling", "stripping"]
+    assert by_file["verdict"] == "above the action value"
+    shown = succeeded(equipoise("exposure", "tasks.csv"))
+    assert re.search(r"^felling +6\.000 +1\.000 +2\.121 +35 ", shown, re.M)
+    assert re.search(r"^all of them +4\.566 +5\.000 +3\.610 +100 ", shown, re.M)
+    assert "this mix of work reaches the action value after 2 h 23 min" in shown
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [
+        ("1 m/s^2 for 2 h", ("below the action value", "acceptable", "more than 24 h")),
+        ("2.5 m/s^2 for 8 h", ("below the action value", "acceptable", "after 8 h,")),
+        ("20 m/s^2 for 1 h", ("above the limit value", "nobody may be exposed", "30 min a day\n")),
+        ("0 m/s^2 for 1 h", ("A(8) = 0 m/s^2, below the action value", "acceptable")),
+    ],
+)
+def test_plain_words(value: str, words: tuple[str, ...]) -> None:
+    shown = succeeded(equipoise("exposure", value))
+    assert all(word in shown for word in words), shown
+    assert "nan" not in shown and "inf" not in shown
+
+
+def test_idling_and_racing() -> None:
+    content = read("--idle", "1 m/s^2", "--racing", "7 m/s^2", "--duration", "8 h")
+    assert content["a_hv"] == pytest.approx(5.0)
+    assert content["tasks"][0]["name"] == "idling and racing"
+
+
+# -- what is measured ------------------------------------------------------------------------------
+
+
+def test_a_signal() -> None:
+    a_hv = np.sqrt(105) * float(factor(80.0))
+    shown = succeeded(equipoise("exposure", "signal.csv", "--duration", "2 h"))
+    lines = shown.splitlines()
+    assert lines[:2] == ["signal.csv", "signal, 3 axes, 8.000 s at 4000 Hz"]
+    assert re.search(r"^x +10\.00 +2\.0\d\d$", shown, re.M)
+    assert re.search(rf"^total value a_hv, root of the sum of squares +{a_hv:.3f}$", shown, re.M)
+    assert "most of it: band of 80 Hz, 100 % of the weighted mean square; axis x" in shown
+    assert f"A(8) = {a_hv / 2:.3f} m/s^2, below the action value" in shown
+    content = read("signal.csv", "--duration", "2 h")
+    assert content["a8"] == pytest.approx(a_hv / 2, rel=1e-4)
+    (file,) = content["measured"]
+    assert (file["name"], file["kind"], file["axes"]) == ("signal.csv", "signal", ["x", "y", "z"])
+    assert file["sampling_rate"] == pytest.approx(RATE) and file["duration"] == pytest.approx(8)
+    assert file["a_h"] == pytest.approx([10, 2, 1], rel=1e-4)
+    assert file["dominant_band"] == 80 and file["notes"] == []
+
+
+def test_a_spectrum_without_a_time() -> None:
+    content = read("lines.csv")
+    assert content["a8"] is None and content["measured"][0]["kind"] == "spectrum"
+    assert content["a_hv"] == content["measured"][0]["a_hv"]
+    (task,) = content["tasks"]
+    assert task["a_hv"] == content["measured"][0]["a_hv"] and task["duration"] is None
+    assert task["time_to_limit"] == pytest.approx(4 * task["time_to_action"])
+    shown = succeeded(equipoise("exposure", "lines.csv"))
+    assert "note: the total value is that of two axes and may be too low" in shown
+    assert re.search(r"^lines\.csv +1\.178 +over 24 +over 24 +2\.000$", shown, re.M)
+    assert "There is no daily exposure without a time" in shown
+
+
+def test_options_on_spectra() -> None:
+    plain, bands, already, single = (
+        read("bands.csv", *more)["measured"][0]
+        for more in ((), ("--bands",), ("--weighted", "--bands"), ("--single-axis", "--bands"))
+    )
+    assert bands["kind"] == "bands" and "say so (bands)" in plain["notes"][0]
+    assert 0 < abs(bands["a_hv"] - plain["a_hv"]) < 0.01 * plain["a_hv"]
+    assert already["a_hw"][0] == pytest.approx(np.linalg.norm(np.linspace(1, 9, 24)))
+    assert already["a_h"] is None
+    assert single["a_hv"] == pytest.approx(1.7 * bands["a_hv"])
+    shown = succeeded(equipoise("exposure", "bands.csv", "--bands", "--single-axis", "--weighted"))
+    assert "spectrum in one-third-octave bands, 1 axis, weighted already" in shown
+    assert "total value a_hv, 1.7 times the largest" in shown
+
+
+def test_a_periodic_signal() -> None:
+    part = TIME < 0.05
+    text = columns("time [s],z [m/s^2]", TIME[part][::10], WAVE[part][::10])
+    Path("period.csv").write_text(text, encoding="utf-8")
+    assert "sampled at 400 Hz; give at least" in refused(equipoise("exposure", "period.csv"))
+    (file,) = read("period.csv", "--periodic")["measured"]
+    assert file["a_hw"] == pytest.approx([float(factor(80.0))], rel=1e-5)
+    assert file["axes"] == ["z"]
+    assert "nothing above half its sampling rate, 200 Hz" in file["notes"][0]
+
+
+def test_a_spectrum_of_nothing() -> None:
+    Path("still.csv").write_text("frequency [Hz],x [gn]\n50,0\n", encoding="utf-8")
+    shown = succeeded(equipoise("exposure", "still.csv", "--duration", "1 h"))
+    assert "A(8) = 0 m/s^2, below the action value" in shown and "most of it" not in shown
+
+
+def test_durations_of_several_files() -> None:
+    both = read("signal.csv", "mowing: 3 m/s^2 for 1 h", "lines.csv", "--duration", "30 min")
+    assert [task["duration"] for task in both["tasks"]] == [1800, 3600, 1800]
+    each = read("signal.csv", "lines.csv", "--duration", "30 min", "--duration", "2 h")
+    assert [task["duration"] for task in each["tasks"]] == [1800, 7200]
+    assert [file["name"] for file in each["measured"]] == ["signal.csv", "lines.csv"]
+
+
+@pytest.mark.parametrize("kind", ["svg", "png", "pdf"])
+def test_pictures(kind: str) -> None:
+    words = ("exposure", "lines.csv", "bands.csv", "--duration", "1 h")
+    result = equipoise(*words, "--plot", "pictures", "--format", kind)
+    assert succeeded(result) == equipoise(*words).out
+    assert result.err == "wrote 3 pictures to pictures\n"
+    names = sorted(path.name for path in Path("pictures").iterdir())
+    assert names == [f"exposure.{kind}", f"spectrum-2.{kind}", f"spectrum.{kind}"]
+
+
+def test_odd_names() -> None:
+    name = "odd [1] %s $x$ 機.csv"
+    Path(name).write_text(LINES, encoding="utf-8")
+    assert succeeded(equipoise("exposure", name, "--plot", "p")).startswith(f"{name}\n")
+    Path("3 m/s^2 for 2 h".replace("/", "")).write_text(LINES, encoding="utf-8")
+    assert read("3 ms^2 for 2 h")["measured"][0]["kind"] == "spectrum"
+    content = read(f"{'long ' * 100}: 3 m/s^2 for 2 h", "\x1b[1m: 3 m/s^2 for 2 h")
+    assert len(content["tasks"]) == 2
+    shown = succeeded(equipoise("exposure", f"{'long ' * 100}\x1b: 3 m/s^2 for 2 h"))
+    assert "\x1b" not in shown and max(map(len, shown.splitlines())) < 130
+
+
+def test_a_process_prints_the_same_as_a_call() -> None:
+    result = process("exposure", "tasks.csv")
+    assert result.err == ""
+    assert result.out == equipoise("exposure", "tasks.csv").out
+
+
+# -- refused ---------------------------------------------------------------------------------------
+
+CONTENTS = {
+    "empty": ("", "x.csv, line 1: got no column; the header is time [s],x [m/s^2]"),
+    "misspelt": (SIGNAL.replace("x [", "xx ["), "x.csv, line 1: got the column 'xx [m/s^2]'"),
+    "wrong unit": (SIGNAL.replace("[s]", "[m]"), "x.csv, line 1, column time: got '0 m'; m is the"),
+    "nan": (f"{SIGNAL}8.0,nan,1,1\n", "x.csv, line 32002, column x: got 'nan'; give a finite"),
+    "gap": (f"{SIGNAL}9.0,1,1,1\n", "x.csv, line 32001, column time: 7.99975 s is not where equal"),
+    "slow": (columns("time [s],x [gn]", TIME[::4], WAVE[::4]), "x.csv: sampled at 1000 Hz; give"),
+    "short": (columns("time [s],x [gn]", TIME[:999], WAVE[:999]), "x.csv: the record takes 0.25 s"),
+    "one row": ("time [s],x [gn]\n0,1\n", "x.csv: time: got one sample; give a record"),
+    "no band": (
+        "frequency [Hz],x [gn]\n70,1\n",
+        "x.csv: frequency: got 70 Hz; give middles of one",
+    ),
+    "negative": (
+        "frequency [Hz],x [gn]\n8,-1\n",
+        "x.csv, line 2, column x: got -9.80665; give RMS",
+    ),
+    "no hours": (f"{TASKS}raking,3,0\n", "x.csv, line 5, column duration: got 0 h; give more than"),
+    "no time": (f"{TASKS}raking,3,\n", "x.csv, line 5, column duration: got ''; give a finite"),
+    "negative task": (f"{TASKS}raking,-3,1\n", "x.csv, line 5, column acceleration: got -3; give"),
+    "long day": (f"{TASKS}raking,3,20\n", "the tasks take 25 h together; give at most 24 h a day"),
+}
+
+
+@pytest.mark.parametrize(("content", "said"), CONTENTS.values(), ids=CONTENTS)
+def test_a_file_that_is_refused(content: str, said: str) -> None:
+    Path("x.csv").write_text(content, encoding="utf-8")
+    words = ["--bands"] if content.startswith("freq") else []
+    assert refused(equipoise("exposure", "x.csv", "--plot", "pictures", *words)).startswith(said)
+    assert not Path("pictures").exists()
+
+
+WORDS = {
+    "nothing": ([], 'give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file'),
+    "not there": (["none.csv"], "none.csv: there is no such file"),
+    "directory": (["."], ".: this is a directory; give a file"),
+    "empty name": ([""], "'': there is no such file"),
+    "no time": (["7.4 m/s^2"], "got '7.4 m/s^2'; say for how long a day, as in \"7.4 m/s^2 for"),
+    "for what": (["a: 7.4 m/s^2 for"], "got 'a: 7.4 m/s^2 for'; say for how long a day"),
+    "bare": (["7.4"], "got '7.4'; say for how long a day"),
+    "wrong unit": (["7.4 m/s for 2 h"], "'7.4 m/s for 2 h': got '7.4 m/s'; m/s is the unit of a"),
+    "no unit": (["7.4 m/s^2 for 2"], "'7.4 m/s^2 for 2': got '2'; the unit is missing; give a"),
+    "comma": (["7,4 m/s^2 for 2 h"], "the decimal sign is a point, not a comma"),
+    "nan": (["a: nan m/s^2 for 2 h"], "give a finite number and a unit"),
+    "negative": (["a: -4 m/s^2 for 2 h"], "got 'a: -4 m/s^2 for 2 h'; give an acceleration"),
+    "no hours": (["a: 4 m/s^2 for 0 h"], "a: duration: got 0 h; give more than 0 and at most 24 h"),
+    "long": (["4 m/s^2 for 25 h"], "4 m/s^2: duration: got 25 h; give more than 0 and"),
+    "idle alone": (["--idle", "3 m/s^2"], "--idle belongs to --racing; give both"),
+    "racing alone": (["--racing", "3 m/s^2"], "--racing belongs to --idle; give both"),
+    "racing": (["--idle", "3 gn", "--racing", "-3 gn"], "--racing: got '-3 gn'; give an accelerat"),
+    "idle": (["--idle", "3", "--racing", "3 gn"], "--idle: got '3'; the unit is missing"),
+    "duration": (["lines.csv", "--duration", "0 h"], "--duration: got '0 h'; give more than 0"),
+    "wrong duration": (["lines.csv", "--duration", "2 m"], "--duration: got '2 m'; m is the unit"),
+    "durations": (["lines.csv", "--duration", "1 h", "--duration", "1 h"], "--duration: given 2"),
+    "own times": (["tasks.csv", "--duration", "1 h"], "--duration belongs to a signal, a spectrum"),
+    "mixed": (["tasks.csv", "lines.csv"], "lines.csv: the time of exposure is missing; give it by"),
+    "bands": (["signal.csv", "--bands"], "--bands belongs to a spectrum; give one, or leave it"),
+    "weighted": (["tasks.csv", "--weighted"], "--weighted belongs to a signal or a spectrum; give"),
+    "three axes": (["signal.csv", "--single-axis"], "--single-axis belongs to a signal or"),
+    "periodic": (["lines.csv", "--periodic"], "--periodic belongs to a signal; give one, or leave"),
+    "option": (["tasks.csv", "--hours", "3"], "Unknown option: --hours"),
+    "format alone": (["tasks.csv", "--format", "png"], "--format belongs to --plot; give both"),
+    "plot": (["tasks.csv", "--plot", ""], "--plot: got ''; give the name of a folder"),
+    "plot a file": (["tasks.csv", "--plot", "tasks.csv"], "--plot: got 'tasks.csv'; give the name"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("words", "said"), WORDS.values(), ids=WORDS)
+def test_words_that_are_refused(words: list[str], said: str) -> None:
+    assert said in refused(equipoise("exposure", *words))

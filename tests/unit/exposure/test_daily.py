@@ -1,0 +1,91 @@
+"""Tasks of a day and what they amount to."""
+
+from __future__ import annotations
+
+import json
+from math import inf, nan
+from typing import Any
+
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.exposure.daily import Task, WorkingTimes, daily_exposure
+from equipoise.exposure.iso_22867 import equivalent
+
+HOUR = 3600.0
+DAY = (Task("mowing", 4.0, 2 * HOUR), Task("trimming", 8.0, HOUR))
+
+
+def test_figures_of_a_day() -> None:
+    day = daily_exposure(DAY)
+    assert day.a8 == pytest.approx(((16 * 2 + 64) / 8) ** 0.5)
+    assert day.duration == 3 * HOUR
+    assert day.a_hv == pytest.approx((96 / 3) ** 0.5)
+    assert [day.share(task) for task in day.tasks] == pytest.approx([1 / 3, 2 / 3])
+    assert day.verdict == "above the action value"
+
+
+def test_after_the_times_that_are_told_the_values_are_reached() -> None:
+    day = daily_exposure(DAY)
+    for whole, times in ((day.a_hv, day.times), *((t.acceleration, t.times) for t in DAY)):
+        assert Task("", whole, times.to_action).partial == pytest.approx(2.5)
+        assert Task("", whole, min(times.to_limit, 24 * HOUR)).partial <= 5.0 * (1 + 1e-12)
+    longer = [
+        Task(t.name, t.acceleration, t.duration * day.times.to_limit / day.duration) for t in DAY
+    ]
+    assert daily_exposure(longer).a8 == pytest.approx(5.0)
+
+
+def test_plain_data() -> None:
+    found = daily_exposure(DAY).to_dict()
+    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    assert found["a8"] == daily_exposure(DAY).a8
+    assert sum(task["share"] for task in found["tasks"]) == pytest.approx(1)
+    assert sum(task["points"] for task in found["tasks"]) == pytest.approx(found["points"])
+    assert [task["name"] for task in found["tasks"]] == ["mowing", "trimming"]
+    assert set(WorkingTimes(3.0).to_dict()) < set(found)
+
+
+def test_a_day_without_vibration() -> None:
+    day = daily_exposure([Task("rest", 0.0, HOUR)])
+    found = day.to_dict()
+    assert (day.a8, day.share(day.tasks[0]), day.years) == (0.0, 0.0, inf)
+    assert found["time_to_action"] is found["time_to_limit"] is None
+    assert found["years_to_white_finger"] is None
+    assert found["japanese_time"] == 2 * HOUR
+
+
+def test_the_whole_day_may_be_worked() -> None:
+    thirds = [Task("", 1.0, 8 * HOUR)] * 3
+    assert daily_exposure(thirds).a8 == pytest.approx(3**0.5)
+
+
+@pytest.mark.parametrize(
+    ("acceleration", "duration", "said"),
+    [
+        (-1.0, HOUR, "acceleration: got -1; give a finite number of 0 or more"),
+        (nan, HOUR, "acceleration: got nan"),
+        (inf, HOUR, "acceleration: got inf"),
+        (1e-200, HOUR, "acceleration: got 1e-200"),
+        ("loud", HOUR, "acceleration: got 'loud'; give a number of 0 or more"),
+        (True, HOUR, "acceleration: got True"),
+        (1.0, 0.0, "duration: got 0 h; give more than 0 and at most 24 h a day"),
+        (1.0, 25 * HOUR, "duration: got 25 h; give more than 0"),
+        (1.0, -HOUR, "duration: got -3600"),
+    ],
+)
+def test_tasks_that_are_refused(acceleration: Any, duration: Any, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        Task("mowing", acceleration, duration)
+
+
+def test_days_that_are_refused() -> None:
+    with pytest.raises(UsageError, match="tasks: there is none; give at least one"):
+        daily_exposure([])
+    with pytest.raises(UsageError, match="the tasks take 26 h together; give at most 24 h"):
+        daily_exposure([Task("", 1.0, 13 * HOUR)] * 2)
+
+
+def test_modes_that_are_refused() -> None:
+    with pytest.raises(UsageError, match="racing: got -2; give a finite number of 0 or more"):
+        equivalent(1.0, -2.0)

@@ -1,0 +1,130 @@
+"""Spectra, bands and orders, weighted; and the value that comes of it."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.exposure.bands import MIDDLES, NOMINAL
+from equipoise.exposure.measured import weigh_orders, weigh_signal, weigh_spectrum
+from equipoise.exposure.weighting import factor
+
+
+def test_lines_count_with_their_factors() -> None:
+    lines, rms = np.array([0.0, 10.0, 80.0]), np.array([9.0, 3.0, 4.0])
+    found = weigh_spectrum(lines, rms)
+    assert found.a_hw == pytest.approx(np.hypot(3 * factor(10.0), 4 * factor(80.0)))
+    assert found.a_h == pytest.approx(5.0)  # without the mean
+    assert found.a_hv == found.a_hw[0]
+    assert (found.kind, found.axes, found.duration) == ("spectrum", ("x",), None)
+
+
+def test_bands_count_with_the_factors_of_exact_middles() -> None:
+    rms = np.linspace(1, 3, 24)
+    nominal, exact = (weigh_spectrum(at, rms, bands=True) for at in (NOMINAL, MIDDLES))
+    np.testing.assert_array_equal(nominal.a_hw, exact.a_hw)
+    assert nominal.a_hw == pytest.approx(np.sqrt(np.sum((rms * factor(MIDDLES)) ** 2)))
+    np.testing.assert_allclose(nominal.band_a_h, [rms])
+    assert nominal.kind == "bands"
+
+
+def test_orders_are_lines_at_multiples_of_the_speed() -> None:
+    speed, orders = 700.0, np.array([0.0, 0.5, 1.0, 3.0])
+    peaks = np.array([[5.0, 1.0, 2.0, 4.0], [1.0, 1.0, 0.0, 2.0]])
+    found = weigh_orders(speed, orders, peaks)
+    lines = weigh_spectrum(speed * orders / (2 * np.pi), peaks / np.sqrt(2))
+    np.testing.assert_allclose(found.a_hw, lines.a_hw)
+    turned = weigh_orders(-speed, orders, peaks * np.exp(1j * orders))
+    np.testing.assert_allclose(turned.a_hw, found.a_hw)
+
+
+def test_the_total_value_of_three_axes_and_of_one() -> None:
+    rms = np.array([[1.0], [2.0], [3.0]])
+    whole = weigh_spectrum([12.5], rms)
+    assert whole.a_hv == pytest.approx(np.sqrt(14) * factor(12.5))
+    assert whole.notes == () and whole.dominant_axis == "z"
+    some = weigh_spectrum([12.5], rms[1:], axes=("y", "z"))
+    assert some.a_hv == pytest.approx(np.sqrt(13) * factor(12.5))
+    assert "that of two axes and may be too low" in some.notes[0]
+    single = weigh_spectrum([12.5], rms[1:], axes=("y", "z"), single_axis=True)
+    assert single.a_hv == pytest.approx(1.7 * 3 * factor(12.5))
+    assert "estimated as 1.7 times the largest axis" in single.notes[0]
+
+
+def test_values_that_are_weighted_already() -> None:
+    found = weigh_spectrum([10.0, 100.0], [[3.0, 4.0]], weighted=True)
+    assert found.a_hw == pytest.approx(5.0)
+    assert found.a_h is None and found.band_a_h is None
+    assert found.to_dict()["bands"]["a_h"] is None
+    time = np.arange(30_000) / 5000.0
+    signal = weigh_signal(time, 2 * np.sin(2 * np.pi * 100 * time), weighted=True)
+    assert signal.a_hw == pytest.approx(np.sqrt(2), rel=1e-6)
+
+
+def test_the_dominant_band() -> None:
+    found = weigh_spectrum([12.5, 400.0], [[1.0, 10.0]])
+    assert found.dominant_band == 12.5
+    share = factor(12.5) ** 2 / (factor(12.5) ** 2 + 100 * factor(400.0) ** 2)
+    assert found.dominant_share == pytest.approx(float(share))
+    nothing = weigh_spectrum([12.5], [[0.0]])
+    assert (nothing.dominant_band, nothing.dominant_share, nothing.a_hv) == (None, 0.0, 0.0)
+
+
+def test_bands_of_a_signal_hold_all_of_it() -> None:
+    """Noise between 20 and 800 Hz: the bands add up to the whole, weighted and not."""
+    rng = np.random.default_rng(3)
+    time = np.arange(5000) / 5000.0
+    waves = np.arange(20, 800)
+    angles = 2 * np.pi * waves[:, None] * time + rng.uniform(0, 6, (len(waves), 1))
+    found = weigh_signal(time, np.sum(np.sin(angles), axis=0), periodic=True)
+    assert np.sum(found.band_a_hw**2) == pytest.approx(found.a_hw[0] ** 2, rel=1e-12)
+    assert found.band_a_h is not None and found.a_h is not None
+    assert np.sum(found.band_a_h**2) == pytest.approx(found.a_h[0] ** 2, rel=1e-12)
+
+
+def test_plain_data() -> None:
+    found = weigh_spectrum(NOMINAL, np.ones((3, 24)), bands=True).to_dict()
+    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    assert found["bands"]["frequency"] == list(NOMINAL)
+    assert len(found["a_hw"]) == len(found["bands"]["a_hw"]) == 3
+
+
+def test_notes_on_bands() -> None:
+    assert "say so (bands)" in weigh_spectrum(NOMINAL[:6], np.ones((3, 6))).notes[0]
+    assert "6 of 24 bands" in weigh_spectrum(NOMINAL[:6], np.ones((3, 6)), bands=True).notes[0]
+
+
+REFUSED: dict[str, tuple[Any, Any, dict[str, Any], str]] = {
+    "negative": ([10.0], [-1.0], {}, "acceleration: got -1; give values of 0 or more"),
+    "frequency": ([-1.0, 10.0], [1.0, 1.0], {}, "frequency: got -1 Hz; give frequencies of 0"),
+    "twice": ([10.0, 10.0], [1.0, 1.0], {}, "frequency: the values must rise"),
+    "band": ([11.0], [1.0], {"bands": True}, "frequency: got 11 Hz; give middles"),
+    "infinite": ([10.0], [np.inf], {}, "acceleration: a value is not finite"),
+    "huge": ([10.0], [1e40], {}, "acceleration: a value is not finite"),
+    "ragged": ([10.0, 20.0], [[1.0, 2.0], [1.0]], {}, "acceleration: got list; give rows"),
+}
+
+
+@pytest.mark.parametrize(("lines", "rms", "more", "said"), REFUSED.values(), ids=REFUSED)
+def test_spectra_that_are_refused(lines: Any, rms: Any, more: dict[str, Any], said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        weigh_spectrum(lines, rms, **more)
+
+
+@pytest.mark.parametrize(
+    ("speed", "orders", "peaks", "said"),
+    [
+        (0.0, [1.0], [1.0], "got a speed of 0 rad/s and orders from 1; give a shaft that turns"),
+        (9.0, [-1.0], [1.0], "orders from -1; give a shaft"),
+        (9.0, [1.0], ["loud"], "amplitude: got list; give rows of numbers"),
+        (9.0, [2.0, 1.0], [1.0, 1.0], "orders: the values must rise"),
+        (np.nan, [1.0], [1.0], "speed: a value is not finite"),
+    ],
+)
+def test_orders_that_are_refused(speed: Any, orders: Any, peaks: Any, said: str) -> None:
+    with pytest.raises(UsageError, match=said):
+        weigh_orders(speed, orders, peaks)

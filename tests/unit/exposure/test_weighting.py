@@ -1,0 +1,134 @@
+"""The weighting Wh: one formula for every kind of number, and no frequency that breaks it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.exposure.weighting import FASTEST, factor, squared_factor, weighting
+
+SPAN = np.geomspace(1e-3, 1e7, 400)
+
+
+@dataclass(frozen=True)
+class Dual:
+    """A number with its derivative, that knows + - * / and nothing else."""
+
+    value: float
+    slope: float
+
+    def __add__(self, other: Any) -> Dual:
+        other = dual(other)
+        return Dual(self.value + other.value, self.slope + other.slope)
+
+    def __sub__(self, other: Any) -> Dual:
+        return self + dual(other) * -1
+
+    def __mul__(self, other: Any) -> Dual:
+        other = dual(other)
+        return Dual(self.value * other.value, self.slope * other.value + self.value * other.slope)
+
+    def __truediv__(self, other: Any) -> Dual:
+        other = dual(other)
+        value = self.value / other.value
+        return Dual(value, (self.slope - value * other.slope) / other.value)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+    def __rtruediv__(self, other: Any) -> Dual:
+        return dual(other) / self
+
+    def __rsub__(self, other: Any) -> Dual:
+        return dual(other) - self
+
+
+def dual(value: Any) -> Dual:
+    return value if isinstance(value, Dual) else Dual(float(value), 0.0)
+
+
+def tenth(count: int) -> Any:
+    return mpmath.mpf(count) / 10
+
+
+def in_fifty_digits(frequency: float) -> Any:
+    """Magnitude of the product of the three complex filters, written anew."""
+    with mpmath.workdps(50):
+        f = mpmath.mpf(frequency)
+        s, f1, f2 = 1j * f, mpmath.mpf(10) ** tenth(8), mpmath.mpf(10) ** tenth(31)
+        f3, q1, q2 = 50 / mpmath.pi, 1 / mpmath.sqrt(2), mpmath.mpf("0.64")
+        high = s**2 / (s**2 + f1 * s / q1 + f1**2)
+        low = f2**2 / (s**2 + f2 * s / q1 + f2**2)
+        return abs(high * low * (1 + s / f3) / (1 + s / q2 / f3 + s**2 / f3**2))
+
+
+def test_the_complex_form_and_the_squared_form_are_one() -> None:
+    np.testing.assert_allclose(np.abs(weighting(SPAN)) ** 2, squared_factor(SPAN**2), rtol=1e-13)
+    np.testing.assert_allclose(np.abs(weighting(SPAN)), factor(SPAN), rtol=1e-14)
+
+
+@pytest.mark.parametrize("frequency", [1e-3, 1.0, 6.3, 12.5, 80.0, 1250.0, 1e5])
+def test_against_fifty_digits(frequency: float) -> None:
+    assert float(factor(frequency)) == pytest.approx(float(in_fifty_digits(frequency)), rel=1e-14)
+
+
+def test_many_digits_stay_many_digits() -> None:
+    """Constants are floats, the arithmetic is not: two routes agree far beyond a float's digits."""
+    with mpmath.workdps(40):
+        f2 = mpmath.mpf(80) ** 2
+        step = mpmath.mpf(10) ** -25
+        change = squared_factor(f2 + step) - squared_factor(f2)
+        slope = squared_factor(Dual(6400.0, 1.0)).slope
+        assert float(change / step) == pytest.approx(slope, rel=1e-12)
+
+
+def test_plain_numbers() -> None:
+    whole, exact = squared_factor(6400), squared_factor(Fraction(6400))
+    assert whole == pytest.approx(float(factor(80.0)) ** 2, rel=1e-15) == pytest.approx(exact)
+    assert squared_factor(0) == 0
+
+
+def test_numbers_that_carry_derivatives() -> None:
+    for f2 in (40.0, 6400.0, 1e6):
+        found = squared_factor(Dual(f2, 1.0))
+        assert found.value == pytest.approx(squared_factor(f2), rel=1e-15)
+        step = 1e-4 * f2
+        slope = (squared_factor(f2 + step) - squared_factor(f2 - step)) / (2 * step)
+        assert found.slope == pytest.approx(slope, rel=1e-6)
+
+
+def test_no_frequency_breaks_it() -> None:
+    with np.errstate(all="raise", under="ignore"):
+        ends = np.array([0.0, np.inf, -np.inf, 1e308, FASTEST, 1e-308])
+        assert np.all(factor(ends) < 1e-50)
+        assert np.all(np.abs(weighting(ends)) < 1e-50)
+        assert np.all(np.isfinite(weighting(np.concatenate([-SPAN, SPAN, ends]))))
+
+
+def test_any_shape() -> None:
+    for shape in ((), (3,), (2, 3), (0,)):
+        assert factor(np.full(shape, 80.0)).shape == weighting(np.full(shape, 80.0)).shape == shape
+    assert factor([8, 16]).shape == (2,)
+
+
+def test_negative_frequencies_are_conjugates() -> None:
+    np.testing.assert_array_equal(weighting(-SPAN), np.conj(weighting(SPAN)))
+
+
+def test_what_is_no_number_is_refused() -> None:
+    for function in (factor, weighting):
+        with pytest.raises(UsageError, match="got a value that is no number"):
+            function([1.0, np.nan])
+
+
+def test_limits() -> None:
+    """Like f^2 at low frequencies; a velocity between; like f^-3 at high ones."""
+    slope = np.diff(np.log(factor([0.01, 0.02, 90.0, 110.0, 1e5, 2e5]))) / np.log([2, 9e3 / 2])[0]
+    assert slope[0] == pytest.approx(2, abs=1e-3)
+    assert slope[4] == pytest.approx(-3, abs=1e-3)
+    assert float(factor(100.0)) * 100 == pytest.approx(100 / (2 * np.pi), rel=0.02)
