@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
+    "Absorber": "tools.model",
     "AddedMass": "mechanism.balance",
     "Analysis": "results",
     "Balance": "mechanism.balance",
@@ -23,8 +24,13 @@ _HOMES = {
     "CenterMove": "mechanism.balance",
     "Conditions": "balancing.conditions",
     "Decay": "measured.decay",
+    "DesignLimit": "tools.wishes",
+    "DesignPlan": "tools.wishes",
+    "DesignVariable": "tools.wishes",
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
+    "Excitation": "tools.model",
+    "Exposure": "exposure.daily",
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
@@ -35,6 +41,9 @@ _HOMES = {
     "Gear": "mechanism.model",
     "GearedWeight": "mechanism.balance",
     "Goal": "planting.goals",
+    "Hand": "tools.model",
+    "Harness": "tools.model",
+    "Impedance": "tools.model",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -46,6 +55,7 @@ _HOMES = {
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
     "Objective": "mechanism.balance",
+    "Operation": "tools.model",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
     "Phasing": "balancing.phases",
@@ -56,15 +66,30 @@ _HOMES = {
     "Regressor": "mechanism.parameters",
     "Response": "structures.response",
     "Row": "mechanism.support",
+    "Section": "tools.model",
+    "Segment": "tools.model",
+    "Shaft": "tools.model",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
     "Spring": "mechanism.spring",
     "SpringChoice": "mechanism.balance",
+    "Station": "tools.model",
     "Support": "mechanism.support",
     "Sweep": "structures.sweep",
+    "Task": "exposure.daily",
+    "Tool": "tools.model",
+    "ToolDesign": "tools.design",
+    "ToolExposure": "tools.exposed",
+    "ToolModes": "tools.modes",
+    "ToolResponse": "tools.response",
+    "ToolSweep": "tools.sweep",
     "Transient": "structures.transient",
+    "Transmissions": "tools.transmission",
+    "Tube": "tools.model",
     "Weight": "mechanism.balance",
+    "Weighted": "exposure.weighted",
+    "Work": "tools.model",
     "analyze": "pipeline",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
@@ -72,8 +97,12 @@ _HOMES = {
     "base_parameters": "mechanism.parameters",
     "choose_phases": "balancing.phases",
     "conditions": "balancing.conditions",
+    "daily_exposure": "exposure.daily",
+    "design_tool": "tools.design",
     "dumps": "io.models",
+    "dumps_tool": "io.tools",
     "examples": "io.models",
+    "expose_tool": "tools.exposed",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
@@ -83,19 +112,32 @@ _HOMES = {
     "json_schema": "io.models",
     "least_moments": "balancing.least",
     "load": "io.models",
+    "load_tool": "io.tools",
     "loads": "io.models",
+    "loads_tool": "io.tools",
     "move": "mechanism.motion",
     "plant": "planting.summary",
+    "read_accelerations": "io.accelerations",
     "read_record": "io.records",
     "regressor": "mechanism.parameters",
     "respond": "structures.forced",
+    "respond_tool": "tools.response",
     "save": "io.models",
+    "save_tool": "io.tools",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
     "sweep_speed": "structures.sweep",
+    "sweep_tool": "tools.sweep",
+    "tool_sensitivities": "tools.felt",
     "trade_off": "balancing.front",
+    "transmit": "tools.transmission",
+    "vary_tool": "tools.studies",
     "verdict": "balancing.verdict",
     "vibrate_freely": "structures.free",
+    "vibrate_tool": "tools.modes",
+    "weigh_orders": "exposure.measured",
+    "weigh_signal": "exposure.measured",
+    "weigh_spectrum": "exposure.measured",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -115,6 +157,14 @@ if TYPE_CHECKING:
     from equipoise.balancing.sensitivity import sensitivities as sensitivities
     from equipoise.balancing.verdict import verdict as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
+    from equipoise.exposure.daily import Exposure as Exposure
+    from equipoise.exposure.daily import Task as Task
+    from equipoise.exposure.daily import daily_exposure as daily_exposure
+    from equipoise.exposure.measured import weigh_orders as weigh_orders
+    from equipoise.exposure.measured import weigh_signal as weigh_signal
+    from equipoise.exposure.measured import weigh_spectrum as weigh_spectrum
+    from equipoise.exposure.weighted import Weighted as Weighted
+    from equipoise.io.accelerations import read_accelerations as read_accelerations
     from equipoise.io.models import dumps as dumps
     from equipoise.io.models import examples as examples
     from equipoise.io.models import json_schema as json_schema
@@ -122,6 +172,10 @@ if TYPE_CHECKING:
     from equipoise.io.models import loads as loads
     from equipoise.io.models import save as save
     from equipoise.io.records import read_record as read_record
+    from equipoise.io.tools import dumps_tool as dumps_tool
+    from equipoise.io.tools import load_tool as load_tool
+    from equipoise.io.tools import loads_tool as loads_tool
+    from equipoise.io.tools import save_tool as save_tool
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
@@ -208,6 +262,36 @@ if TYPE_CHECKING:
     from equipoise.structures.sweep import sweep_speed as sweep_speed
     from equipoise.structures.transient import Transient as Transient
     from equipoise.structures.transient import from_rest as from_rest
+    from equipoise.tools.design import ToolDesign as ToolDesign
+    from equipoise.tools.design import design_tool as design_tool
+    from equipoise.tools.exposed import ToolExposure as ToolExposure
+    from equipoise.tools.exposed import expose_tool as expose_tool
+    from equipoise.tools.felt import tool_sensitivities as tool_sensitivities
+    from equipoise.tools.model import Absorber as Absorber
+    from equipoise.tools.model import Excitation as Excitation
+    from equipoise.tools.model import Hand as Hand
+    from equipoise.tools.model import Harness as Harness
+    from equipoise.tools.model import Impedance as Impedance
+    from equipoise.tools.model import Operation as Operation
+    from equipoise.tools.model import Section as Section
+    from equipoise.tools.model import Segment as Segment
+    from equipoise.tools.model import Shaft as Shaft
+    from equipoise.tools.model import Station as Station
+    from equipoise.tools.model import Tool as Tool
+    from equipoise.tools.model import Tube as Tube
+    from equipoise.tools.model import Work as Work
+    from equipoise.tools.modes import ToolModes as ToolModes
+    from equipoise.tools.modes import vibrate_tool as vibrate_tool
+    from equipoise.tools.response import ToolResponse as ToolResponse
+    from equipoise.tools.response import respond_tool as respond_tool
+    from equipoise.tools.studies import vary_tool as vary_tool
+    from equipoise.tools.sweep import ToolSweep as ToolSweep
+    from equipoise.tools.sweep import sweep_tool as sweep_tool
+    from equipoise.tools.transmission import Transmissions as Transmissions
+    from equipoise.tools.transmission import transmit as transmit
+    from equipoise.tools.wishes import DesignLimit as DesignLimit
+    from equipoise.tools.wishes import DesignPlan as DesignPlan
+    from equipoise.tools.wishes import DesignVariable as DesignVariable
 
 
 def __getattr__(name: str) -> Any:

@@ -31,7 +31,7 @@ ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def names() -> tuple[str, ...]:
     """Names of all subjects: examples, one in soil, and kinds of random machines with a seed."""
     random = (f"{kind}:{seed}" for kind in KINDS for seed in SEEDS)
-    return (*sorted(eq.examples()), IN_SOIL, *random)
+    return (*sorted(eq.examples("linkage")), IN_SOIL, *random)
 
 
 @cache

@@ -18,8 +18,8 @@ from equipoise.mechanism.balance import (
     SpringChoice,
 )
 from equipoise.mechanism.balance_outputs import wrong_limit, wrong_objective
-from equipoise.mechanism.balance_weights import positive, wrong_weight
-from equipoise.mechanism.checks import FRAME, LONGEST_NAME, unknown
+from equipoise.mechanism.balance_weights import wrong_weight
+from equipoise.mechanism.checks import FRAME, LONGEST_NAME, positive, unknown
 from equipoise.mechanism.spring import wrong_ends
 
 if TYPE_CHECKING:

@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Literal
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.balance import MEASURES, Limit, Objective
-from equipoise.mechanism.balance_weights import positive
-from equipoise.mechanism.checks import FRAME, unknown
+from equipoise.mechanism.checks import FRAME, positive, unknown
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine

@@ -7,7 +7,7 @@ from math import isfinite, pi, sqrt
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.balance import CUT, MATERIALS, SHAPES, Weight, largest_mass
-from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.checks import positive, unknown
 
 HOLLOW = ("ring", "sector")
 """Shapes with an inner radius."""
@@ -20,12 +20,6 @@ ROUNDING = 1 + 1e-9
 def material_of(density: float) -> str:
     """Name of the material of a density (kg/m3), or nothing where there is none."""
     return next((name for name, value in MATERIALS.items() if value == density), "")
-
-
-def positive(where: str, value: float | None, unit: str) -> Iterator[ModelError]:
-    """Complain of a number, where it is given, that is not above 0."""
-    if value is not None and value <= 0:
-        yield ModelError(where, f"got {value:g} {unit}; give more than 0")
 
 
 def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:

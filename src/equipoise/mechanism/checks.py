@@ -53,7 +53,7 @@ def _listed(names: list[str]) -> str:
 def problems(machine: Machine) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
     yield from _too_much(machine)
-    yield from _not_finite(machine)
+    yield from not_finite("", machine)
     yield from _wrong_points("frame", machine.frame)
     if not machine.links:
         yield ModelError("links", "there is no link; give at least the drive's")
@@ -87,10 +87,15 @@ def _too_much(machine: Machine) -> Iterator[ModelError]:
         if count > MOST[what]:
             yield ModelError(what, f"got {count}; at most {MOST[what]} are computed with")
     for where, name in [("title", machine.title), *_names(bodies)]:
-        if len(name) > LONGEST_NAME:
-            yield ModelError(where, f"{len(name)} characters; give at most {LONGEST_NAME}")
-        elif not name.isprintable():
-            yield ModelError(where, f"got {name!r}; give printable characters")
+        yield from wrong_text(where, name)
+
+
+def wrong_text(where: str, text: str) -> Iterator[ModelError]:
+    """Complain of a title or name that cannot be printed."""
+    if len(text) > LONGEST_NAME:
+        yield ModelError(where, f"{len(text)} characters; give at most {LONGEST_NAME}")
+    elif not text.isprintable():
+        yield ModelError(where, f"got {text!r}; give printable characters")
 
 
 def _names(bodies: Mapping[str, Mapping[str, Vector]]) -> Iterator[tuple[str, str]]:
@@ -100,12 +105,19 @@ def _names(bodies: Mapping[str, Mapping[str, Vector]]) -> Iterator[tuple[str, st
             yield f"points of {body}", point
 
 
-def _not_finite(machine: Machine) -> Iterator[ModelError]:
-    for where, value in _numbers("", machine):
-        if not isfinite(value):
-            yield ModelError(where, f"got {value}; give a finite number")
-        elif abs(value) > HUGE or 0 < abs(value) < TINY:
-            yield ModelError(where, f"got {value:g} in SI units, which no machine can have")
+def not_finite(where: str, value: Any) -> Iterator[ModelError]:
+    """Complain of every number below a value that is not finite, or of no usual size."""
+    for place, size in _numbers(where, value):
+        if not isfinite(size):
+            yield ModelError(place, f"got {size}; give a finite number")
+        elif abs(size) > HUGE or 0 < abs(size) < TINY:
+            yield ModelError(place, f"got {size:g} in SI units, which no machine can have")
+
+
+def positive(where: str, value: float | None, unit: str) -> Iterator[ModelError]:
+    """Complain of a number, where it is given, that is not above 0."""
+    if value is not None and value <= 0:
+        yield ModelError(where, f"got {value:g} {unit}; give more than 0")
 
 
 def _numbers(where: str, value: Any) -> Iterator[tuple[str, float]]:

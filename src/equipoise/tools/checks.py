@@ -1,0 +1,376 @@
+"""Checks of a tool's values: what contradicts itself, and what no tool can have.
+
+Places are told by the keys of a tool's file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.checks import not_finite, positive, unknown, wrong_text
+from equipoise.tools.wishes import KEYS, MEASURES, OUTPUTS
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeIs
+
+    from equipoise.tools.model import (
+        Excitation,
+        Hand,
+        Impedance,
+        Operation,
+        Section,
+        Shaft,
+        Station,
+        Tool,
+        Tube,
+    )
+    from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable
+
+MOST = 200
+"""Far beyond any tool, as in `mechanism.checks`."""
+DAY = 86400.0
+"""s."""
+THEORIES = ("euler-bernoulli", "timoshenko")
+DIRECTIONS = ("vertical", "lateral", "rotating")
+CAUSES = ("force", "unbalance", "linkage")
+"""Of which an excitation has exactly one."""
+UNITS = {
+    "mass": "kg",
+    "inertia": "kg m^2",
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "rotational_stiffness": "N m/rad",
+    "rotational_damping": "N m s/rad",
+    "loss_factor": "",
+    "inner_diameter": "m",
+    "carried": "kg/m",
+    "shear_stiffness": "N",
+    "rotary_inertia": "kg m",
+    "unbalance": "kg m",
+    "force": "N",
+}
+
+
+def problems(tool: Tool) -> Iterator[ModelError]:
+    """Everything that is wrong with the values of a tool, the first things first."""
+    yield from _too_much(tool)
+    yield from _wrong_names(tool)
+    yield from not_finite("shaft", tool.shaft)
+    yield from not_finite("shaft.stations", tool.stations)
+    for key in ("excitations", "operation", "work", "design"):
+        yield from not_finite(key, getattr(tool, key))
+    yield from _wrong_shaft(tool.shaft)
+    for where, station in _places("shaft.stations", tool.stations):
+        yield from _wrong_station(where, station, tool.shaft)
+    for where, excitation in _places("excitations", tool.excitations):
+        yield from _wrong_excitation(where, excitation, tool)
+    if tool.operation is not None:
+        yield from _wrong_operation(tool.operation)
+    yield from _wrong_work(tool)
+    if tool.design is not None:
+        yield from _wrong_design(tool.design, tool)
+
+
+def _places(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
+    return ((f"{key}[{number}]", item) for number, item in enumerate(items, 1))
+
+
+def _named(tool: Tool) -> Iterable[tuple[str, Sequence[Any]]]:
+    lists = ("excitations", tool.excitations), ("work", tool.work)
+    return (("shaft.stations", tool.stations), *lists)
+
+
+def _too_much(tool: Tool) -> Iterator[ModelError]:
+    lists = [*_named(tool), ("shaft.segments", tool.shaft.segments)]
+    if tool.design is not None:
+        lists += [(f"design.{key}", getattr(tool.design, key)) for key in ("variables", "limits")]
+    for key, items in lists:
+        if len(items) > MOST:
+            yield ModelError(key, f"got {len(items)}; at most {MOST} are computed with")
+
+
+def _wrong_names(tool: Tool) -> Iterator[ModelError]:
+    yield from wrong_text("title", tool.title)
+    for key, items in _named(tool):
+        seen: set[str] = set()
+        for where, item in _places(key, items):
+            name = item.name
+            yield from wrong_text(f"{where}.name", name)
+            if not name.strip():
+                yield ModelError(f"{where}.name", "is empty; give a name")
+            if name in seen:
+                yield ModelError(f"{where}.name", f"{name!r} is given twice; give another name")
+            seen.add(name)
+
+
+def _negative(where: str, item: Any, *keys: str) -> Iterator[ModelError]:
+    """Complain of numbers, and of pairs of them, that are below 0."""
+    for key in keys:
+        value = getattr(item, key)
+        least = min(value) if isinstance(value, tuple) else value
+        if least is not None and least < 0:
+            given = f"{least:g} {UNITS[key]}".rstrip()
+            yield ModelError(f"{where}.{key}", f"got {given}; give 0 or more")
+
+
+# -- shaft -----------------------------------------------------------------------------------------
+
+
+def _wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
+    yield from positive("shaft.length", shaft.length, "m")
+    yield from _negative("shaft", shaft, "loss_factor")
+    if shaft.loss_factor >= 1:
+        yield ModelError("shaft.loss_factor", f"got {shaft.loss_factor:g}; give less than 1")
+    if shaft.theory not in THEORIES:
+        yield ModelError("shaft.theory", unknown(shaft.theory, THEORIES, "theory"))
+    yield from _wrong_profile("shaft", shaft.profile, shaft)
+    for where, segment in _places("shaft.segments", shaft.segments):
+        if not 0 <= segment.start < segment.stop <= shaft.length:
+            yield ModelError(
+                where,
+                f"goes from {segment.start:g} m to {segment.stop:g} m; give a part of the shaft, "
+                f"which goes from 0 m to {shaft.length:g} m",
+            )
+        yield from _wrong_profile(where, segment.profile, shaft)
+    places = sorted(_places("shaft.segments", shaft.segments), key=lambda place: place[1].start)
+    for (before, first), (where, second) in pairwise(places):
+        if second.start < first.stop:
+            yield ModelError(
+                where,
+                f"begins at {second.start:g} m, where {before} still goes on to {first.stop:g} m; "
+                "parts must not overlap",
+            )
+
+
+def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterator[ModelError]:
+    if _is_tube(profile):
+        yield from _wrong_tube(where, profile)
+        return
+    yield from positive(f"{where}.bending_stiffness", profile.bending_stiffness, "N m^2")
+    yield from positive(f"{where}.mass_per_length", profile.mass_per_length, "kg/m")
+    yield from positive(f"{where}.shear_stiffness", profile.shear_stiffness, "N")
+    yield from _negative(where, profile, "rotary_inertia")
+    if shaft.theory == "timoshenko" and profile == profile.section("euler-bernoulli"):
+        yield ModelError(
+            f"{where}.bending_stiffness",
+            "does not tell what shear does; with theory timoshenko give the measures of a tube, "
+            "outer_diameter and material",
+        )
+
+
+def _is_tube(profile: Section | Tube) -> TypeIs[Tube]:
+    return hasattr(profile, "outer_diameter")
+
+
+def _wrong_tube(where: str, tube: Tube) -> Iterator[ModelError]:
+    yield from positive(f"{where}.outer_diameter", tube.outer_diameter, "m")
+    yield from _negative(where, tube, "inner_diameter", "carried")
+    if tube.inner_diameter >= tube.outer_diameter:
+        yield ModelError(
+            f"{where}.inner_diameter",
+            f"got {1e3 * tube.inner_diameter:g} mm inside of {1e3 * tube.outer_diameter:g} mm; "
+            "give less than that",
+        )
+    yield from positive(f"{where}.youngs_modulus", tube.youngs_modulus, "Pa")
+    yield from positive(f"{where}.density", tube.density, "kg/m^3")
+    if not 0 <= tube.poisson_ratio <= 0.5:
+        yield ModelError(
+            f"{where}.poisson_ratio", f"got {tube.poisson_ratio:g}; give a number from 0 to 0.5"
+        )
+
+
+# -- stations --------------------------------------------------------------------------------------
+
+RATES = ("stiffness", "damping", "rotational_stiffness", "rotational_damping")
+
+
+def _wrong_station(where: str, station: Station, shaft: Shaft) -> Iterator[ModelError]:
+    if not 0 <= station.position <= shaft.length:
+        yield ModelError(
+            f"{where}.position",
+            f"got {station.position:g} m, which is off the shaft; give 0 m to {shaft.length:g} m",
+        )
+    yield from _negative(where, station, "mass", "inertia", *RATES)
+    if station.absorber is not None:
+        yield from _negative(f"{where}.absorber", station.absorber, "mass", "stiffness", "damping")
+    if station.harness is not None:
+        yield from _negative(f"{where}.harness", station.harness, "stiffness", "damping")
+    if station.hand is not None:
+        yield from _wrong_hand(f"{where}.hand", station.hand)
+
+
+def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
+    yield from _negative(where, hand, "mass", "stiffness", "damping")
+    if hand.hands not in (1, 2):
+        yield ModelError(f"{where}.hands", f"got {hand.hands}; give 1 or 2")
+    given = [key for key in ("mass", "stiffness", "damping") if _is_given(getattr(hand, key))]
+    if hand.impedance and given:
+        yield ModelError(f"{where}.{given[0]}", "has no place beside an impedance; leave it out")
+    elif not hand.impedance and not given:
+        yield ModelError(
+            where, "nothing is said of the hand; give mass, stiffness and damping, or an impedance"
+        )
+    if len(hand.impedance) > 2:
+        yield ModelError(
+            f"{where}.impedance",
+            f"got {len(hand.impedance)} tables; give one, or one for each plane",
+        )
+    for table in hand.impedance:
+        yield from _wrong_impedance(f"{where}.impedance", table)
+
+
+def _is_given(value: float | tuple[float, float]) -> bool:
+    return any(value) if isinstance(value, tuple) else value != 0
+
+
+def _wrong_impedance(where: str, table: Impedance) -> Iterator[ModelError]:
+    rows = len(table.frequency)
+    if {rows} != {len(table.resistance), len(table.reactance)}:
+        yield ModelError(where, "the columns differ in length")
+    elif rows < 2:
+        yield ModelError(where, "the table has fewer than two rows; a curve needs two")
+    elif any(b <= a for a, b in pairwise(table.frequency)):
+        yield ModelError(where, "the frequencies must rise from row to row")
+    elif table.frequency[0] <= 0:
+        yield ModelError(
+            where, f"the first frequency is {table.frequency[0]:g} Hz; give more than 0"
+        )
+    elif min(table.resistance) < 0:
+        least = min(table.resistance)
+        at = table.frequency[table.resistance.index(least)]
+        yield ModelError(
+            where,
+            f"the resistance at {at:g} Hz is {least:g} N s/m; a hand only takes energy away, "
+            "give 0 or more",
+        )
+
+
+# -- excitations, operation, work ------------------------------------------------------------------
+
+
+def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterator[ModelError]:
+    yield from _unknown_station(f"{where}.station", excitation.station, tool)
+    if sum(getattr(excitation, key) is not None for key in CAUSES) != 1:
+        yield ModelError(where, "give exactly one of force, unbalance and linkage")
+    yield from _negative(where, excitation, "force", "unbalance")
+    if excitation.direction not in DIRECTIONS:
+        sentence = unknown(excitation.direction, DIRECTIONS, "direction")
+        yield ModelError(f"{where}.direction", sentence)
+    elif excitation.direction != "vertical" and excitation.force is None:
+        yield ModelError(f"{where}.direction", "goes with a force; leave it out")
+    if excitation.ratio == 0:
+        yield ModelError(f"{where}.ratio", "got 0; what does not turn shakes nothing, give another")
+
+
+def _unknown_station(where: str, name: str, tool: Tool) -> Iterator[ModelError]:
+    names = [station.name for station in tool.stations]
+    if name not in names:
+        yield ModelError(where, unknown(name, names, "station"))
+
+
+def _wrong_operation(operation: Operation) -> Iterator[ModelError]:
+    for key in ("speed", "idling", "racing"):
+        yield from positive(f"operation.{key}", getattr(operation, key), "rad/s")
+    if operation.speeds:
+        yield from _wrong_range("operation.speeds", operation.speeds)
+    idling, racing = operation.idling, operation.racing
+    if idling is not None and racing is not None and idling >= racing:
+        yield ModelError("operation.racing", "is not above idling; give a higher speed")
+
+
+def _wrong_range(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
+    if len(speeds) != 2:
+        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
+    elif not 0 < speeds[0] < speeds[1]:
+        low, high = speeds
+        yield ModelError(
+            where, f"got {low:g} to {high:g} rad/s; give two above 0, the lower one first"
+        )
+
+
+def _wrong_work(tool: Tool) -> Iterator[ModelError]:
+    for where, work in _places("work", tool.work):
+        yield from positive(f"{where}.speed", work.speed, "rad/s")
+        yield from positive(f"{where}.duration", work.duration, "s")
+    total = sum(work.duration for work in tool.work)
+    if total > DAY * (1 + 1e-9):
+        yield ModelError("work", f"takes {total / 3600:.4g} h together; a day has 24 h")
+
+
+# -- design ----------------------------------------------------------------------------------------
+
+
+def _wrong_design(design: DesignPlan, tool: Tool) -> Iterator[ModelError]:
+    yield from _wrong_range("design.speeds", design.speeds)
+    if design.measure not in MEASURES:
+        yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
+    if not design.variables:
+        yield ModelError("design.variables", "there is nothing to change; give at least one")
+    if not tool.excitations:
+        yield ModelError("design", "nothing shakes the tool; give [[excitations]]")
+    if not tool.grips:
+        yield ModelError("design", "no hand holds the tool; give a station a hand")
+    for number, name in enumerate(design.hands, 1):
+        yield from _not_held(f"design.hands[{number}]", name, tool)
+    seen = set()
+    for where, variable in _places("design.variables", design.variables):
+        yield from _wrong_variable(where, variable, tool)
+        if (variable.station, variable.key) in seen:
+            yield ModelError(where, f"{variable.name!r} is given twice; give one of both")
+        seen.add((variable.station, variable.key))
+    for where, limit in _places("design.limits", design.limits):
+        yield from _wrong_limit(where, limit, tool)
+
+
+def _not_held(where: str, name: str, tool: Tool) -> Iterator[ModelError]:
+    held = [station.name for station in tool.grips]
+    if name not in held:
+        yield ModelError(where, unknown(name, held, "station with a hand"))
+
+
+def _wrong_variable(where: str, variable: DesignVariable, tool: Tool) -> Iterator[ModelError]:
+    yield from _unknown_station(f"{where}.station", variable.station, tool)
+    if variable.key not in KEYS:
+        yield ModelError(f"{where}.key", unknown(variable.key, KEYS, "key of a station"))
+        return
+    part, dot, _ = variable.key.partition(".")
+    for station in tool.stations:
+        if dot and station.name == variable.station and getattr(station, part) is None:
+            yield ModelError(f"{where}.key", f"{station.name!r} has no {part}; give it one")
+    if variable.low < 0:
+        yield ModelError(f"{where}.from", f"got {variable.low:g} in SI units; give 0 or more")
+    if variable.low >= variable.high:
+        yield ModelError(
+            f"{where}.to",
+            f"got {variable.high:g} after from {variable.low:g} in SI units; give more than that",
+        )
+    length = tool.shaft.length
+    if variable.key == "position" and variable.high > length:
+        yield ModelError(
+            f"{where}.to",
+            f"got {variable.high:g} m, which is off the shaft; give at most {length:g} m",
+        )
+
+
+def _wrong_limit(where: str, limit: DesignLimit, tool: Tool) -> Iterator[ModelError]:
+    if limit.output not in OUTPUTS:
+        yield ModelError(f"{where}.output", unknown(limit.output, OUTPUTS, "output"))
+        return
+    if limit.at_most < 0 or (limit.at_most == 0 and limit.output != "added_mass"):
+        least = "0 or more" if limit.output == "added_mass" else "more than 0"
+        yield ModelError(f"{where}.at_most", f"got {limit.at_most:g} in SI units; give {least}")
+    if limit.output == "added_mass":
+        if limit.station is not None:
+            yield ModelError(f"{where}.station", "added_mass is of the whole tool; leave it out")
+    elif limit.station is None:
+        yield ModelError(f"{where}.station", f"missing; give that of the {limit.output}")
+    elif limit.output == "acceleration":
+        yield from _not_held(f"{where}.station", limit.station, tool)
+    else:
+        touching = [one.name for one in tool.stations if one.hand or one.harness]
+        if limit.station not in touching:
+            sentence = unknown(limit.station, touching, "station with a hand or harness")
+            yield ModelError(f"{where}.station", sentence)

@@ -1,0 +1,201 @@
+"""How a tool vibrates under what shakes it, against the speed of its engine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.tools.chain import Pair, carry, solve
+from equipoise.tools.fields import Field, Line
+from equipoise.tools.hands import check_coverage
+from equipoise.tools.layout import Layout
+from equipoise.tools.model import Station, Tool
+from equipoise.tools.sources import Shake, shakes
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class ToolResponse:
+    """Steady vibration at speeds (S,) of the engine, by orders (K,): complex amplitudes.
+
+    A signal of a speed is the sum over the orders of Re (amplitude * exp(i order speed t)); arrays
+    (2, K, S) have the vertical plane first.
+
+    speed : rad/s.
+    orders : events in a turn of the engine.
+    shakes : what shakes.
+    """
+
+    tool: Tool
+    speed: Array
+    orders: Array
+    shakes: tuple[Shake, ...]
+    field: Field
+
+    @property
+    def frequency(self) -> Array:
+        """Angular frequency (K, S), rad/s."""
+        return np.asarray(np.multiply.outer(self.orders, self.speed))
+
+    @cached_property
+    def _s(self) -> Array:
+        return np.asarray(1j * self.frequency)
+
+    def displacement(self, station: str) -> Array:
+        """Displacement (2, K, S) of a station, m."""
+        return self._shaped(self._node(station).across)
+
+    def velocity(self, station: str) -> Array:
+        """Velocity (2, K, S) of a station, m/s."""
+        return np.asarray(self.displacement(station) * self._s)
+
+    def acceleration(self, station: str) -> Array:
+        """Acceleration (2, K, S) of a station, m/s2."""
+        return np.asarray(self.displacement(station) * self._s**2)
+
+    def line(self, places: Sequence[float] | Array) -> Line:
+        """Displacement, slope, bending moment and shear at places (X), m: arrays (X, 2, K, S)."""
+        found = self.field.at(np.asarray(places, dtype=float))
+        return Line(*(part.reshape(*part.shape[:2], *self.frequency.shape) for part in found))
+
+    def forces(self, station: str) -> dict[str, Array]:
+        """Forces (2, K, S), N, of a station on the ``hand``, the ``harness`` and the ``ground``.
+
+        That on a hand is what a gauge in the handle would read: of its spring and damper, as in
+        (26) of Nagamine and Irie, and of its mass.
+        """
+        held = self._holding(self.tool.station(station))
+        moved = self._node(station).across
+        return {part: self._shaped(stiffness * moved) for part, stiffness in held.items()}
+
+    def _holding(self, station: Station) -> dict[str, Any]:
+        s = self.field.s
+        held = self.field.layout.holding(station, s)
+        if not (any(station.stiffness) or any(station.damping)):
+            held.pop("ground")
+        if station.hand is not None:
+            held["hand"] = held["hand"] + station.hand.hands * station.hand.mass * s * s
+        return held
+
+    def power(self, station: str) -> dict[str, Array]:
+        """Mean power (K, S), W, that goes into the hand, harness, ground and absorber there."""
+        one = self.tool.station(station)
+        velocity = self.velocity(station)
+        found = {part: _power(force, velocity) for part, force in self.forces(station).items()}
+        if one.absorber is not None:
+            found["absorber"] = _power(self._absorbed(one), velocity)
+        if any(one.rotational_damping):
+            turning = self._shaped(self._node(station).turning) * self._s
+            damping = np.array(one.rotational_damping)[:, None, None]
+            rotation = np.sum(damping * np.abs(turning) ** 2, axis=0) / 2
+            found["ground"] = found.get("ground", 0.0) + rotation
+        return found
+
+    def _absorbed(self, station: Station) -> Array:
+        layout, s = self.field.layout, self.field.s
+        force = layout.absorber(station, s, s * s, "forced") * self._node(station.name).across
+        return self._shaped(force)
+
+    @cached_property
+    def fed_in(self) -> Array:
+        """Mean power (K, S), W, of all that shakes."""
+        total = np.zeros(self.frequency.shape)
+        for shake in self.shakes:
+            k = _index(self.orders, shake.order)
+            velocity = self.velocity(shake.station)[:, k]
+            total[k] += _power(shake.at(self.speed), velocity)
+        return total
+
+    @cached_property
+    def lost_in_shaft(self) -> Array:
+        """Mean power (K, S), W, that the material of the shaft takes: what enters each segment."""
+        total = np.zeros(self.field.s.shape[-1])
+        states = self.field.states
+        lengths = [cell.length for cell in self.field.layout.cells]
+        for k, length in enumerate(lengths):
+            over = self.field.layout.part(
+                np.array([k]), np.array([length]), self.field.s, "forced"
+            ).part(0)
+            q, f, after = states.motion[k], states.force[k], states.motion[k + 1]
+            v = over.vw * q.across + over.vt * q.turning + over.vv * f.across + over.vm * f.turning
+            m = over.mw * q.across + over.mt * q.turning + over.mv * f.across + over.mm * f.turning
+            entered = (
+                v * np.conj(after.across)
+                + m * np.conj(after.turning)
+                - f.across * np.conj(q.across)
+                - f.turning * np.conj(q.turning)
+            )
+            total = total + np.sum(np.imag(entered), axis=0) * np.abs(self.field.s[0]) / 2
+        return np.asarray(total.reshape(self.frequency.shape))
+
+    def _node(self, station: str) -> Pair:
+        self.tool.station(station)
+        return self.field.states.motion[self.field.layout.node_of[station]]
+
+    def _shaped(self, values: Array) -> Array:
+        """From (2, K S) to (2, K, S)."""
+        both = np.broadcast_to(values, (2, self.frequency.size))
+        return np.asarray(both.reshape(2, *self.frequency.shape))
+
+
+def _power(force: Array, velocity: Array) -> Array:
+    """Mean power over both planes, of complex amplitudes (2, ...)."""
+    return np.asarray(np.sum(np.real(force * np.conj(velocity)), axis=0) / 2)
+
+
+def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResponse:
+    """Steady vibration of a tool at some speeds of its engine, rad/s.
+
+    Raises
+    ------
+    ModelError : nothing shakes it, or a hand's table does not reach that far.
+    MassError, MotionError : of a linkage that shakes it.
+    UsageError : a speed is not above 0.
+    """
+    speeds = checked_speeds(speed)
+    if not tool.excitations:
+        raise ModelError("excitations", NOTHING)
+    all_shakes = shakes(tool)
+    orders = np.array(sorted({shake.order for shake in all_shakes}))
+    ends = float(orders[0] * np.min(speeds)), float(orders[-1] * np.max(speeds))
+    check_coverage(tool, *ends)
+    layout = Layout(tool, ends[1])
+    field = shaken(layout, all_shakes, orders, speeds)
+    return ToolResponse(tool, speeds, orders, all_shakes, field)
+
+
+NOTHING = (
+    "nothing shakes the tool; add a table [[excitations]] with a station and a force, an unbalance "
+    "or a linkage"
+)
+
+
+def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
+    """Speeds (S,), rad/s, all above 0."""
+    speeds = np.atleast_1d(np.asarray(speed, dtype=float))
+    if speeds.ndim != 1 or not speeds.size or not np.all((speeds > 0) & np.isfinite(speeds)):
+        raise UsageError("the speeds of the engine must be more than 0")
+    return speeds
+
+
+def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array) -> Field:
+    """The field of a layout under what shakes, at all orders and speeds."""
+    s = 1j * np.multiply.outer(orders, speeds).reshape(1, -1)
+    loads: list[Any] = [None] * len(layout.nodes)
+    for shake in all_shakes:
+        force = np.zeros((2, len(orders), len(speeds)), complex)
+        force[:, _index(orders, shake.order)] = shake.at(speeds)
+        node = layout.node_of[shake.station]
+        load = Pair(force.reshape(2, -1), 0.0)
+        loads[node] = load if loads[node] is None else Pair(loads[node].across + load.across, 0.0)
+    return Field(layout, s, solve(carry(layout.chain(s)), loads))
+
+
+def _index(orders: Array, order: float) -> int:
+    return int(np.searchsorted(orders, order))

@@ -1,0 +1,99 @@
+"""What shakes a tool, by orders of its engine's speed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError
+from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.signals import Periodic
+from equipoise.tools.model import Excitation, Tool
+
+Array = np.ndarray[Any, Any]
+
+ANGLES = 720
+"""Crank angles in a turn from which a linkage's orders are taken."""
+LEAST, MOST_ORDERS = 1e-6, 60
+"""Share of the largest order below which one is left out, and how many are kept at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shake:
+    """One order of an excitation: the force Re (force * speed^power * exp(i order speed t)).
+
+    order : events in a turn of the engine.
+    force : complex (2,), vertical and lateral, N or N s2.
+    power : 0 for a force that is the same at all speeds, 2 where it grows with their square.
+    """
+
+    name: str
+    station: str
+    order: float
+    force: Array
+    power: int
+
+    def at(self, speed: Array) -> Array:
+        """Complex amplitudes (2, S), N, at speeds (S,) of the engine, rad/s."""
+        return np.asarray(self.force[:, None] * speed**self.power)
+
+
+def shakes(tool: Tool) -> tuple[Shake, ...]:
+    """All orders of all excitations.
+
+    Raises
+    ------
+    MassError, MotionError : of a linkage that cannot turn or has no masses.
+    """
+    return tuple(shake for one in tool.excitations for shake in _shakes(one))
+
+
+def _shakes(one: Excitation) -> Iterable[Shake]:
+    if one.linkage is not None:
+        yield from _of_linkage(one, one.linkage)
+        return
+    turned = np.exp(1j * one.phase)
+    if one.force is not None:
+        along = {"vertical": [1, 0], "lateral": [0, 1]}
+        force = one.force * np.array(along.get(one.direction, _turning(one.ratio)))
+        power = 0
+    else:
+        assert one.unbalance is not None
+        force, power = one.unbalance * one.ratio**2 * np.array(_turning(one.ratio)), 2
+    yield Shake(one.name, one.station, abs(one.ratio), force * turned, power)
+
+
+def _turning(ratio: float) -> list[complex]:
+    """A force that turns from up to lateral, or the other way round."""
+    return [1, -1j if ratio > 0 else 1j]
+
+
+def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
+    """The shaking force by orders: minus the rate of change of momentum, of any speed squared."""
+    force = unit_shaking_force(machine)
+    backward = (one.ratio > 0) != (machine.drive.speed > 0)
+    sizes = np.max(force.sizes, axis=0)
+    largest = float(np.max(sizes[1:], initial=0.0))
+    kept = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
+    for k in sorted(kept, key=lambda k: -sizes[k])[:MOST_ORDERS]:
+        order = float(force.orders[k])
+        amplitudes = force.amplitudes[:, k] * np.exp(1j * order * one.phase)
+        both = np.conj(amplitudes) if backward else amplitudes
+        yield Shake(one.name, one.station, order * abs(one.ratio), one.ratio**2 * both, 2)
+
+
+def unit_shaking_force(machine: Machine) -> Periodic:
+    """Shaking force over speed squared (vertical, lateral), N s2, of a linkage at steady speed."""
+    if lacking := massless(machine):
+        raise MassError(lacking)
+    from equipoise.mechanism.linkage import assemble
+
+    turns = assemble(machine).cycle.turns
+    motion = move(machine, ANGLES, 1.0, 0.0)
+    force = forces(motion).shaking_force
+    return Periodic.of(np.array([force.y, force.x]), turns)

@@ -1,0 +1,197 @@
+"""A tool over a range of its engine's speeds: where to look, and what is told there."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.tools.frequencies import frequencies_below
+from equipoise.tools.model import PLANES, Tool
+from equipoise.tools.response import ToolResponse, respond_tool
+from equipoise.tools.sources import shakes
+from equipoise.tools.transmission import Transmissions, held, transmit
+
+Array = np.ndarray[Any, Any]
+
+SPEEDS = 400
+"""Equally spaced speeds in a range, if not told otherwise."""
+BESIDE = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
+"""Shares of a resonance beside which it is looked at more closely."""
+PLACES = 201
+"""Of the shaft at which the bending moment is looked at."""
+LARGEST = 200_000
+"""Frequencies times places that are computed at once."""
+LOUD = 0.01
+"""Share of the largest force from which an order's resonances are looked at."""
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """What some places (X) of the shaft do at some speeds, RMS over time, planes together, (X, S).
+
+    displacement : m.  velocity : m/s.  acceleration : m/s2.  moment : of bending, N m.
+    """
+
+    displacement: Array
+    velocity: Array
+    acceleration: Array
+    moment: Array
+
+
+@dataclass(frozen=True, eq=False)
+class ToolSweep:
+    """A tool over speeds (S,) of its engine, rad/s.
+
+    transmissions : of a unit force, to what holds the tool; None where nothing does.
+    response : under what shakes it; None where nothing does.
+    further : places (m) that are told of besides the stations.
+    """
+
+    tool: Tool
+    speed: Array
+    transmissions: Transmissions | None
+    response: ToolResponse | None
+    further: tuple[float, ...] = ()
+
+    def places(self, places: Sequence[float] | Array) -> Places:
+        """What places (X), m, do at every speed; a `ModelError` where nothing shakes the tool."""
+        frequency = self.shaken.frequency
+        block = max(1, LARGEST // frequency.size)
+        parts = [self._some(places[k : k + block]) for k in range(0, max(1, len(places)), block)]
+        return Places(*map(np.concatenate, zip(*parts, strict=True)))
+
+    def _some(self, places: Sequence[float] | Array) -> tuple[Array, ...]:
+        """The same of a few places, so that memory lasts."""
+        line, frequency = self.shaken.line(places), self.shaken.frequency
+        moved = line.displacement
+        return tuple(map(_rms, (moved, moved * frequency, moved * frequency**2, line.moment)))
+
+    @property
+    def shaken(self) -> ToolResponse:
+        """The response; a `ModelError` where nothing shakes the tool."""
+        if self.response is None:
+            raise ModelError("excitations", "nothing shakes the tool; add a table [[excitations]]")
+        return self.response
+
+    @cached_property
+    def largest_moment(self) -> tuple[Array, Array]:
+        """Largest RMS bending moment (S,), N m, and where in the shaft it is, m."""
+        where = np.linspace(0, self.tool.shaft.length, PLACES)
+        moment = self.places(where).moment
+        at = np.argmax(moment, axis=0)
+        return moment[at, np.arange(len(self.speed))], where[at]
+
+    def force(self, station: str) -> dict[str, Array]:
+        """Force (S,) on hand, harness and ground at a station, N, RMS over time and planes."""
+        return {part: _rms(force) for part, force in self.shaken.forces(station).items()}
+
+    def power(self, station: str) -> dict[str, Array]:
+        """Mean power (S,), W, that goes into hand, harness, ground and absorber at a station."""
+        return {part: np.sum(each, axis=0) for part, each in self.shaken.power(station).items()}
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units."""
+        found: dict[str, Any] = {"speed": self.speed}
+        if self.transmissions is not None:
+            found |= self.transmissions.to_dict()
+        if self.response is not None:
+            found["orders"] = self.response.orders
+            found["stations"] = self._stations()
+            moment, place = self.largest_moment
+            found["largest_moment"] = {"moment": moment, "place": place}
+            found["further"] = self._further()
+        return found
+
+    def _stations(self) -> dict[str, Any]:
+        positions = [one.position for one in self.tool.stations]
+        at = self.places(positions)
+        return {
+            one.name: {
+                "position": one.position,
+                "displacement": at.displacement[k],
+                "velocity": at.velocity[k],
+                "acceleration": at.acceleration[k],
+                "moment": at.moment[k],
+                "forces": self.force(one.name),
+                "power": self.power(one.name),
+            }
+            for k, one in enumerate(self.tool.stations)
+        }
+
+    def _further(self) -> list[dict[str, Any]]:
+        at = self.places(self.further)
+        return [
+            {"position": place, **{key: getattr(at, key)[k] for key in UNITS}}
+            for k, place in enumerate(self.further)
+        ]
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Figures against speed, as name, unit and values (S,)."""
+        found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
+        if self.transmissions is not None:
+            for name, one in self.transmissions.stations.items():
+                for plane, label in enumerate(PLANES):
+                    found.append((f"{name}.transmission_{label}", "1", one.size[plane]))
+                    found.append((f"{name}.phase_{label}", "rad", one.phase[plane]))
+        if self.response is not None:
+            for name, station in self._stations().items():
+                for key, unit in UNITS.items():
+                    found.append((f"{name}.{key}", unit, station[key]))
+                found += [
+                    (f"{name}.force_{part}", "N", each) for part, each in station["forces"].items()
+                ]
+                found += [
+                    (f"{name}.power_{part}", "W", each) for part, each in station["power"].items()
+                ]
+            for row in self._further():
+                name = f"{row['position']:.6g} m"
+                found += [(f"{name}.{key}", unit, row[key]) for key, unit in UNITS.items()]
+        return found
+
+
+UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "moment": "N m"}
+
+
+def _rms(amplitudes: Array) -> Array:
+    """Root of the mean square (..., S) of amplitudes (..., 2, K, S)."""
+    squares = np.sum(np.abs(amplitudes) ** 2, axis=(-3, -2))
+    return np.asarray(np.sqrt(squares) / sqrt(2))
+
+
+def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolSweep:
+    """A tool at speeds (S,) of its engine, rad/s.
+
+    further : places (m) that are told of besides the stations.
+
+    Raises
+    ------
+    ModelError : nothing holds it and nothing shakes it; as `respond_tool`.
+    """
+    transmissions = transmit(tool, speed) if held(tool) else None
+    response = respond_tool(tool, speed) if tool.excitations else None
+    if transmissions is None and response is None:
+        raise ModelError("shaft", "nothing holds the tool and nothing shakes it; add a station")
+    found = ToolSweep(tool, np.asarray(speed), transmissions, response, tuple(further))
+    if further:
+        found.places(further)  # a place off the shaft is told at once
+    return found
+
+
+def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> Array:
+    """Equally spaced speeds, rad/s, and more of them about the resonances of loud orders."""
+    all_shakes = shakes(tool)
+    loudness = {
+        shake.order: float(np.max(np.abs(shake.at(np.array([high]))))) for shake in all_shakes
+    }
+    loudest = max(loudness.values(), default=0.0)
+    orders = {order for order, size in loudness.items() if size >= LOUD * loudest} | {1.0}
+    natural = np.concatenate(frequencies_below(tool, max(orders) * high))
+    beside = [np.outer(natural / order, 1 + BESIDE).ravel() for order in orders]
+    speeds = np.unique(np.concatenate([np.linspace(low, high, count), *beside]))
+    return np.asarray(speeds[(speeds >= low) & (speeds <= high)])
