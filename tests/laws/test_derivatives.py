@@ -124,7 +124,7 @@ def close(got: Array, want: Array) -> None:
     assert np.max(np.abs(got - want)) < 1e-7 * scale
 
 
-WHOLE = (*sorted(eq.examples()), *(f"{kind}:0" for kind in KINDS), "geared_coupler:1")
+WHOLE = (*sorted(eq.examples("linkage")), *(f"{kind}:0" for kind in KINDS), "geared_coupler:1")
 
 
 @cache

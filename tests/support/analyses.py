@@ -93,7 +93,7 @@ def example_subject(name: str) -> Subject:
 
 def example_names() -> list[str]:
     """Return the names of the bundled examples."""
-    return sorted(eq.examples())
+    return sorted(eq.examples("linkage"))
 
 
 def vector(signal: Any) -> Array:

@@ -23,6 +23,7 @@ EXAMPLES = (
     "balance-rig",
     "balance-shafts",
     "balance-spring",
+    "brush-cutter-engine",
     "class-three",
     "drag-link",
     "exudyn-slider-crank",
@@ -49,7 +50,8 @@ EXAMPLES = (
     "yamashita-rig",
     "yamashita-rig-counterweight",
 )
-
+TOOLS = ("brush-cutter", "nagamine-irie", "pole-saw")
+"""Bundled files of tools; those above are of linkages."""
 
 READY = "ready to be analysed"
 """Last line of `equipoise check`."""

@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.results import columns, outputs, unit_of
 
-NAMES = sorted(eq.examples())
+NAMES = sorted(eq.examples("linkage"))
 
 
 def analysis(name: str = "geared-counterweight", angles: Any = 12) -> eq.Analysis:

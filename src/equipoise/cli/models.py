@@ -22,29 +22,43 @@ def examples_() -> None:
 
 @app.command
 def check(file: Annotated[str, FILE], /) -> None:
-    """Check a model file and tell how the linkage is built up.
+    """Check a model file and tell how the linkage or tool is built up.
 
     Parameters
     ----------
     file
         Path of a model file, or the name of a bundled example.
     """
-    from equipoise.io.models import load
+    from equipoise.io.tools import load_any
+    from equipoise.tools.model import Tool
+
+    model = load_any(file)
+    if isinstance(model, Tool):
+        from equipoise.terminal.check_tool import print_check_of_tool
+
+        print_check_of_tool(model, file)
+        return
     from equipoise.terminal.check import print_check
 
-    machine = load(file)
     with naming(file):
-        print_check(machine)
+        print_check(model)
 
 
 @app.command
-def schema() -> None:
-    """Print the JSON Schema of the model file, for editors."""
+def schema(*, tool: bool = False) -> None:
+    """Print the JSON Schema of the model file, for editors.
+
+    Parameters
+    ----------
+    tool
+        That of the file of a hand-held tool.
+    """
     import json
 
     from equipoise.io.models import json_schema
+    from equipoise.io.tools import tool_schema
 
-    print(json.dumps(json_schema(), indent=2))
+    print(json.dumps(tool_schema() if tool else json_schema(), indent=2))
 
 
 @app.command

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal, TypeVar
 
-from pydantic import ConfigDict, Field, JsonValue, ValidationError
+from pydantic import ConfigDict, Field, JsonValue
 
 from equipoise.io.document_weights import AddedMass, BalanceShafts, GearedWeight
 from equipoise.io.document_wishes import Limit, Objective
 from equipoise.io.fields import PAIR, Angle, Length, Mass, Point, Stiffness, Table, vector
-from equipoise.io.problems import translated
+from equipoise.io.problems import validated
 from equipoise.mechanism import balance
 from equipoise.mechanism.model import Machine
 
@@ -123,8 +123,4 @@ def read_balance(given: dict[str, Any], machine: Machine) -> balance.Balance:
     ------
     ModelError : what was given and what would be right.
     """
-    try:
-        table = Balance.model_validate(given)
-    except ValidationError as error:
-        raise translated(error, "balance") from error
-    return table.to_balance(machine)
+    return validated(Balance, given, "balance").to_balance(machine)

@@ -88,6 +88,16 @@ TorsionalDamping = TypeAliasType(
     "TorsionalDamping",
     Annotated[float, _reader("torsional damping"), _json("torsional damping")],
 )
+BendingStiffness = TypeAliasType(
+    "BendingStiffness",
+    Annotated[float, _reader("bending stiffness"), _json("bending stiffness")],
+)
+MassPerLength = TypeAliasType(
+    "MassPerLength", Annotated[float, _reader("mass per length"), _json("mass per length")]
+)
+Modulus = TypeAliasType("Modulus", Annotated[float, _reader("modulus"), _json("modulus")])
+Unbalance = TypeAliasType("Unbalance", Annotated[float, _reader("unbalance"), _json("unbalance")])
+Time = TypeAliasType("Time", Annotated[float, _reader("time"), _json("time")])
 
 # TOML knows lists only, which a strict tuple would refuse; what is in them stays strict.
 PAIR = LIST = Field(strict=False)

@@ -8,23 +8,17 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from importlib.resources import files
-from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.files import LARGEST, FileError, printable, read_text, write_text
+from equipoise.io.files import FileError, printable, write_text
+from equipoise.io.opening import Kind, bundled, content_of, kind_of, opened
 from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.model import LoadTable, Machine, unknown
+from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
 
 __all__ = ["dumps", "examples", "json_schema", "load", "loads", "save"]
-
-# tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
-# minute for forty thousand.  No key of a model file has more than five.
-_ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
 
 
 def load(path_or_name: str | os.PathLike[str]) -> Machine:
@@ -44,23 +38,8 @@ def load(path_or_name: str | os.PathLike[str]) -> Machine:
     ModelError
         One sentence: file, table and key, what was given and what would be right.
     """
-    try:
-        name = os.fspath(path_or_name)
-    except TypeError:
-        raise UsageError(f"got {path_or_name!r}; give a path, or the name of an example") from None
-    if not os.path.isfile(name) and name in (bundled := _bundled()):
-        example = bundled[name]
-        folder = example.parent if isinstance(example, Path) else None
-        return loads(example.read_text(encoding="utf-8"), example.name, folder)
-    source = printable(name) or "''"
-    try:
-        text = read_text(name)
-    except FileError as problem:
-        what = str(problem)
-        if not os.path.lexists(name) and isinstance(problem.__cause__, FileNotFoundError):
-            what = f"{what}; {_known_examples(name)}"
-        raise ModelError("", what, source) from problem
-    return loads(text, source, Path(name).parent)
+    file = opened(path_or_name)
+    return loads(file.text, file.source, file.folder)
 
 
 def loads(
@@ -124,8 +103,8 @@ def save(machine: Machine, path: str | os.PathLike[str]) -> None:
     names = _names(machine, path)
     text = toml_text(document_of(machine, names))
     for where, table in tables.items():
-        _write(path.with_name(names[where]), format_table(table))
-    _write(path, text)
+        write_beside(path.with_name(names[where]), format_table(table))
+    write_beside(path, text)
 
 
 def files_of(machine: Machine, path: str | os.PathLike[str]) -> list[Path]:
@@ -159,11 +138,18 @@ def _part_of_name(where: str) -> str:
     return f"load-{number[0]}" if number else where.split(".")[1]
 
 
-def examples() -> dict[str, str]:
-    """Names of the bundled model files, each with its title."""
+def examples(kind: Kind | None = None) -> dict[str, str]:
+    """Names of the bundled model files, each with its title.
+
+    kind : ``linkage`` or ``tool``, for those of one kind only.
+    """
+    contents = {
+        name: tomllib.loads(file.read_text(encoding="utf-8")) for name, file in bundled().items()
+    }
     return {
-        name: str(tomllib.loads(file.read_text(encoding="utf-8"))["title"])
-        for name, file in _bundled().items()
+        name: str(content["title"])
+        for name, content in contents.items()
+        if kind in {None, kind_of(content)}
     }
 
 
@@ -178,90 +164,17 @@ def json_schema() -> dict[str, Any]:
 
 
 def _machine(text: str, folder: Path | None) -> Machine:
-    content = toml_content(text)
-
-    from pydantic import ValidationError
+    content = content_of(text, "linkage")
 
     from equipoise.io.beside import Beside
     from equipoise.io.document import Document
-    from equipoise.io.problems import translated
+    from equipoise.io.problems import validated
 
-    try:
-        document = Document.model_validate(content)
-    except ValidationError as error:
-        raise translated(error) from error
-    return document.to_machine(Beside(folder))
+    return validated(Document, content).to_machine(Beside(folder))
 
 
-def toml_content(text: str) -> dict[str, Any]:
-    """Content of a file that begins with the version of its schema.
-
-    Raises
-    ------
-    ModelError : it is no TOML, or of another version.
-    """
-    content = _toml(text)
-    _check_version(content)
-    return content
-
-
-def _toml(text: str) -> dict[str, Any]:
-    if len(text) > LARGEST:
-        raise ModelError("", f"the text is longer than {LARGEST / 1e6:.0f} MB; give a model file")
-    if endless := _ENDLESS_KEY.search(text):
-        line = text.count("\n", 0, endless.start()) + 1
-        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need five")
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise ModelError("", _syntax(str(error))) from error
-    except RecursionError as error:
-        raise ModelError("", "lists or tables are nested too deeply for a model file") from error
-    except ValueError as error:  # an integer of thousands of digits
-        raise ModelError("", "a number has thousands of digits; give a usual one") from error
-
-
-def _syntax(message: str) -> str:
-    """Put the place in front of tomllib's message."""
-    found = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
-    what, where = found.groups() if found else (message, "")
-    what = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in what)
-    what = what if len(what) <= 200 else f"{what[:197]}..."
-    if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
-        what += ", a key or table is given twice"
-    return f"{where}: {what[:1].lower()}{what[1:]}; give valid TOML".removeprefix(": ")
-
-
-def _check_version(content: dict[str, Any]) -> None:
-    if "schema" not in content:
-        raise ModelError(
-            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
-        )
-    given = content["schema"]
-    if type(given) is not int or given != SCHEMA_VERSION:
-        from equipoise.io.unit_problems import described
-
-        raise ModelError(
-            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
-        )
-
-
-def _bundled() -> dict[str, Traversable]:
-    folder = files("equipoise").joinpath("examples")
-    if not folder.is_dir():
-        return {}
-    found = [file for file in folder.iterdir() if file.name.endswith(".toml")]
-    return {file.name.removesuffix(".toml"): file for file in sorted(found, key=lambda f: f.name)}
-
-
-def _known_examples(name: str) -> str:
-    bare = os.path.basename(name).removesuffix(".toml")
-    hint = unknown(printable(bare), _bundled(), "example").split("; ")[-1]
-    near = f"{hint} or " if hint.startswith("did") else ""
-    return f"{near}give a path, or the name of an example: run `equipoise examples`"
-
-
-def _write(path: Path, text: str) -> None:
+def write_beside(path: Path, text: str) -> None:
+    """Write a file; a `UsageError` says why it cannot be written."""
     try:
         write_text(path, text)
     except FileError as problem:

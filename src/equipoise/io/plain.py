@@ -1,4 +1,4 @@
-"""Values of a machine as they stand in a model file."""
+"""Values of a machine or tool as they stand in its file."""
 
 from __future__ import annotations
 
@@ -30,3 +30,8 @@ def tidy(value: float) -> float:
 def listed(values: Iterable[float], dimension: Dimension) -> list[str]:
     """Write a list of quantities of one dimension."""
     return [format_exact(value, dimension) for value in values]
+
+
+def usual_name(station: str, cause: str) -> str:
+    """Name of an excitation that has none of its own."""
+    return f"{station} {cause}".strip()

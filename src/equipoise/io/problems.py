@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from json import dumps as quoted
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
 from equipoise.io.fields import TAGS
 from equipoise.io.unit_problems import described
 
 if TYPE_CHECKING:
-    from pydantic import ValidationError
+    from pydantic import BaseModel, ValidationError
     from pydantic_core import ErrorDetails
 
+Model = TypeVar("Model", bound="BaseModel")
 _RIGHT = {
     "point": 'give ["33.5 mm", "0 mm"] or {{ distance = "88 mm", direction = "-83 deg" }}',
     "string_type": "give text in quotes",
@@ -34,7 +36,17 @@ _RIGHT = {
 }
 
 
-def translated(error: ValidationError, within: str = "") -> ModelError:
+def validated(model: type[Model], content: Mapping[str, Any], within: str = "") -> Model:
+    """Read a document, or the table `within` of one; a `ModelError` tells the first problem."""
+    from pydantic import ValidationError
+
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise _translated(error, within) from error
+
+
+def _translated(error: ValidationError, within: str = "") -> ModelError:
     """Return the first problem as a `ModelError`, with the number of the others.
 
     within : the table that was read, where it is not the whole document.

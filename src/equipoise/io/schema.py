@@ -1,15 +1,16 @@
-"""The JSON Schema of the model file, from its pydantic models."""
+"""The JSON Schemas of model files, from their pydantic models."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from pydantic import create_model
+from pydantic import BaseModel, create_model
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from equipoise.io.document import Document
 from equipoise.io.document_balance import Balance
+from equipoise.io.document_tool import ToolDocument
 
 
 class _Generator(GenerateJsonSchema):
@@ -32,7 +33,16 @@ def json_schema() -> dict[str, Any]:
     whole = create_model(
         "Document", __base__=Document, __doc__=Document.__doc__, balance=(Balance | None, None)
     )
-    schema = whole.model_json_schema(schema_generator=_Generator)
+    return _schema_of(whole, "Equipoise model file")
+
+
+def tool_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of the file of a tool."""
+    return _schema_of(ToolDocument, "Equipoise tool file")
+
+
+def _schema_of(document: type[BaseModel], title: str) -> dict[str, Any]:
+    schema = document.model_json_schema(schema_generator=_Generator)
     schema["$schema"] = GenerateJsonSchema.schema_dialect
-    schema["title"] = "Equipoise model file"
+    schema["title"] = title
     return schema

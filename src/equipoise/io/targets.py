@@ -11,14 +11,14 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.io import units
 from equipoise.io.fields import PAIR, Table
 from equipoise.io.files import FileError, printable, read_text
-from equipoise.io.models import toml_content
-from equipoise.io.problems import translated
+from equipoise.io.opening import toml_content
+from equipoise.io.problems import validated
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal
@@ -92,13 +92,10 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
 
 
 def _document(text: str) -> _Document:
-    try:
-        content = toml_content(text)
-        if "goals" not in content:
-            raise ModelError("goals", "missing; add at least one table [[goals]]")
-        return _Document.model_validate(content)
-    except ValidationError as error:
-        raise translated(error) from error
+    content = toml_content(text)
+    if "goals" not in content:
+        raise ModelError("goals", "missing; add at least one table [[goals]]")
+    return validated(_Document, content)
 
 
 def _targets(document: _Document, figures: Collection[str]) -> Targets:

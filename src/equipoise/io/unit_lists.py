@@ -27,6 +27,10 @@ Dimension = Literal[
     "power",
     "density",
     "energy",
+    "bending stiffness",
+    "mass per length",
+    "modulus",
+    "unbalance",
 ]
 
 
@@ -82,7 +86,7 @@ KINDS: dict[Dimension, Kind] = {
     ),
     "speed": _kind("a speed", "m/s, mm/s, cm/s, km/h, ft/s", "m/s, km/h", "0.3 m/s"),
     "frequency": _kind("a frequency", "Hz, kHz", "Hz", "50 Hz"),
-    "time": _kind("a time", "s, ms, min, h", "s", "2 s"),
+    "time": _kind("a time", "s, ms, min, h", "s, h, min", "2 s"),
     "stiffness": _kind(
         "a stiffness", "N/m, N/mm, kN/m, kgf/m, kgf/cm, kgf/mm, lbf/in", "N/m", "20 kN/m"
     ),
@@ -104,6 +108,24 @@ KINDS: dict[Dimension, Kind] = {
     "power": _kind("a power", "W, mW, kW", "W", "40 W"),
     "density": _kind("a density", "kg/m^3, g/cm^3, kg/dm^3, lb/in^3", "kg/m^3", "7850 kg/m^3"),
     "energy": _kind("an energy", "J, mJ, kJ", "J", "12 J"),
+    "bending stiffness": _kind(
+        "a bending stiffness",
+        "N m^2, N mm^2, kN m^2, kgf m^2, kgf cm^2, kgf mm^2, lbf in^2",
+        "N m^2",
+        "980 N m^2",
+    ),
+    "mass per length": _kind(
+        "a mass per length", "kg/m, g/m, kg/mm, lb/ft", "g/m, kg/m", "2.3 kg/m"
+    ),
+    "modulus": _kind(
+        "a modulus of elasticity",
+        "Pa, kPa, MPa, GPa, N/mm^2, kgf/mm^2, psi",
+        "GPa, MPa",
+        "70 GPa",
+    ),
+    "unbalance": _kind(
+        "an unbalance", "kg m, kg mm, g m, g cm, g mm, oz in", "g mm, kg m", "300 g mm"
+    ),
 }
 
 NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"

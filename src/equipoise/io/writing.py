@@ -76,6 +76,10 @@ HEADED = {
     "support.gauges",
     "balance.phases",
     *(f"balance.{key}" for key in LISTS),
+    "shaft.segments",
+    "shaft.stations",
+    "design.variables",
+    "design.limits",
 }
 """Tables inside of others that are written below a header of their own."""
 

@@ -155,7 +155,7 @@ def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
 
 def test_examples_load_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
-    names = examples()
+    names = examples("linkage")
     assert names
     for name, title in names.items():
         assert load(name).title == title

@@ -37,7 +37,7 @@ def changed(value: Any, draw: Callable[[float], float]) -> Any:
     return value
 
 
-@pytest.mark.parametrize("name", examples())
+@pytest.mark.parametrize("name", examples("linkage"))
 def test_examples_survive(name: str) -> None:
     machine = load(name)
     if all(load.table is None for load in machine.loads):

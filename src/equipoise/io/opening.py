@@ -1,0 +1,175 @@
+"""Finding a model file, of a linkage or a tool, and reading its TOML as far as the version."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import Any, Literal
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.io import SCHEMA_VERSION
+from equipoise.io.files import LARGEST, FileError, printable, read_text
+from equipoise.mechanism.checks import unknown
+
+Kind = Literal["linkage", "tool"]
+OF_TOOL, OF_LINKAGE = {"shaft"}, {"drive", "frame", "links"}
+"""Tables that tell what a file is of."""
+
+# tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
+# minute for forty thousand.  No key of a model file has more than five.
+_ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
+
+
+@dataclass(frozen=True)
+class Opened:
+    """The text of a model file, its name for errors, and the folder where its tables are."""
+
+    text: str
+    source: str
+    folder: Path | None
+
+
+def opened(path_or_name: str | os.PathLike[str]) -> Opened:
+    """Open a model file, or a bundled example by its name.
+
+    Raises
+    ------
+    ModelError : there is no such file, or it cannot be read.
+    """
+    try:
+        name = os.fspath(path_or_name)
+    except TypeError:
+        raise UsageError(f"got {path_or_name!r}; give a path, or the name of an example") from None
+    if not os.path.isfile(name) and name in bundled():
+        return opened_example(name)
+    source = printable(name) or "''"
+    try:
+        text = read_text(name)
+    except FileError as problem:
+        what = str(problem)
+        if not os.path.lexists(name) and isinstance(problem.__cause__, FileNotFoundError):
+            what = f"{what}; {_known_examples(name)}"
+        raise ModelError("", what, source) from problem
+    return Opened(text, source, Path(name).parent)
+
+
+def opened_example(name: str) -> Opened:
+    """Open a bundled example."""
+    example = bundled()[name]
+    folder = example.parent if isinstance(example, Path) else None
+    return Opened(example.read_text(encoding="utf-8"), example.name, folder)
+
+
+def bundled() -> dict[str, Traversable]:
+    """Files of the bundled examples by name."""
+    folder = files("equipoise").joinpath("examples")
+    if not folder.is_dir():
+        return {}
+    found = [file for file in folder.iterdir() if file.name.endswith(".toml")]
+    return {file.name.removesuffix(".toml"): file for file in sorted(found, key=lambda f: f.name)}
+
+
+def _known_examples(name: str) -> str:
+    bare = os.path.basename(name).removesuffix(".toml")
+    hint = unknown(printable(bare), bundled(), "example").split("; ")[-1]
+    near = f"{hint} or " if hint.startswith("did") else ""
+    return f"{near}give a path, or the name of an example: run `equipoise examples`"
+
+
+# -- what is in it ---------------------------------------------------------------------------------
+
+
+def kind_of(content: Mapping[str, Any]) -> Kind | None:
+    """What a file is of, by its tables; None where they do not tell."""
+    tool, linkage = OF_TOOL & content.keys(), OF_LINKAGE & content.keys()
+    if bool(tool) == bool(linkage):
+        return None
+    return "tool" if tool else "linkage"
+
+
+def is_tool(text: str) -> bool:
+    """Whether a text is the file of a tool; not where it is no TOML."""
+    try:
+        return kind_of(_toml(text)) == "tool"
+    except ModelError:
+        return False
+
+
+def content_of(text: str, wanted: Kind) -> dict[str, Any]:
+    """Content of a model file that has to be of one kind.
+
+    Raises
+    ------
+    ModelError : as `toml_content`, or it is of the other kind.
+    """
+    content = toml_content(text)
+    found = kind_of(content)
+    if wanted == "linkage" and found == "tool":
+        raise ModelError(
+            "", "this is the file of a tool, with a table [shaft]; use `equipoise tool FILE`"
+        )
+    if wanted == "tool" and found == "linkage":
+        raise ModelError(
+            "",
+            "this is the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
+        )
+    return content
+
+
+def toml_content(text: str) -> dict[str, Any]:
+    """Content of a file that begins with the version of its schema.
+
+    Raises
+    ------
+    ModelError : it is no TOML, or of another version.
+    """
+    content = _toml(text)
+    _check_version(content)
+    return content
+
+
+def _toml(text: str) -> dict[str, Any]:
+    if len(text) > LARGEST:
+        raise ModelError("", f"the text is longer than {LARGEST / 1e6:.0f} MB; give a model file")
+    if endless := _ENDLESS_KEY.search(text):
+        line = text.count("\n", 0, endless.start()) + 1
+        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need five")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ModelError("", _syntax(str(error))) from error
+    except RecursionError as error:
+        raise ModelError("", "lists or tables are nested too deeply for a model file") from error
+    except ValueError as error:  # an integer of thousands of digits
+        raise ModelError("", "a number has thousands of digits; give a usual one") from error
+
+
+def _syntax(message: str) -> str:
+    """Put the place in front of tomllib's message."""
+    found = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
+    what, where = found.groups() if found else (message, "")
+    what = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in what)
+    what = what if len(what) <= 200 else f"{what[:197]}..."
+    if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
+        what += ", a key or table is given twice"
+    return f"{where}: {what[:1].lower()}{what[1:]}; give valid TOML".removeprefix(": ")
+
+
+def _check_version(content: dict[str, Any]) -> None:
+    if "schema" not in content:
+        raise ModelError(
+            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
+        )
+    given = content["schema"]
+    if type(given) is not int or given != SCHEMA_VERSION:
+        from equipoise.io.unit_problems import described
+
+        raise ModelError(
+            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
+        )

@@ -1,0 +1,170 @@
+"""Files of tools at the command line: `check` tells what it has read, or one sentence."""
+
+from __future__ import annotations
+
+import json
+import tomllib
+from copy import deepcopy
+from pathlib import Path
+
+import pytest
+import tomli_w
+from hypothesis import given
+from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
+
+from surface.running import (
+    READY,
+    TOOLS,
+    equipoise,
+    example,
+    example_text,
+    refused,
+    succeeded,
+)
+from surface.test_fuzz import Document, Draw, checked, fuzz, mutate
+from unit.io.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
+
+HAND = 'hand.stiffness = "8000 N/m"'
+
+
+@pytest.fixture(autouse=True, scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> object:
+    """A working directory for the files of these tests."""
+    with pytest.MonkeyPatch.context() as patch:
+        path = tmp_path_factory.mktemp("tools")
+        patch.chdir(path)
+        yield path
+
+
+def checked_tool(text: str) -> list[str]:
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    return succeeded(equipoise("check", "mine.toml")).splitlines()
+
+
+# -- good files ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_check_of_an_example(name: str) -> None:
+    lines = succeeded(equipoise("check", name)).splitlines()
+    assert lines[0] == example(name)["title"]
+    assert lines[-1] == f"ready: equipoise tool {name}"
+    assert f"shaft: {float(example(name)['shaft']['length'].split()[0]) * 1e3:.0f} mm" in lines[2]
+    for station in example(name)["shaft"]["stations"]:
+        assert any(line.startswith(f"  {station['name']} at ") for line in lines)
+
+
+def test_check_tells_what_it_has_read() -> None:
+    lines = checked_tool(EVERY_TOOL)
+    assert "  from 1300 mm to 1500 mm: EI 1822 N m^2, 0.7867 kg/m" in lines
+    assert "  engine at 0 mm: 3.600 kg, 0.02000 (vertical) and 0.02400 (lateral) kg m^2" in lines
+    assert any("2 hands (0.1500 kg, 9000 (vertical) and 7000 (lateral) N/m" in at for at in lines)
+    assert (
+        "shaken by blade: unbalance 150.0 g mm, at saw, -0.7500 times the engine's speed" in lines
+    )
+    assert "day: mowing 2.500 h, walking 0.5000 h" in lines
+    assert lines[-2].endswith("limits belt force, handle acceleration, added_mass")
+
+
+def test_check_of_a_tool_with_a_table() -> None:
+    Path("hand.csv").write_text(IMPEDANCE)
+    lines = checked_tool(TOOL.replace(HAND, 'hand.impedance = "hand.csv"'))
+    assert "  handle at 550.0 mm: 1 hand (impedance from 20.00 to 40.00 Hz)" in lines
+
+
+def test_schema_fits_the_examples() -> None:
+    schema = json.loads(succeeded(equipoise("schema", "--tool")))
+    assert schema["title"] == "Equipoise tool file"
+    for name in TOOLS:
+        Draft202012Validator(schema).validate(example(name))
+
+
+def test_the_engine_of_the_brush_cutter() -> None:
+    text = succeeded(equipoise("check", "brush-cutter-engine"))
+    assert text.endswith(f"{READY}\n")
+
+
+# -- bad files -------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("words", [("analyze", "--json"), ("plant",), ("respond",), ("modes",)])
+def test_a_tool_for_commands_of_linkages(words: tuple[str, ...]) -> None:
+    Path("mine.toml").write_text(TOOL)
+    line = refused(equipoise(words[0], "mine.toml", *words[1:]))
+    said = "this is the file of a tool, with a table [shaft]; use `equipoise tool FILE`"
+    assert line == f"mine.toml: {said}"
+
+
+BAD = {
+    # what is replaced, by what, what is said
+    "misspelt key": ("position", "positon", "shaft.stations[1].positon: no key is called"),
+    "no unit": ('"1.5 m"', '"1.5"', "shaft.length: got '1.5'; the unit is missing; give a length"),
+    "comma": ('"1.5 m"', '"1,5 m"', 'shaft.length: got \'1,5 m\'; the decimal sign is a point'),
+    "off the shaft": ('"550 mm"', '"550 cm"', "shaft.stations[2].position: got 5.5 m, which is"),
+    "same name": ('"handle"', '"engine"', "shaft.stations[2].name: 'engine' is given twice"),
+    "control": ('"handle"', '"\\u001b[31m"', "shaft.stations[2].name: got '\\x1b[31m'; give pri"),
+    "no cause": ('force = "100 N"', "", "excitations[1]: give exactly one of force, unbalance"),
+    "no table": (HAND, 'hand.impedance = "no.csv"',
+                 "shaft.stations[2].hand.impedance: no.csv: there is no such file"),
+    "bad table": (HAND, 'hand.impedance = "bad.csv"',
+                  "shaft.stations[2].hand.impedance: bad.csv, line 1: got the column 'x'; the"),
+    "table that is a folder": (HAND, 'hand.impedance = "."',
+                               "shaft.stations[2].hand.impedance: .: this is a directory"),
+    "no linkage": ('force = "100 N"', 'linkage = "brush-cutter-engin"',
+                   "excitations[1].linkage: brush-cutter-engin: there is no such file; did you mean"
+                   " 'brush-cutter-engine'? or give a path"),
+    "itself": ('force = "100 N"', 'linkage = "mine.toml"',
+               "excitations[1].linkage: mine.toml: this is the file of a tool"),
+    "duplicate": ("[[excitations]]", "[shaft]\n[[excitations]]", "line 19, column 7: cannot"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "said"), BAD.values(), ids=BAD)
+def test_bad_files(old: str, new: str, said: str) -> None:
+    assert old in TOOL
+    Path("bad.csv").write_text("x\n1\n")
+    Path("mine.toml").write_text(TOOL.replace(old, new, 1))
+    line = refused(equipoise("check", "mine.toml"))
+    assert line.startswith(f"mine.toml: {said}")
+
+
+# -- random ones -----------------------------------------------------------------------------------
+
+
+@st.composite
+def mutated(draw: Draw) -> Document:
+    document = deepcopy(draw(st.sampled_from([tomllib.loads(EVERY_TOOL), *map(example, TOOLS)])))
+    for _ in range(draw(st.integers(1, 3))):
+        mutate(draw, document)
+    return document
+
+
+@given(mutated())
+@fuzz(150)
+def test_mutated_documents(document: Document) -> None:
+    Path("random.toml").write_bytes(tomli_w.dumps(document).encode())
+    checked(equipoise("check", "random.toml"))
+
+
+@st.composite
+def garbled(draw: Draw) -> str:
+    """The text of an example with lines lost, doubled and swapped."""
+    lines = example_text(draw(st.sampled_from(TOOLS))).splitlines()
+    for _ in range(draw(st.integers(1, 3))):
+        at, to = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
+        match draw(st.sampled_from(("delete", "double", "swap"))):
+            case "delete":
+                del lines[at]
+            case "double":
+                lines.insert(to, lines[at])
+            case _:
+                lines[at], lines[to] = lines[to], lines[at]
+    return "\n".join(lines)
+
+
+@given(garbled())
+@fuzz(100)
+def test_garbled_text(text: str) -> None:
+    Path("random.toml").write_text(text)
+    checked(equipoise("check", "random.toml"))
