@@ -23,6 +23,7 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise plant transplanter               the path of a planting finger, and its figures"
 	@echo "  $(BIN)/equipoise respond yamashita-rig            how it shakes what it stands on"
 	@echo "  $(BIN)/equipoise balance balance-crank            what to change so that it shakes less"
+	@echo "  $(BIN)/equipoise tool brush-cutter                what a brush cutter does to the hands"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test
@@ -40,6 +41,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/planting.py
 	$(BIN)/python benchmarks/vibration.py
 	$(BIN)/python benchmarks/balancing.py
+	$(BIN)/python benchmarks/tools.py
 	$(BIN)/python benchmarks/startup.py
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
 

@@ -18,6 +18,7 @@ import equipoise as package
 from surface.running import (
     EXAMPLES,
     READY,
+    TOOLS,
     command,
     equipoise,
     example,
@@ -29,8 +30,8 @@ from surface.running import (
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
-    *["analyze", "balance", "check", "decay", "examples", "modes", "new", "plant", "respond"],
-    "schema",
+    *["analyze", "balance", "check", "decay", "examples", "exposure", "modes", "new", "plant"],
+    *["respond", "schema", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -89,6 +90,10 @@ OPTIONS = {
         ["--stiffness", "--arm", "--spring-arm", "--confidence", "--json", "--plot", "--format"]
     ),
     "examples": [],
+    "exposure": [
+        *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
+        *["--periodic", "--json", "--plot", "--format"],
+    ],
     "modes": ["FILE", "--model", "--json", "--plot", "--format"],
     "new": ["FILE"],
     "plant": [
@@ -99,7 +104,12 @@ OPTIONS = {
         *["FILE", "--model", "--speed", "--speeds", "--drive", "--transient", "--units"],
         *["--json", "--csv", "--plot", "--format"],
     ],
-    "schema": [],
+    "schema": ["--tool"],
+    "tool": [
+        *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
+        *["--duration", "--vary", "--sensitivities", "--design", "--out", "--units", "--json"],
+        *["--csv", "--plot", "--format"],
+    ],
 }
 
 
@@ -107,7 +117,7 @@ OPTIONS = {
 def test_help_of_a_command_tells_each_option(name: str) -> None:
     text = succeeded(equipoise(name, "--help"))
     assert text.startswith(f"Usage: equipoise {name}")
-    shown = re.findall(r"^[│|] \*? *(FILE|--[a-z-]+)", text, re.MULTILINE)
+    shown = re.findall(r"^[│|] \*? *(FILE|INPUT|--[a-z-]+)", text, re.MULTILINE)
     assert shown == OPTIONS[name]
 
 
@@ -128,7 +138,7 @@ def test_readme_shows_no_command_that_does_not_exist() -> None:
 def test_examples_are_listed_with_their_titles() -> None:
     lines = succeeded(equipoise("examples")).splitlines()
     listed = dict(line.split(maxsplit=1) for line in lines)
-    assert listed == {name: example(name)["title"] for name in EXAMPLES}
+    assert listed == {name: example(name)["title"] for name in (*EXAMPLES, *TOOLS)}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)

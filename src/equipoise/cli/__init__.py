@@ -13,11 +13,23 @@ from collections.abc import Sequence
 
 from cyclopts import CycloptsError
 
-from equipoise.cli import analyze, balance, decay, models, modes, plant, respond
+from equipoise.cli import analyze, balance, decay, exposure, models, modes, plant, respond, tool
 from equipoise.cli.app import app
 from equipoise.errors import EquipoiseError
 
-__all__ = ["analyze", "balance", "decay", "main", "models", "modes", "plant", "respond", "run"]
+__all__ = [
+    "analyze",
+    "balance",
+    "decay",
+    "exposure",
+    "main",
+    "models",
+    "modes",
+    "plant",
+    "respond",
+    "run",
+    "tool",
+]
 
 
 def run(arguments: Sequence[str] | None = None) -> int:

@@ -8,6 +8,7 @@ import equipoise
 
 FILE = Parameter(name="FILE", negative="")
 OPTION = Parameter(negative="")
+OUT = Parameter(name=["--out", "-o"], negative="")
 SIGNED = Parameter(negative="", allow_leading_hyphen=True)
 
 app = App(

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from equipoise.cli.app import FILE, SIGNED, app
+from equipoise.cli.app import FILE, OUT, SIGNED, app
 from equipoise.cli.options import check_belonging, check_new, naming, quantity, whole
 from equipoise.cli.results import Kind, Wanted
 from equipoise.errors import UsageError
@@ -25,7 +25,6 @@ if TYPE_CHECKING:
 
 MOST_POINTS = 500
 MANY = Parameter(negative="", consume_multiple=False)
-OUT = Parameter(name=["--out", "-o"], negative="")
 Shape = Literal["any", "point", "disc", "ring", "sector"]
 
 

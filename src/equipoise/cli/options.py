@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Literal
 
@@ -19,6 +19,8 @@ from equipoise.errors import (
 )
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from equipoise.mechanism.model import Machine
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
@@ -70,14 +72,20 @@ def check_folder(option: str, path: str) -> None:
 
 def check_new(machine: Machine, path: str) -> None:
     """A new model file must have a place to go, and take no other's."""
-    from equipoise.io.files import printable
     from equipoise.io.models import files_of
+
+    check_new_files(path, lambda name: files_of(machine, name))
+
+
+def check_new_files(path: str, files: Callable[[str], Iterable[Path]]) -> None:
+    """New files, told by the name of the first, must have a place to go and take no other's."""
+    from equipoise.io.files import printable
 
     if not path:
         raise UsageError("--out: got an empty name; give the name of a file")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(f"{printable(path)}: there is no such folder; make it, or choose another")
-    for file in files_of(machine, path):
+    for file in files(path):
         if os.path.lexists(file):
             raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
 
@@ -91,6 +99,15 @@ def check_target(
     """
     from equipoise.io.models import tables_of
 
+    tables = tables_of(machine).values()
+    sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]
+    check_result_file(option, path, sources, others)
+
+
+def check_result_file(
+    option: str, path: str, sources: Sequence[str], others: Sequence[str] = ()
+) -> None:
+    """The same, told what it comes from."""
     if not path:
         raise UsageError(f"{option}: got an empty name; give the name of a file")
     if os.path.isdir(path):
@@ -99,8 +116,6 @@ def check_target(
         raise UsageError(f"{option}: {path}: there is no such folder; make it, or choose another")
     if os.path.abspath(path) in map(os.path.abspath, others):
         raise UsageError(f"{option}: {path} has another part in this command; give another name")
-    tables = tables_of(machine).values()
-    sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]
     if os.path.exists(path) and any(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources
     ):

@@ -14,6 +14,8 @@ from equipoise.tools.response import ToolResponse, checked_speeds, respond_tool
 
 Array = np.ndarray[Any, Any]
 
+QUIET = 0.8
+"""A dip is quiet where it lies below so much of the tops beside it, or of the ends of the range."""
 ZOOMS, ACROSS = 6, 33
 """How often a lowest place is looked at more closely, and at how many speeds each time."""
 
@@ -100,21 +102,19 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
     if not names:
         raise ModelError("shaft.stations", "nothing holds the tool; give a hand or a harness")
 
-    def ratios(speeds: Array) -> dict[str, Array]:
-        response = _unit(tool, speeds, source)
-        return {name: _whole(response, name) for name in names}
+    found = _unit(tool, speed, source)
 
-    def one(name: str, ratio: Array) -> Transmission:
+    def one(name: str) -> Transmission:
         def again(speeds: Array) -> Array:
-            return ratios(speeds)[name]
+            return _whole(_unit(tool, speeds, source), name)
 
+        ratio = _whole(found, name)
         (up, least_up), (across, least_across) = (
             lowest_places(speed, np.abs(row), plane, again) for plane, row in enumerate(ratio)
         )
         return Transmission(ratio, (up, across), (least_up, least_across))
 
-    stations = {name: one(name, ratio) for name, ratio in ratios(speed).items()}
-    return Transmissions(tool, source, speed, stations)
+    return Transmissions(tool, source, speed, {name: one(name) for name in names})
 
 
 def _unit(tool: Tool, speed: Array, source: str) -> ToolResponse:
@@ -141,7 +141,7 @@ def lowest_places(
 
     again : computes the curve (2, S') at other speeds.
     """
-    inner = np.flatnonzero((size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    inner = _dips(size)
     low, high = speed[inner - 1], speed[inner + 1]
     lowest = size[inner]
     for _ in range(ZOOMS if inner.size else 0):
@@ -152,3 +152,15 @@ def lowest_places(
         low = np.take_along_axis(across, best - 1, 1)[:, 0]
         high = np.take_along_axis(across, best + 1, 1)[:, 0]
     return (low + high) / 2, lowest
+
+
+def _dips(size: Array) -> Array:
+    """Where a curve (S,) is lowest between places that are clearly higher."""
+    inner = np.flatnonzero((size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    ends = np.concatenate([[0], inner, [len(size) - 1]])
+    kept = [
+        k
+        for before, k, after in zip(ends[:-2], inner, ends[2:], strict=True)
+        if size[k] < QUIET * min(np.max(size[before : k + 1]), np.max(size[k : after + 1]))
+    ]
+    return np.array(kept, dtype=int)

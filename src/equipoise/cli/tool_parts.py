@@ -1,0 +1,340 @@
+"""The answers of `tool`: each as plain values, as tables, as columns and as pictures."""
+
+from __future__ import annotations
+
+import os
+import re
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+from equipoise.cli.options import (
+    check_folder,
+    check_new_files,
+    check_result_file,
+    quantity,
+    whole,
+)
+from equipoise.cli.results import Columns, Kind, draw, write_csv
+from equipoise.errors import UsageError
+from equipoise.terminal.units import Units
+from equipoise.tools.model import Tool
+
+if TYPE_CHECKING:
+    import numpy as np
+    from matplotlib.figure import Figure
+
+    from equipoise.tools.design import ToolDesign
+    from equipoise.tools.modes import ToolModes
+
+VARY = re.compile(r"(?P<station>\S.*?)\s+(?P<key>\S+)\s*=\s*(?P<low>[^:]*\S)\s*:\s*(?P<high>.*\S)")
+RANGE = '"2000 rpm : 9000 rpm"'
+MOST_MODES, MOST_SPEEDS = 100, 5_000
+VALUES, BAND = 81, 201
+"""Values of a number that is varied; speeds over which sensitivities are told."""
+AROUND = (0.5, 1.25)
+"""Range about the working speed, as shares of it, where the file tells none."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """One answer; pictures are made when they are asked for."""
+
+    values: Callable[[], Mapping[str, Any]]
+    show: Callable[[], None]
+    drawings: Callable[[], Mapping[str, Figure]]
+    columns: Callable[[], Columns] | None = None
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A tool and what the options say of it, as they were given."""
+
+    tool: Tool
+    file: str
+    number: str
+    respond: str | None
+    speeds: str | None
+    duration: str | None
+    vary: str | None
+    at: str | None
+    units: Units
+
+    def names(self, chosen: Sequence[str]) -> Sequence[str]:
+        """Answers that are asked for; where none is, those that the file has what is needed for."""
+        if chosen:
+            return chosen
+        tool = self.tool
+        if tool.operation is None or not tool.stations:
+            return ["modes"]
+        shaken = ["exposure"] if tool.excitations and tool.grips else []
+        return ["modes", "respond", *shaken]
+
+    def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
+        """Results must have a place to go, before time is spent on them."""
+        from equipoise.io.tools import files_of_tool, parts_of
+
+        if plot is not None:
+            check_folder("--plot", plot)
+        if csv is not None:
+            folder = os.path.dirname(self.file)
+            beside = [os.path.join(folder, part.file) for part in parts_of(self.tool) if part.file]
+            check_result_file("--csv", csv, [self.file, *beside])
+        if out is not None:
+            check_new_files(out, lambda name: files_of_tool(self.tool, name))
+
+    @property
+    def count(self) -> int:
+        """Natural frequencies."""
+        return whole("--number", self.number, 1, MOST_MODES)
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest speed of the engine, rad/s."""
+        if self.respond is not None:
+            return _range("--respond", self.respond)
+        operation = self.tool.operation
+        if operation is None:
+            raise UsageError(f"no range of speeds is told; give --respond {RANGE}")
+        if operation.speeds:
+            return operation.speeds[0], operation.speeds[1]
+        return AROUND[0] * operation.speed, AROUND[1] * operation.speed
+
+    @cached_property
+    def range(self) -> np.ndarray[Any, Any]:
+        """Speeds of the engine, rad/s."""
+        from equipoise.tools.sweep import SPEEDS, speeds_between
+
+        many = SPEEDS if self.speeds is None else whole("--speeds", self.speeds, 2, MOST_SPEEDS)
+        return speeds_between(self.tool, *self.ends, many)
+
+    @property
+    def places(self) -> tuple[float, ...]:
+        """Further places of the shaft, m."""
+        if self.at is None:
+            return ()
+        return tuple(quantity("--at", part.strip(), "length") for part in self.at.split(","))
+
+    @cached_property
+    def modes(self) -> ToolModes:
+        """Free vibration, which several pictures show too."""
+        from equipoise.tools.modes import vibrate_tool
+
+        return vibrate_tool(self.tool, self.count)
+
+    @cached_property
+    def better(self) -> ToolDesign:
+        """The design."""
+        from equipoise.cli.progress import counted
+        from equipoise.tools.design import design_tool
+
+        with counted("search") as told:
+            return design_tool(self.tool, told)
+
+
+def _range(option: str, text: str) -> tuple[float, float]:
+    """Two speeds; a unit may stand after the second only."""
+    low, colon, high = (part.strip() for part in text.partition(":"))
+    wrong = f"{option}: got {text!r}; give a range of speeds, the slower one first: {RANGE}"
+    if not (low and colon and high):
+        raise UsageError(wrong)
+    if " " not in low and " " in high:
+        low = f"{low} {high.split(' ', 1)[1]}"
+    ends = quantity(option, low, "angular speed"), quantity(option, high, "angular speed")
+    if not 0 < ends[0] < ends[1]:
+        raise UsageError(wrong)
+    return ends
+
+
+def _pictures() -> ModuleType:
+    """The pictures of tools; Matplotlib is imported when the first is drawn, not before."""
+    from equipoise.plotting import tool
+
+    return tool
+
+
+def _of_modes(asked: Asked) -> Part:
+    found = asked.modes
+
+    def show() -> None:
+        from equipoise.terminal.tool import print_modes
+
+        print_modes(found, asked.units)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.tools.studies import determinant_chart
+
+        highest = 1.1 * float(found.planes[0].parameter[-1])
+        chart = determinant_chart(asked.tool, highest)
+        drawn: dict[str, Figure] = _pictures().mode_drawings(found)
+        drawn |= _pictures().determinant_drawings(chart, found)
+        return drawn
+
+    return Part(found.to_dict, show, drawings)
+
+
+def _of_speeds(asked: Asked) -> Part:
+    from equipoise.tools.sweep import sweep_tool
+
+    found = sweep_tool(asked.tool, asked.range, asked.places)
+
+    def show() -> None:
+        from equipoise.terminal.tool import print_sweep
+
+        print_sweep(found, asked.units)
+
+    def drawings() -> Mapping[str, Figure]:
+        drawn: dict[str, Figure] = {}
+        if found.transmissions is not None:
+            drawn |= _pictures().transmission_drawings(found.transmissions, asked.modes)
+        if found.response is not None:
+            drawn |= _pictures().response_drawings(found.response)
+        return drawn
+
+    return Part(found.to_dict, show, drawings, found.columns)
+
+
+def _of_hands(asked: Asked) -> Part:
+    from equipoise.tools.exposed import expose_tool
+
+    duration = None
+    if asked.duration is not None:
+        duration = quantity("--duration", asked.duration, "time")
+        if not 0 < duration <= 86_400:
+            raise UsageError(
+                f"--duration: got {asked.duration!r}; give more than 0 and at most 24 h a day"
+            )
+    found = expose_tool(asked.tool, asked.range, duration)
+
+    def show() -> None:
+        from equipoise.terminal.tool_hands import print_tool_exposure
+
+        print_tool_exposure(found, asked.units)
+
+    return Part(found.to_dict, show, lambda: _pictures().exposure_drawings(found))
+
+
+def _of_variation(asked: Asked) -> Part:
+    import numpy as np
+
+    from equipoise.tools.studies import check_key, vary_tool
+    from equipoise.tools.wishes import KEYS
+
+    text = asked.vary or ""
+    match = VARY.fullmatch(text.strip())
+    if match is None:
+        raise UsageError(
+            f"--vary: got {text!r}; give a station, one of its numbers and a range, such as "
+            '"harness position = 0 mm : 400 mm"'
+        )
+    station, key = match["station"], match["key"]
+    check_key(asked.tool.station(station), key)
+    low, high = (quantity("--vary", match[end], KEYS[key]) for end in ("low", "high"))
+    if not low < high:
+        raise UsageError(f"--vary: got {text!r}; give a range, the smaller value first")
+    found = vary_tool(asked.tool, station, key, np.linspace(low, high, VALUES), asked.count)
+
+    def show() -> None:
+        from equipoise.terminal.tool import print_variation
+
+        print_variation(found, asked.units)
+
+    return Part(
+        lambda: {"variation": found.to_dict()},
+        show,
+        lambda: _pictures().variation_drawings(found),
+    )
+
+
+def _of_sensitivities(asked: Asked) -> Part:
+    import numpy as np
+
+    from equipoise.tools.felt import tool_sensitivities
+
+    design = asked.tool.design
+    given = asked.respond is None and design is not None
+    ends = design.speeds if given and design is not None else asked.ends
+    found = tool_sensitivities(asked.tool, np.linspace(*ends, BAND))
+
+    def show() -> None:
+        from equipoise.terminal.tool_hands import print_sensitivities
+
+        print_sensitivities(found, asked.tool, ends, asked.units)
+
+    def values() -> Mapping[str, Any]:
+        told: dict[str, dict[str, float]] = {}
+        for (station, key), slope in found.items():
+            told.setdefault(station, {})[key] = slope
+        return {"sensitivities": told}
+
+    return Part(values, show, dict)
+
+
+def _of_design(asked: Asked) -> Part:
+    found = asked.better
+
+    def show() -> None:
+        from equipoise.terminal.tool_hands import print_design
+
+        print_design(found, asked.units)
+
+    return Part(
+        lambda: {"design": found.to_dict()}, show, lambda: _pictures().design_drawings(found)
+    )
+
+
+wanted_parts: dict[str, Callable[[Asked], Part]] = {
+    "modes": _of_modes,
+    "respond": _of_speeds,
+    "exposure": _of_hands,
+    "vary": _of_variation,
+    "sensitivities": _of_sensitivities,
+    "design": _of_design,
+}
+"""By what each answer is called."""
+
+
+def give(
+    asked: Asked,
+    parts: Sequence[Part],
+    json: bool,
+    csv: str | None,
+    plot: str | None,
+    kind: Kind,
+    out: str | None,
+) -> None:
+    """Write the files that are wanted, then print."""
+    if out is not None:
+        _save(asked, out)
+    if csv is not None:
+        for part in parts:
+            if part.columns is not None:
+                write_csv(part.columns(), csv)
+    if plot is not None:
+        drawn: dict[str, Figure] = {}
+        for part in parts:
+            drawn |= part.drawings()
+        draw(drawn, plot, kind)
+    if json:
+        from equipoise.io.output import json_text
+
+        values: dict[str, Any] = {"title": asked.tool.title}
+        for part in parts:
+            values |= part.values()
+        print(json_text(values))
+        return
+    from equipoise.terminal.tool import print_tool
+
+    print_tool(asked.tool, asked.units)
+    for part in parts:
+        part.show()
+
+
+def _save(asked: Asked, out: str) -> None:
+    from equipoise.io.tools import save_tool
+
+    save_tool(asked.better.better, out)
+    print(f"wrote {out}; next: equipoise tool {out}", file=sys.stderr)

@@ -1,0 +1,303 @@
+"""`equipoise tool` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from surface.running import TOOLS, equipoise, example_text, process, refused, succeeded
+
+RPM = np.pi / 30
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def read(*words: str) -> dict[str, Any]:
+    """What `equipoise tool ... --json` prints, and that it prints only that."""
+    result = equipoise("tool", *words, "--json")
+    content: dict[str, Any] = json.loads(succeeded(result))
+    assert result.out.count("\n") == 1
+    return content
+
+
+def written(text: str, old: str = "", new: str = "") -> str:
+    """Name of a tool's file here, with one piece of text replaced."""
+    assert old in text
+    Path("tool.toml").write_text(text.replace(old, new, 1), encoding="utf-8")
+    return "tool.toml"
+
+
+# -- what is told ----------------------------------------------------------------------------------
+
+
+def test_the_paper_as_json() -> None:
+    """Keys and figures of Nagamine and Irie's machine."""
+    found = read("nagamine-irie")
+    assert found["title"] == "Brush cutter of Nagamine and Irie"
+    lambdas = (1.238, 2.413, 4.418, 6.290, 9.400)
+    assert found["eigenvalues"][:5] == pytest.approx(lambdas, abs=5e-4)
+    cycles = (127, 481, 1613, 3268, 7300)
+    assert [60 * one for one in found["natural_frequencies"][:5]] == pytest.approx(cycles, abs=0.5)
+    speeds = found["speed"]
+    assert speeds == sorted(speeds)
+    for station in ("handle", "harness"):
+        part = found["transmission"][station]
+        assert len(part["ratio"]) == len(part["phase"]) == len(speeds)
+    quiet = np.array(found["transmission"]["handle"]["quiet_speeds"]) / RPM
+    assert np.min(np.abs(quiet - 6134)) < 1
+    assert len(found["a_hv"]) == len(speeds)
+    assert found["a8"] is None
+
+
+def test_json_is_what_python_has() -> None:
+    tool = eq.load_tool("brush-cutter")
+    found = read("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
+    speeds = np.array(found["speed"])
+    exposure = eq.expose_tool(tool, speeds)
+    assert found["a_hv"] == pytest.approx(exposure.a_hv.tolist())
+    assert found["a8"] == pytest.approx(exposure.a8)
+    swept = eq.sweep_tool(tool, speeds)
+    handle = found["stations"]["front-handle"]
+    forces = swept.force("front-handle")["hand"]
+    assert handle["forces"]["hand"] == pytest.approx(forces.tolist())
+    assert found["equivalents"].keys() == {"rear-grip", "front-handle"}
+
+
+@pytest.mark.parametrize("name", TOOLS)
+def test_every_bundled_tool_is_told(name: str) -> None:
+    shown = succeeded(equipoise("tool", name))
+    for words in ("Natural frequencies", "Force at", "Largest forces", "a_hv"):
+        assert words in shown
+    assert "nan" not in shown
+
+
+def test_two_planes_are_told_apart() -> None:
+    shown = succeeded(equipoise("tool", "brush-cutter", "--modes", "--number", "3"))
+    assert "without damping, vertical plane" in shown
+    assert "with damping, lateral plane" in shown
+    assert shown.count("damping ratio") == 2
+
+
+def test_other_places_and_units() -> None:
+    words = ("tool", "nagamine-irie", "--respond", "6000 rpm:8000 rpm", "--speeds", "20")
+    shown = succeeded(equipoise(*words, "--at", "300 mm, 1.2 m", "--units", "um, rad/s"))
+    header = re.search(r"^ +at um +rad/s +um.*$", shown, re.MULTILINE)
+    assert header
+    places = re.findall(r"^ +(300000|1\.200e\+06) ", shown, re.MULTILINE)
+    assert places == ["300000", "1.200e+06"]
+    found = read(*words[1:], "--at", "300 mm")
+    assert found["further"][0]["position"] == 0.3
+    assert len(found["further"][0]["moment"]) == len(found["speed"])
+
+
+def test_unrestrained_shaft_names_its_rigid_modes() -> None:
+    text = 'schema = 1\ntitle = "Rod"\n[shaft]\nlength = "1 m"\nmass = "1 kg"\n'
+    file = written(text + 'bending_stiffness = "1 N m^2"\n')
+    shown = succeeded(equipoise("tool", file, "--number", "5"))
+    assert "rigid: moves to and fro" in shown
+    assert "rigid: turns about its left end" in shown
+    assert read(file, "--number", "5")["eigenvalues"] == pytest.approx(
+        [0, 0, 4.730040745, 7.853204624, 10.99560784], abs=1e-8
+    )
+    text = example_text("nagamine-irie").replace("harness = {", "# harness = {", 1)
+    assert "rigid: turns about 0.4107 m" in succeeded(equipoise("tool", written(text), "--modes"))
+
+
+def test_variation() -> None:
+    words = ("--vary", "harness position = 0 mm : 154.4 mm", "--number", "5")
+    found = read("nagamine-irie", *words)["variation"]
+    assert len(found["values"]) == len(found["eigenvalues"])
+    first, last = found["eigenvalues"][0], found["eigenvalues"][-1]
+    assert first == pytest.approx((1.650, 3.105, 4.326, 6.169, 9.359), abs=5e-4)
+    assert last == pytest.approx((1.497, 2.631, 4.364, 6.221, 9.387), abs=5e-4)
+    shown = succeeded(equipoise("tool", "nagamine-irie", *words))
+    assert "Natural frequencies against harness position; N in 1/min" in shown
+
+
+def test_sensitivities_are_those_of_python() -> None:
+    found = read("pole-saw", "--sensitivities", "--respond", "5000 rpm : 6000 rpm")
+    speeds = np.linspace(5000 * RPM, 6000 * RPM, 201)
+    slopes = eq.tool_sensitivities(eq.load_tool("pole-saw"), speeds)
+    told = {(s, k): v for s, part in found["sensitivities"].items() for k, v in part.items()}
+    assert told.keys() == slopes.keys()
+    assert list(told.values()) == pytest.approx(list(slopes.values()))
+    assert "mm/s^2" in succeeded(equipoise("tool", "pole-saw", "--sensitivities"))
+
+
+# -- a better tool ---------------------------------------------------------------------------------
+
+SMALL = """
+[design]
+speeds = ["6500 rpm", "8000 rpm"]
+
+[[design.variables]]
+station = "harness"
+key = "position"
+from = "200 mm"
+to = "300 mm"
+"""
+
+
+def test_design_is_written_and_read_back(folder: Path) -> None:
+    text = example_text("nagamine-irie")
+    hand = 'hand = { stiffness = "51 kgf/cm", hands = 2 }'
+    damped = hand.replace("stiffness", 'damping = "60 N s/m", stiffness')
+    file = written(text + SMALL, hand, damped)
+    result = equipoise("tool", file, "--design", "-o", "better.toml", "--json")
+    found = json.loads(succeeded(result))["design"]
+    assert result.err == "wrote better.toml; next: equipoise tool better.toml\n"
+    assert {path.name for path in folder.iterdir()} == {"tool.toml", "better.toml"}
+    place = found["variables"]["harness position"]
+    better = eq.load_tool("better.toml")
+    assert better.station("harness").position == pytest.approx(place["after"], rel=1e-12)
+    measure = found["figures"]["a_hv of the worst hand, RMS over the band"]
+    assert measure["after"] < measure["before"]
+    speeds = np.array(found["speed"])
+    a_hv = eq.expose_tool(better, speeds).a_hv
+    assert a_hv.tolist() == pytest.approx(found["a_hv_after"])
+    weights = np.ones(len(speeds))
+    weights[[0, -1]] = 0.5
+    assert np.sqrt(np.average(a_hv**2, weights=weights)) == pytest.approx(measure["after"])
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+
+def test_pictures_and_columns(folder: Path) -> None:
+    words = ("tool", "pole-saw", "--modes", "--respond", "4000:6000 rpm", "--exposure")
+    result = equipoise(*words, "--plot", "pictures", "--format", "png", "--csv", "sweep.csv")
+    succeeded(result)
+    names = {path.stem for path in (folder / "pictures").iterdir()}
+    assert {"modes", "determinant", "transmission", "acceleration", "exposure"} <= names
+    lines = Path("sweep.csv").read_text(encoding="utf-8").splitlines()
+    header = lines[0].split(",")
+    assert header[0] == "speed [rad/s]"
+    assert any(name.endswith(".force_hand [N]") for name in header)
+    rows = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    assert rows.shape[1] == len(header)
+    assert np.all(np.isfinite(rows))
+
+
+def test_start_is_quick_and_alone() -> None:
+    """Neither Matplotlib nor SciPy is there for figures alone."""
+    done = process("tool", "nagamine-irie", "--modes")
+    assert done.status == 0
+    code = (
+        "import sys; from equipoise.cli import run; run(['tool', 'nagamine-irie']); "
+        "print(*[m for m in ('matplotlib', 'scipy', 'rich') if m in sys.modules], file=sys.stderr)"
+    )
+    import subprocess
+    import sys
+
+    alone = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert alone.stderr == "\n"
+
+
+# -- what cannot be --------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--respond", "5 rpm"], "--respond: got '5 rpm'; give a range of speeds"),
+        (["--respond", "9000 rpm : 2000 rpm"], "the slower one first"),
+        (["--respond", "0 rpm : 2000 rpm"], "the slower one first"),
+        (["--respond", "2000 : 9000"], "the unit is missing"),
+        (["--respond", "20 Hz : 30 Hz"], "--respond: got '20 Hz'"),
+        (["--number", "0"], "--number: got '0'; give a whole number from 1 to 100"),
+        (["--number", "many"], "--number: got 'many'"),
+        (["--speeds", "1"], "--speeds: got '1'; give a whole number from 2 to 5000"),
+        (["--at", "2 m"], "got a place off the shaft; give places from 0 to 1.544 m"),
+        (["--at", "2"], "--at: got '2'"),
+        (["--duration", "25 h"], "--duration: got '25 h'; give more than 0 and at most 24 h a day"),
+        (["--duration", "0 h"], "--duration: got '0 h'"),
+        (["--vary", "harness"], "--vary: got 'harness'; give a station, one of its numbers and"),
+        (["--vary", "belt position = 0 m : 1 m"], "no station is called 'belt'"),
+        (["--vary", "harness length = 0 m : 1 m"], "no number of 'harness' is called 'length'"),
+        (["--vary", "engine harness.stiffness = 1 N/m : 2 N/m"], "'engine' has no harness"),
+        (["--vary", "harness position = 0 m : 2 m"], "the shaft"),
+        (["--vary", "harness position = 1 m : 0 m"], "the smaller value first"),
+        (["--vary", "harness position = 0 kg : 1 kg"], "--vary: got '0 kg'"),
+        (["--design"], "design: missing; add the table [design]"),
+        (["--out", "new.toml"], "--out belongs to --design; give both"),
+        (["--format", "png"], "--format belongs to --plot; give both"),
+        (["--csv", ""], "--csv: got an empty name"),
+        (["--csv", "no/where.csv"], "there is no such folder"),
+        (["--plot", ""], "--plot: got ''"),
+        (["--units", "furlong"], "--units: got 'furlong'"),
+    ],
+)
+def test_bad_options(folder: Path, words: list[str], said: str) -> None:
+    assert said in refused(equipoise("tool", "nagamine-irie", *words))
+    assert not list(folder.iterdir())
+
+
+def test_the_other_kind_of_file() -> None:
+    assert "use `equipoise analyze FILE`" in refused(equipoise("tool", "yamashita-1"))
+    assert "`equipoise tool" in refused(equipoise("analyze", "pole-saw"))
+    assert "nearly.toml: there is no such file" in refused(equipoise("tool", "nearly.toml"))
+
+
+def test_station_off_the_shaft() -> None:
+    file = written(example_text("nagamine-irie"), 'position = "1.544 m"', 'position = "1.6 m"')
+    said = refused(equipoise("tool", file))
+    assert said.startswith("tool.toml: shaft.stations[4].position: got 1.6 m")
+    assert "1.544 m" in said
+
+
+def test_table_of_a_hand_that_ends_too_soon() -> None:
+    Path("hand.csv").write_text(
+        "frequency [Hz],resistance [N s/m],reactance [N s/m]\n10,60,-130\n100,85,20\n"
+    )
+    old = 'hand = { stiffness = "51 kgf/cm", hands = 2 }'
+    file = written(example_text("nagamine-irie"), old, 'hand = { impedance = "hand.csv" }')
+    said = refused(equipoise("tool", file, "--respond", "1000 rpm : 9000 rpm"))
+    assert (
+        "shaft.stations[3].hand.impedance: the table hand.csv reaches from 10 Hz to 100 Hz" in said
+    )
+    assert "150 Hz" in said
+    shown = succeeded(equipoise("tool", file, "--respond", "1000 rpm : 6000 rpm"))
+    assert "handle" in shown
+    assert "known by its impedance" in succeeded(equipoise("tool", file, "--modes"))
+
+
+def test_what_is_missing_is_told() -> None:
+    text = example_text("nagamine-irie")
+    start = text.index("[[excitations]]")
+    silent = text[:start] + text[text.index("[operation]") :]
+    assert "excitations: nothing shakes the tool" in refused(
+        equipoise("tool", written(silent), "--exposure")
+    )
+    assert "Force at handle" in succeeded(equipoise("tool", written(silent)))
+    unheld = text.replace('hand = { stiffness = "51 kgf/cm", hands = 2 }', "", 1)
+    assert "no hand holds the tool" in refused(equipoise("tool", written(unheld), "--exposure"))
+    lazy = text[: text.index("[operation]")]
+    assert "give --respond" in refused(equipoise("tool", written(lazy), "--exposure"))
+    assert "Natural frequencies" in succeeded(equipoise("tool", written(lazy)))
+
+
+def test_new_file_takes_no_others_place(folder: Path) -> None:
+    Path("there.toml").write_text("mine")
+    said = refused(equipoise("tool", "brush-cutter", "--design", "--out", "there.toml"))
+    assert "is there already" in said
+    assert Path("there.toml").read_text() == "mine"
+
+
+def test_no_design_within_the_limits() -> None:
+    limit = (
+        '\n[[design.limits]]\noutput = "acceleration"\nstation = "handle"\nat_most = "1 mm/s^2"\n'
+    )
+    file = written(example_text("nagamine-irie") + SMALL + limit)
+    said = refused(equipoise("tool", file, "--design"))
+    assert "no design within the limits was found" in said
