@@ -22,6 +22,8 @@ TEXT_ON_TEXT, ON_POINT, FARTHER, TURNED, COVERED = 400.0, 1000.0, 8.0, 2.0, 3.0
 wish, of covering a piece of a line."""
 PIECE, CLEAR, EDGE = 2.0, 1.5, 3.0
 """Points: length of the pieces of lines, room around texts, and their distance from the frame."""
+ROUNDS = 5000
+"""In which texts side by side push each other; as many as a paper full of them takes."""
 
 
 class Labels:
@@ -148,13 +150,15 @@ class Labels:
         )
 
 
-def spread(middles: Sequence[float], widths: Sequence[float], low: float, high: float) -> Array:
+def spread(
+    middles: Sequence[float] | Array, widths: Sequence[float] | Array, low: float, high: float
+) -> Array:
     """Middles of texts side by side, moved as little as keeps them apart and between two ends."""
     order = np.argsort(middles, kind="stable")
     half = np.array(widths)[order] / 2
     gaps = half[1:] + half[:-1]
     placed = np.array(middles, dtype=float)[order]
-    for _ in range(200):
+    for _ in range(ROUNDS):
         lack = gaps - np.diff(placed)
         if np.all(lack <= 1e-9):
             break

@@ -33,8 +33,8 @@ def response_drawings(response: Response) -> dict[str, Figure]:
     with styled():
         for name in response.gauges:
             drawn[free_name(f"gauge-{name}", drawn)] = gauge_figure(response, name)
-        drawn |= _numbered("spectrum", spectrum_figures(response))
-        drawn |= _numbered("mounts", mounts_figures(response))
+        drawn |= numbered("spectrum", spectrum_figures(response))
+        drawn |= numbered("mounts", mounts_figures(response))
         drawn["drive"] = drive_figure(response)
     return drawn
 
@@ -69,11 +69,11 @@ def transient_drawings(transient: Transient) -> dict[str, Figure]:
     drawn: dict[str, Figure] = {}
     with styled():
         for name, figures in transient_figures(transient).items():
-            drawn |= _numbered(name, figures)
+            drawn |= numbered(name, figures)
     return drawn
 
 
-def _numbered(name: str, figures: Iterable[Figure]) -> dict[str, Figure]:
+def numbered(name: str, figures: Iterable[Figure]) -> dict[str, Figure]:
     """One picture by a name, and those in which it goes on."""
     return {
         name if number == 1 else f"{name}-{number}": figure

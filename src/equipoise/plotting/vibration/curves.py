@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -42,6 +42,15 @@ ENTRY, PER_ROW, LINE = 2.02, 3, 0.19
 """Inches that a name in a legend takes; how many stand in a row; height of a row."""
 
 
+class Range(Protocol):
+    """Speeds (S,), rad/s, and whether what was found at each is stable."""
+
+    @property
+    def speed(self) -> Array: ...
+    @property
+    def stable(self) -> Array: ...
+
+
 @dataclass(frozen=True, eq=False)
 class Curve:
     """Values (S,) against speed."""
@@ -70,7 +79,7 @@ def ordered(curves: Mapping[str, Array], factor: float = 1.0) -> list[Curve]:
     return [c for c in found if c in loudest] + [c for c in found if c not in loudest]
 
 
-def speed_axis(axes: Axes, sweep: Sweep) -> None:
+def speed_axis(axes: Axes, sweep: Range) -> None:
     """The x axis: the crank's speed in rpm, whatever its sense."""
     ends = np.abs(sweep.speed[[0, -1]]) * RPM
     axes.set_xlim(float(ends[0]), float(ends[1]))
@@ -161,7 +170,7 @@ def fraction(order: float) -> str:
     return str(Fraction(order).limit_denominator(1000))
 
 
-def draw_curves(axes: Axes, sweep: Sweep, curves: Sequence[Curve]) -> list[Line2D]:
+def draw_curves(axes: Axes, sweep: Range, curves: Sequence[Curve]) -> list[Line2D]:
     """Curves against speed, dashed where they are not stable; what stands in the legend."""
     speed = np.abs(sweep.speed) * RPM
     handles = []
@@ -170,9 +179,10 @@ def draw_curves(axes: Axes, sweep: Sweep, curves: Sequence[Curve]) -> list[Line2
         color, marker = KINDS[number] if named else (FAINT, "")
         look: Any = {"color": color, "linewidth": 1.5 if named else 0.7}
         look["zorder"] = 3.9 - 0.1 * number if named else 2.5
-        _draw_parts(axes, speed, np.where(curve.values > 0, curve.values, np.nan), sweep, look)
+        heard = np.where(curve.values > 0, curve.values, np.nan)
+        _draw_parts(axes, speed, heard, sweep, look)
         if named:
-            _markers(axes, speed, curve.values, marker, number, look)
+            draw_markers(axes, speed, heard, marker, number, look)
             look |= {"marker": marker, "markersize": 4.5, "markerfacecolor": "white"}
             handles.append(Line2D([], [], label=short(curve.name, 40), **look))
     if len(curves) > len(KINDS):
@@ -181,7 +191,7 @@ def draw_curves(axes: Axes, sweep: Sweep, curves: Sequence[Curve]) -> list[Line2
     return handles
 
 
-def _draw_parts(axes: Axes, x: Array, y: Array, sweep: Sweep, look: dict[str, Any]) -> None:
+def _draw_parts(axes: Axes, x: Array, y: Array, sweep: Range, look: dict[str, Any]) -> None:
     """A curve, its parts that are not stable dashed, and points that stand alone."""
     axes.plot(x, np.where(sweep.stable, y, np.nan), solid_capstyle="butt", **look)
     near = np.convolve(~sweep.stable, np.ones(3), "same") > 0
@@ -194,13 +204,13 @@ def _draw_parts(axes: Axes, x: Array, y: Array, sweep: Sweep, look: dict[str, An
         axes.plot(x[alone], y[alone], ".", markersize=4, **look)
 
 
-def _markers(
+def draw_markers(
     axes: Axes, x: Array, y: Array, marker: str, number: int, look: dict[str, Any]
 ) -> None:
     """A few markers on a curve, beside those of the others, so that grey tells it apart."""
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / len(KINDS)) / MARKERS
     nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
-    at = [k for k in nearest.tolist() if np.isfinite(y[k]) and y[k] > 0]
+    at = [k for k in nearest.tolist() if np.isfinite(y[k])]
     own = {**look, "linewidth": 0, "markersize": 4.5, "markerfacecolor": "white"}
     axes.plot(x[at], y[at], marker, **own)
 

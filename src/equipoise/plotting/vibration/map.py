@@ -113,7 +113,7 @@ def _draw_orders(axes: Axes, sweep: Sweep) -> list[tuple[float, str, str]]:
             right.append((slope * high, f"order {fraction(order)}", INK))
         elif slope * low < top:
             above.append((top / slope, fraction(order)))
-    _names_above(axes, above)
+    names_above(axes, above, "order")
     return right
 
 
@@ -126,8 +126,8 @@ def _orders(sweep: Sweep) -> list[float]:
     return sorted(sorted(loudness, key=lambda order: (-loudness[order], order))[:MOST_ORDERS])
 
 
-def _names_above(axes: Axes, named: list[tuple[float, str]]) -> None:
-    """Orders where their lines leave through the top."""
+def names_above(axes: Axes, named: list[tuple[float, str]], word: str) -> None:
+    """What lines are where they leave through the top, behind a word for all of them."""
     if not named:
         return
     figure: Any = axes.get_figure(root=True)
@@ -150,7 +150,7 @@ def _names_above(axes: Axes, named: list[tuple[float, str]]) -> None:
             transform=axes.get_xaxis_transform(),
         )
     look |= {"ha": "right", "color": LINES}
-    axes.text(low - 0.06 * figure.dpi / dot, foot, "order", **look)
+    axes.text(low - 0.06 * figure.dpi / dot, foot, word, **look)
 
 
 def _names_at_right(axes: Axes, named: list[tuple[float, str, str]]) -> None:
