@@ -2,71 +2,104 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from math import atan
 from typing import Any
 
 import numpy as np
 
 from equipoise.tools.chain import carry, log_determinant
-from equipoise.tools.duals import Dual, value_of
+from equipoise.tools.duals import Dual
 from equipoise.tools.layout import Layout
 
 Array = np.ndarray[Any, Any]
+Curve = Callable[[Array], Array]
+"""Complex frequencies, 1/s, at places from 0 to 1."""
 
 ROUNDS, CLOSE, SAME = 60, 1e-13, 1e-7
 """Steps of the iteration at most; the relative step at which it has arrived, and the distance at
 which a zero is one that is known."""
 NEAR, APART = 0.01, 1e-4
 """Damping ratio at which the iteration begins, and how much further up each that follows."""
-POINTS, TURN, REFINED = 256, 0.8, 14
-"""Points of the contour at first; turn (rad) from one to the next that is small enough; how often
+POINTS, TURN, REFINED = 256, 0.8, 24
+"""Points of a contour at first; turn (rad) from one to the next that is small enough; how often
 the distance between them is halved where it is not."""
-ABOVE = 1e-6
-"""Height of the contour's straight part over the real axis, over its radius."""
-TRIES, HALVINGS = 6, 52
+REAL = 1e-7
+"""Share of its size that the imaginary part of an eigenvalue must have for it to swing."""
+WEDGE, LOSSES = 0.1, 1.5
+"""With hysteresis eigenvalues nearer than this angle (rad), or than so many times that by which
+hysteresis turns a stiffness, to the negative real axis are not looked for."""
+TRIES, FINER, HALVINGS = 6, 3, 52
 
 
 def characteristic(layout: Layout, s: Array) -> tuple[Array, Array]:
     """Logarithm of the characteristic function of both planes at s (2, F), and its derivative."""
     variable: Any = Dual(s, np.ones((1, *s.shape)))
-    logarithm, slope = log_determinant(carry(layout.chain(variable, "free")))
-    for below in layout.absorbers(variable, "free"):  # it has a pole there, and this a zero
-        logarithm = logarithm + np.log(below.value + 0j)
-        slope = slope + below.slopes[0] / below.value
+    with np.errstate(all="ignore"):  # on a zero it has no logarithm
+        logarithm, slope = log_determinant(carry(layout.chain(variable, "free")))
+        for below in layout.absorbers(variable, "free"):  # it has a pole there, and this a zero
+            logarithm = logarithm + np.log(below.value + 0j)
+            slope = slope + below.slopes[0] / below.value
     return logarithm, slope
 
 
-def eigenvalues(layout: Layout, natural: Array, radius: Array) -> tuple[list[Array], list[int]]:
-    """Eigenvalues of each plane above the real axis, |s| less than its radius, by |s|.
+def eigenvalues(
+    layout: Layout, natural: Array, radii: tuple[float, Array]
+) -> tuple[list[Array], list[int]]:
+    """Eigenvalues of each plane, by size: those that swing, above the real axis, and real ones.
 
-    layout : fine enough for twice the radius.
+    layout : fine enough for twice the largest radius.
     natural : natural frequencies (2, K) without damping, rad/s, from which the search begins.
-    radius : of both planes (2,), rad/s, between two of the eigenvalues' sizes as well as can be.
+    radii : smallest size of an eigenvalue that is looked for, rad/s, and the largest of both
+        planes (2,), between two of the eigenvalues' sizes as well as can be.
 
     Returns
     -------
     lists of both planes : eigenvalues (1/s); how many there are besides that were not found, by the
-        turns of the characteristic function around the half circle.
+        turns of the characteristic function around all that were looked for.
+
+    A loss factor is a model for motions that swing; with it those that do not are not looked for.
     """
-    found = [np.empty(0, complex), np.empty(0, complex)]
-    lacking = [1, 1]
+    low, high = radii
+    total = [_number(layout, plane, low, float(high[plane])) for plane in range(2)]
+    swinging, real = [np.empty(0, complex)] * 2, [np.empty(0)] * 2
     starts = natural * (1j - NEAR) * (1 + APART * np.arange(natural.shape[1]))
     random = np.random.default_rng(0)
-    for _ in range(TRIES):
-        roots = _roots(layout, starts, found)
+    for attempt in range(TRIES):
+        roots = _roots(layout, starts, swinging)
         for plane in range(2):
-            found[plane] = _within(_merged(found[plane], roots[plane]), radius[plane])
-            lacking[plane] = _turns(layout, plane, float(radius[plane])) - len(found[plane])
+            kept = _within(layout, _merged(swinging[plane], roots[plane]), low, high[plane])
+            swinging[plane] = kept
+            real[plane] = overdamped(layout, plane, (low, float(high[plane])), FINER**attempt)
+        lacking = [total[p] - len(real[p]) - _weight(layout) * len(swinging[p]) for p in range(2)]
         if max(lacking) <= 0:
             break
-        size = radius[:, None] * np.sqrt(random.random((2, 2 * max(lacking))))
+        size = high[:, None] * np.sqrt(random.random((2, 2 * max(lacking))))
         starts = size * np.exp(1j * np.pi * (0.5 + 0.5 * random.random(size.shape)))
-    return found, lacking
+    both = [
+        np.array(sorted([*one, *other], key=abs), complex)
+        for one, other in zip(swinging, real, strict=True)
+    ]
+    return both, lacking
 
 
-def _within(roots: Array, radius: float) -> Array:
-    """Those inside the contour."""
-    inside: Array = roots[(np.abs(roots) < radius) & (roots.imag > ABOVE * radius)]
-    return inside
+def _weight(layout: Layout) -> int:
+    """Zeros of the characteristic function that are counted for each motion that swings."""
+    return 1 if layout.tool.shaft.loss_factor else 2
+
+
+def _within(layout: Layout, roots: Array, low: float, high: float) -> Array:
+    """Those that are looked for."""
+    size = np.abs(roots)
+    inside = (size > low) & (size < high) & (roots.imag > REAL * size)
+    if layout.tool.shaft.loss_factor:
+        inside &= np.angle(roots) < np.pi - _wedge(layout)
+    return np.asarray(roots[inside])
+
+
+def _wedge(layout: Layout) -> float:
+    """Angle to the negative real axis within which nothing is looked for, rad."""
+    return max(WEDGE, LOSSES * atan(layout.tool.shaft.loss_factor))
 
 
 def _roots(layout: Layout, starts: Array, known: list[Array]) -> Array:
@@ -84,7 +117,7 @@ def _roots(layout: Layout, starts: Array, known: list[Array]) -> Array:
                 break
         _, slope = characteristic(layout, s)
         arrived = np.nan_to_num(np.abs(1 / slope), nan=0.0) < np.sqrt(CLOSE) * np.abs(s)
-    return np.where(arrived & (s.imag > ABOVE * np.abs(s)), s, np.nan)
+    return np.where(arrived, s, np.nan)
 
 
 def _push(s: Array, known: Array) -> Array:
@@ -105,46 +138,69 @@ def _merged(found: Array, roots: Array) -> Array:
     return np.array(sorted([*found, *new], key=abs), complex)
 
 
-def _turns(layout: Layout, plane: int, radius: float) -> int:
-    """Zeros in the half circle above the real axis: how often the function turns around it."""
+def _number(layout: Layout, plane: int, low: float, high: float) -> int:
+    """Zeros with a size between two, rad/s, by the turns of the characteristic function.
+
+    Without hysteresis it has conjugate values below the real axis, so that half a turn over each
+    arc is a zero in its whole circle.  With it the contour goes around the sector that is looked
+    at.
+    """
+    if not layout.tool.shaft.loss_factor:
+        whole, inner = (_turned(layout, plane, _arc(size, np.pi)) for size in (high, low))
+        return round((whole - inner) / np.pi)
+    end = np.pi - _wedge(layout)
+    ends = low * np.exp(1j * end), high * np.exp(1j * end)
+    parts = [
+        _turned(layout, plane, _arc(high, end)),
+        -_turned(layout, plane, _ray(*ends)),
+        -_turned(layout, plane, _arc(low, end)),
+        _turned(layout, plane, _ray(low, high)),
+    ]
+    return round(sum(parts) / (2 * np.pi))
+
+
+def _arc(size: float, angle: float) -> Curve:
+    return lambda place: size * np.exp(1j * angle * place)
+
+
+def _ray(start: complex, stop: complex) -> Curve:
+    return lambda place: start * (stop / start) ** place
+
+
+def _turned(layout: Layout, plane: int, curve: Curve) -> float:
+    """Angle (rad) by which the characteristic function turns along a curve."""
+
+    def phase(place: Array) -> Array:
+        s = curve(place)
+        logarithm, _ = characteristic(layout, np.array([s, s]))
+        return np.asarray(np.broadcast_to(logarithm, (2, len(s)))[plane].imag)
+
     place = np.linspace(0.0, 1.0, POINTS + 1)
-    phase = _phase(layout, plane, radius, place)
+    found = phase(place)
     for _ in range(REFINED):
-        wide = np.flatnonzero(np.abs(_principal(np.diff(phase))) > TURN)
+        wide = np.flatnonzero(np.abs(_principal(np.diff(found))) > TURN)
         if not wide.size:
             break
         middle = (place[wide] + place[wide + 1]) / 2
-        phase = np.insert(phase, wide + 1, _phase(layout, plane, radius, middle))
+        found = np.insert(found, wide + 1, phase(middle))
         place = np.insert(place, wide + 1, middle)
-    return round(float(np.sum(_principal(np.diff(phase)))) / (2 * np.pi))
-
-
-def _phase(layout: Layout, plane: int, radius: float, place: Array) -> Array:
-    """Phase of the characteristic function at places of the contour, 0 to 1: line, then arc."""
-    line = place < 0.5
-    along = radius * (4 * place - 1)
-    arc = radius * np.exp(2j * np.pi * (place - 0.5))
-    s = np.where(line, along, arc) + 1j * ABOVE * radius
-    logarithm, _ = characteristic(layout, np.array([s, s]))
-    return np.asarray(np.broadcast_to(value_of(logarithm), (2, len(s)))[plane].imag)
+    return float(np.sum(_principal(np.diff(found))))
 
 
 def _principal(angle: Array) -> Array:
     return (angle + np.pi) % (2 * np.pi) - np.pi
 
 
-def overdamped(layout: Layout, lowest: float, radius: Array) -> list[Array]:
-    """Eigenvalues of each plane that do not swing, from -radius (2,) to -lowest, 1/s, by size.
+def overdamped(layout: Layout, plane: int, radii: tuple[float, float], finer: int = 1) -> Array:
+    """Eigenvalues of a plane that do not swing, 1/s, of a size between two, rad/s.
 
     Without hysteresis the characteristic function is real there; they are where its sign changes.
+
+    finer : how many times as many places as usual are looked at, as two may lie close together.
     """
     if layout.tool.shaft.loss_factor:
-        return [np.empty(0), np.empty(0)]
-    return [_sign_changes(layout, plane, lowest, float(radius[plane])) for plane in range(2)]
-
-
-def _sign_changes(layout: Layout, plane: int, lowest: float, radius: float) -> Array:
-    sizes = np.geomspace(lowest, radius, 4 * POINTS)
+        return np.empty(0)
+    sizes = np.geomspace(*radii, 4 * POINTS * finer)
     up = _positive(layout, plane, sizes)
     where = np.flatnonzero(up[1:] != up[:-1])
     low, high = sizes[where], sizes[where + 1]

@@ -102,15 +102,17 @@ def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
     if design is None:
         raise ModelError("design", NO_DESIGN)
     count, starts = SPEEDS, None
+    first: tuple[int, int] | None = None
     for _ in range(DOUBLINGS + 1):
         search = Search(tool, design, np.linspace(*design.speeds, count))
         best, arrived, searches = search.best(told or _silent, starts)
+        first = first or (arrived, searches)
         fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
         coarse, exact = search.measure(best), fine.measure(best)
         if abs(exact - coarse) <= STILL * exact:
             break
         count, starts = 2 * count - 1, best[None]
-    return _told(fine, best, arrived, searches)
+    return _told(fine, best, *(first or (0, 0)))
 
 
 def _silent(done: int, total: int) -> None:

@@ -61,16 +61,21 @@ class Band:
     def felt(
         self,
         numbers: Sequence[Number],
-        values: Array,
+        values: Array | None = None,
         held: Sequence[str] = (),
         slopes: bool = True,
     ) -> Felt:
         """What the hands get with some numbers (P,) of the tool changed.
 
+        values : of the numbers, both of a pair alike; the tool's own, each of a pair, if None.
         held : stations at which the force on the body is asked for too.
         slopes : whether the derivatives are asked for.
         """
-        changed = dict(zip(numbers, variables(values, 2, slopes), strict=True))
+        own = values is None
+        start = values_of(self.tool, numbers) if values is None else values
+        changed = dict(zip(numbers, variables(start, 2, slopes), strict=True))
+        for (station, key), variable in changed.items() if own else ():
+            variable.value = self._own(station, key)
         layout = Layout(self.tool, self.highest, changed)
         field = shaken(layout, self.shakes, self.orders, self.speed)
         motion = {
@@ -84,6 +89,13 @@ class Band:
             },
             {name: self._force(layout, field.s, name, motion[name]) for name in held},
         )
+
+    def _own(self, station: str, key: str) -> Array:
+        """A number of the tool as (1, 1), a pair as (2, 1)."""
+        value: Any = self.tool.station(station)
+        for part in key.split("."):
+            value = getattr(value, part)
+        return np.atleast_1d(np.array(value, dtype=float))[:, None]
 
     def _force(self, layout: Layout, s: Array, name: str, moved: Any) -> Dual:
         """Mean square of the force on all that holds a station."""
@@ -134,7 +146,7 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
     numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
-    felt = Band(tool, speed).felt(numbers, values_of(tool, numbers))
+    felt = Band(tool, speed).felt(numbers)
     means = [mean_over_band(one) for one in felt.hands.values()]
     worst = max(means, key=lambda one: float(one.value[0]))
     slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value[0]))

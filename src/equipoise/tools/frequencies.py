@@ -19,8 +19,6 @@ nothing lies between its ends."""
 GROWTH, DOUBLINGS = 2.0, 200
 """Growth of the highest frequency until there are enough below it."""
 MOST = 200
-SLACK = 1e-12
-"""Share of the springs below which a rigid motion counts as free."""
 
 
 def scale_of(tool: Tool) -> float:
@@ -38,17 +36,29 @@ def rigid_modes(tool: Tool) -> list[Array]:
     return [_free(tool, plane) for plane in range(len(PLANES))]
 
 
+def floating(tool: Tool) -> list[list[str]]:
+    """Stations of each plane whose absorber has a mass, but no spring."""
+    return [
+        [
+            one.name
+            for one in tool.stations
+            if one.absorber is not None and one.absorber.mass and not one.absorber.stiffness[plane]
+        ]
+        for plane in range(len(PLANES))
+    ]
+
+
 def _free(tool: Tool, plane: int) -> Array:
-    """Null space of the springs under rigid motions, with slopes in units of 1 / length."""
-    length = tool.shaft.length
-    matrix = np.zeros((2, 2))
-    for station in tool.stations:
-        row = np.array([1.0, station.position / length])
-        matrix += _spring(station, plane) * np.outer(row, row)
-        matrix[1, 1] += station.rotational_stiffness[plane] / length**2
-    sizes, shapes = np.linalg.eigh(matrix)
-    free: Array = shapes.T[sizes <= SLACK * max(float(sizes[-1]), np.finfo(float).tiny)]
-    return np.asarray(free / np.array([1.0, length]))
+    """By how many places springs hold, and whether one holds a rotation: however stiff they are."""
+    places = sorted({one.position for one in tool.stations if _spring(one, plane)})
+    turning = any(one.rotational_stiffness[plane] for one in tool.stations)
+    if len(places) > 1 or (places and turning):
+        return np.empty((0, 2))
+    if places:
+        place = places[0]
+        return np.array([[-place, 1.0] if place else [0.0, 1.0]])
+    across, turned = [1.0, 0.0], [0.0, 1.0]
+    return np.array([across] if turning else [across, turned])
 
 
 def _spring(station: Station, plane: int) -> float:
@@ -61,7 +71,7 @@ def _spring(station: Station, plane: int) -> float:
     return total
 
 
-def natural_frequencies(tool: Tool, number: int, changed: Any = None) -> Array:
+def natural_frequencies(tool: Tool, number: int) -> Array:
     """The first so many natural frequencies (2, number) of both planes, rad/s, without damping.
 
     Rigid motions that no spring holds come first, as 0.  A frequency that stands twice is told
@@ -73,9 +83,10 @@ def natural_frequencies(tool: Tool, number: int, changed: Any = None) -> Array:
     """
     if not 1 <= number <= MOST:
         raise UsageError(f"got {number} natural frequencies; ask for 1 to {MOST}")
-    layout, below = _enough(tool, number, changed or {})
+    layout, below = _enough(tool, number)
     wanted = np.arange(1, number + 1)
-    rigid = np.array([[len(free)] for free in rigid_modes(tool)])
+    free = zip(rigid_modes(tool), floating(tool), strict=True)
+    rigid = np.array([[len(motions) + len(names)] for motions, names in free])
     bottom, top = np.zeros((2, number)), np.full((2, number), below)
     shares = np.arange(1, PARTS + 1) / (PARTS + 1)
     for _ in range(ROUNDS):
@@ -101,11 +112,11 @@ def frequencies_below(tool: Tool, highest: float) -> list[Array]:
     return [row[(row > 0) & (row < highest)] for row in found]
 
 
-def _enough(tool: Tool, number: int, changed: Any) -> tuple[Layout, float]:
+def _enough(tool: Tool, number: int) -> tuple[Layout, float]:
     """A layout, and a frequency below which both planes have so many natural ones, rad/s."""
     highest = scale_of(tool) * (np.pi * (number + 1)) ** 2
     for _ in range(DOUBLINGS):
-        layout = Layout(tool, highest, changed)
+        layout = Layout(tool, highest)
         if np.all(_count(layout, np.full((2, 1), highest)) >= number):
             return layout, highest
         highest *= GROWTH

@@ -20,8 +20,9 @@ Array = np.ndarray[Any, Any]
 Kind = Literal["undamped", "free", "forced"]
 """What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
 which are known at real frequencies alone."""
-TUNED = 1e-15
-"""Share of its stiffness by which an undamped absorber misses its own frequency."""
+TUNED, NEARLY_NOTHING = 1e-15, 1e-200
+"""Share of its stiffness by which an undamped absorber misses its own frequency, and what one
+without mass and spring is divided by."""
 
 
 class Cell(NamedTuple):
@@ -183,7 +184,7 @@ class Layout:
         inertia = self.of(station, "absorber.mass") * square
         below = spring + inertia
         if np.any(value_of(below) == 0):
-            below = below + TUNED * np.abs(value_of(spring))
+            below = below + (TUNED * np.abs(value_of(spring)) + NEARLY_NOTHING)
         return spring * inertia / below
 
     def absorbers(self, s: Any, kind: Kind) -> list[Any]:

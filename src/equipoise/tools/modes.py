@@ -10,18 +10,19 @@ from typing import Any
 import numpy as np
 
 from equipoise.tools.chain import Pair, carry, solve
-from equipoise.tools.damped import eigenvalues, overdamped
+from equipoise.tools.damped import eigenvalues
 from equipoise.tools.fields import Field
-from equipoise.tools.frequencies import natural_frequencies, rigid_modes, scale_of
+from equipoise.tools.frequencies import floating, natural_frequencies, rigid_modes, scale_of
 from equipoise.tools.layout import Kind, Layout
-from equipoise.tools.model import PLANES, Tool
+from equipoise.tools.model import PLANES, Station, Tool
 
 Array = np.ndarray[Any, Any]
 
 POINTS = 401
 """Places at which a shape is told."""
-BESIDE = 1e-9
-"""Share of an eigenvalue by which a load shakes beside it to bring out the shape."""
+BESIDE, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
+"""Shares of an eigenvalue by which a load shakes beside it to bring out the shape, and further off;
+how many times as loud it must be at the first."""
 SAME = 1e-9
 """Share of each other within which two natural frequencies are one."""
 SLOWEST = 1e-4
@@ -141,12 +142,12 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
     places = np.linspace(0.0, tool.shaft.length, POINTS)
     shapes = _still_shapes(layout, frequency, places)
     damped, lacking = _damped_modes(layout, frequency, radius, places)
-    rigid = rigid_modes(tool)
+    rigid, loose = rigid_modes(tool), floating(tool)
     planes = [
         PlaneModes(
             frequency[plane],
             np.sqrt(frequency[plane] / scale_of(tool)),
-            rigid_names(rigid[plane]),
+            (*rigid_names(rigid[plane]), *(f"absorber at {name} floats" for name in loose[plane])),
             shapes[plane],
             tuple(_zeros(places, shape) for shape in shapes[plane]),
             damped[plane],
@@ -158,35 +159,61 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
 
 def _still_shapes(layout: Layout, frequency: Array, places: Array) -> Array:
     """Shapes (2, K, X) without damping; of equal frequencies such that they share no momentum."""
-    found = _shapes(layout, 1j * np.where(frequency > 0, frequency, 1.0), places, "undamped")
-    shapes = np.moveaxis(found, 0, -1).real.copy()
+    swing = 1j * np.where(frequency > 0, frequency, 1.0)
+    found = _shapes(layout, swing, places, "undamped")
+    shapes, slopes = (np.moveaxis(part, 0, -1).real.copy() for part in found)
     for plane, free in enumerate(rigid_modes(layout.tool)):
-        for k, (across, slope) in enumerate(free):
-            shapes[plane, k] = across + slope * places
+        floats = len(floating(layout.tool)[plane])
+        for k, (across, slope) in enumerate(free[: frequency.shape[1]]):
+            shapes[plane, k], slopes[plane, k] = across + slope * places, slope
+        shapes[plane, len(free) : len(free) + floats] = 0.0
         for k in range(1, shapes.shape[1]):
             earlier, later = frequency[plane, k - 1 : k + 1]
             if later - earlier <= SAME * later and later > 0:
-                shapes[plane, k] -= _share(layout.tool, places, *shapes[plane, k - 1 : k + 1])
+                pairs = [(shapes[plane, one], slopes[plane, one]) for one in (k - 1, k)]
+                share = _share(layout, plane, later, places, *pairs)
+                shapes[plane, k] -= share * shapes[plane, k - 1]
     return np.asarray(_scaled(shapes).real)
 
 
-def _share(tool: Tool, places: Array, one: Array, other: Array) -> Array:
-    """The part of one shape that is in another, by momentum."""
+Shape = tuple[Array, Array]
+"""Displacement and slope at the places, (X,) each."""
 
-    def momentum(shape: Array) -> float:
+
+def _share(
+    layout: Layout, plane: int, frequency: float, places: Array, one: Shape, other: Shape
+) -> float:
+    """How much of one shape is in another, by the momentum that they share."""
+
+    def momentum(shape: Shape) -> float:
         total = 0.0
-        for start, stop, section in tool.shaft.pieces:
+        for start, stop, section in layout.tool.shaft.pieces:
             inside = (places >= start) & (places <= stop)
-            along = np.trapezoid(one[inside] * shape[inside], places[inside])
-            total += section.mass_per_length * float(along)
-        for station in tool.stations:
+            for kind, density in ((0, section.mass_per_length), (1, section.rotary_inertia)):
+                along = np.trapezoid((one[kind] * shape[kind])[inside], places[inside])
+                total += density * float(along)
+        for station in layout.tool.stations:
             here, there = (
-                float(np.interp(station.position, places, part)) for part in (one, shape)
+                [float(np.interp(station.position, places, part)) for part in each]
+                for each in (one, shape)
             )
-            total += station.mass * here * there
+            total += _mass(layout, station, plane, frequency) * here[0] * there[0]
+            total += station.inertia[plane] * here[1] * there[1]
         return total
 
-    return one * (momentum(other) / momentum(one))
+    own = momentum(one)
+    return momentum(other) / own if own else 0.0
+
+
+def _mass(layout: Layout, station: Station, plane: int, frequency: float) -> float:
+    """What moves with a station, kg, with its absorber, which swings further than it."""
+    total = float(layout.mass_at(station))
+    absorber = station.absorber
+    if absorber is not None:
+        stiffness = absorber.stiffness[plane]
+        below = stiffness - absorber.mass * frequency**2
+        total += absorber.mass * (stiffness / below) ** 2 if below else 0.0
+    return total
 
 
 def _damped_modes(
@@ -195,36 +222,46 @@ def _damped_modes(
     """Modes with damping of both planes, by size, and how many were not found."""
     starts = np.maximum(frequency, 1e-3 * radius[:, None])
     if layout.tool.damped:
-        swinging, lacking = eigenvalues(layout, starts, radius)
-        slow = overdamped(layout, SLOWEST * scale_of(layout.tool), radius)
+        low = SLOWEST * scale_of(layout.tool)
+        values, lacking = eigenvalues(layout, starts, (low, radius))
     else:
-        swinging, lacking = [1j * row[row > 0] for row in frequency], [0, 0]
-        slow = [np.empty(0), np.empty(0)]
+        values, lacking = [1j * row[row > 0] for row in frequency], [0, 0]
     found = []
     for plane in range(2):
-        values = np.array(sorted([*swinging[plane], *slow[plane]], key=abs), complex)
-        shapes = _scaled(np.moveaxis(_shapes(layout, values[None], places, "free"), 0, -1))
-        found.append(tuple(map(DampedMode, values.tolist(), shapes[plane])))
+        own = values[plane]
+        shapes = _scaled(np.moveaxis(_shapes(layout, own[None], places, "free")[0], 0, -1))
+        found.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
     return found, lacking
 
 
-def _shapes(layout: Layout, s: Array, places: Array, kind: Kind) -> Array:
-    """Displacement (X, 2, K) close beside each eigenvalue, under a load that knows no symmetry."""
-    s = s * (1 + BESIDE)
-    carried = carry(layout.chain(s, kind))
+def _shapes(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+    """Displacement and slope (X, 2, K) of the shaft for each eigenvalue (1 or 2, K), 1/s.
+
+    Its answer close beside each to a load that knows no symmetry; nothing where that is no louder
+    than far beside, as the shaft then is at rest while something on it swings.
+    """
+    near, far = (_loaded(layout, s * (1 + share), places, kind) for share in (BESIDE, ASIDE))
+    still = np.max(np.abs(near[0]), axis=0) < LOUDER * np.max(np.abs(far[0]), axis=0)
+    return np.where(still, 0.0, near[0]), np.where(still, 0.0, near[1])
+
+
+def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+    """Displacement and slope (X, 2, K) under that load."""
     numbers = np.arange(s.shape[-1])
     loads = [
         Pair(1 + np.cos(2.4 * k + 0.7 * numbers), np.sin(1.3 * k + 0.3 + 1.1 * numbers))
         for k in range(len(layout.nodes))
     ]
-    states = solve(carried, loads)
-    return Field(layout, np.broadcast_to(s, (2, s.shape[-1])), states, kind).at(places).displacement
+    states = solve(carry(layout.chain(s, kind)), loads)
+    line = Field(layout, np.broadcast_to(s, (2, s.shape[-1])), states, kind).at(places)
+    return line.displacement, line.slope
 
 
 def _scaled(shapes: Array) -> Array:
     """Shapes (..., X), each 1 where it is largest."""
     at = np.argmax(np.abs(shapes), axis=-1)[..., None]
-    return np.asarray(shapes / np.take_along_axis(shapes, at, -1))
+    largest = np.take_along_axis(shapes, at, -1)
+    return np.asarray(shapes / np.where(largest == 0, 1.0, largest))
 
 
 def _zeros(places: Array, shape: Array) -> Array:
@@ -249,7 +286,7 @@ def rigid_names(free: Array) -> tuple[str, ...]:
         return ("moves to and fro", "turns about its left end")
     names = []
     for across, slope in free:
-        still = -across / slope if slope else np.inf
+        still = 0.0 - across / slope if slope else np.inf
         names.append("moves to and fro" if not slope else f"turns about {still:.4g} m")
     return tuple(names)
 

@@ -57,20 +57,25 @@ def _shakes(one: Excitation) -> Iterable[Shake]:
     if one.linkage is not None:
         yield from _of_linkage(one, one.linkage)
         return
-    turned = np.exp(1j * one.phase)
-    if one.force is not None:
-        along = {"vertical": [1, 0], "lateral": [0, 1]}
-        force = one.force * np.array(along.get(one.direction, _turning(one.ratio)))
-        power = 0
+    if one.unbalance is not None:
+        force, power = one.unbalance * one.ratio**2 * _turning(one), 2
     else:
-        assert one.unbalance is not None
-        force, power = one.unbalance * one.ratio**2 * np.array(_turning(one.ratio)), 2
-    yield Shake(one.name, one.station, abs(one.ratio), force * turned, power)
+        assert one.force is not None
+        ahead = np.exp(1j * one.phase)
+        along = {"vertical": np.array([ahead, 0]), "lateral": np.array([0, ahead])}
+        force, power = one.force * along.get(one.direction, _turning(one)), 0
+    yield Shake(one.name, one.station, _order(abs(one.ratio)), force, power)
 
 
-def _turning(ratio: float) -> list[complex]:
-    """A force that turns from up to lateral, or the other way round."""
-    return [1, -1j if ratio > 0 else 1j]
+def _turning(one: Excitation) -> Array:
+    """A force of 1 that turns with a shaft: lateral at its angle 0, vertical at a quarter turn."""
+    forward = np.array([-1j, 1]) * np.exp(1j * one.phase)
+    return np.asarray(forward if one.ratio > 0 else np.conj(forward))
+
+
+def _order(order: float) -> float:
+    """The order without the rounding by which a product of ratios may miss it."""
+    return float(f"{order:.12g}")
 
 
 def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
@@ -84,7 +89,8 @@ def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
         order = float(force.orders[k])
         amplitudes = force.amplitudes[:, k] * np.exp(1j * order * one.phase)
         both = np.conj(amplitudes) if backward else amplitudes
-        yield Shake(one.name, one.station, order * abs(one.ratio), one.ratio**2 * both, 2)
+        size = one.ratio**2 * both
+        yield Shake(one.name, one.station, _order(order * abs(one.ratio)), size, 2)
 
 
 def unit_shaking_force(machine: Machine) -> Periodic:

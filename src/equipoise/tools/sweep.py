@@ -23,7 +23,7 @@ SPEEDS = 400
 """Equally spaced speeds in a range, if not told otherwise."""
 BESIDE = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
 """Shares of a resonance beside which it is looked at more closely."""
-PLACES = 201
+PLACES = 401
 """Of the shaft at which the bending moment is looked at."""
 LARGEST = 200_000
 """Frequencies times places that are computed at once."""
@@ -82,7 +82,10 @@ class ToolSweep:
     @cached_property
     def largest_moment(self) -> tuple[Array, Array]:
         """Largest RMS bending moment (S,), N m, and where in the shaft it is, m."""
-        where = np.linspace(0, self.tool.shaft.length, PLACES)
+        length = self.tool.shaft.length
+        stations = np.array([one.position for one in self.tool.stations])
+        beside = np.concatenate([stations, np.nextafter(stations, 0.0)])  # where it may jump
+        where = np.unique(np.concatenate([np.linspace(0, length, PLACES), beside]))
         moment = self.places(where).moment
         at = np.argmax(moment, axis=0)
         return moment[at, np.arange(len(self.speed))], where[at]

@@ -1,0 +1,654 @@
+"""Physics of a shaft in bending: balance, energy, reciprocity, symmetries, and what adds up."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.tools.fields import Line
+from equipoise.tools.frequencies import natural_frequencies
+from equipoise.tools.model import (
+    Absorber,
+    Excitation,
+    Hand,
+    Section,
+    Segment,
+    Station,
+    Theory,
+    Tool,
+)
+from equipoise.tools.modes import vibrate_tool
+from equipoise.tools.response import ToolResponse, respond_tool
+from unit.tools.samples import THEORIES, bare, both, pieces_of, random_tool, still
+
+Array = np.ndarray[Any, Any]
+SPEEDS = np.array([170.0, 455.0, 820.0])
+SUBJECTS = [(theory, seed) for theory in THEORIES for seed in (21, 22)]
+subjects = pytest.mark.parametrize(("theory", "seed"), SUBJECTS)
+
+
+@cache
+def made(theory: Theory, seed: int) -> Tool:
+    return random_tool(seed, theory)
+
+
+def shaken(tool: Tool, *excitations: Excitation) -> Tool:
+    return replace(tool, excitations=excitations)
+
+
+def integral(response: ToolResponse, function: Callable[[Line, Array], Array]) -> Array:
+    """Of a function of the fields along the shaft, by Gauss's points between all places of note.
+
+    function : of the fields at some places (X) and of (X, 5): EI, m, kGA and rho I, and the place.
+    """
+    tool = response.tool
+    borders = np.cumsum([0.0, *(piece.length for piece in pieces_of(tool))])
+    stops = {*borders, *(one.position for one in tool.stations)}
+    every = sorted(stops | set(np.linspace(0, tool.shaft.length, 9)))
+    points, weights = np.polynomial.legendre.leggauss(12)
+    rows = []
+    for low, high in pairwise(every):
+        rows += [
+            (low + (high - low) * (x + 1) / 2, w * (high - low) / 2)
+            for x, w in zip(points, weights, strict=True)
+        ]
+    places, shares = np.array(rows).T
+    parts = [pieces_of(tool)[int(np.searchsorted(borders, x)) - 1] for x in places]
+    section = np.array(
+        [
+            (p.bending_stiffness, p.mass_per_length, p.shear_stiffness, p.rotary_inertia, x)
+            for p, x in zip(parts, places, strict=True)
+        ]
+    )
+    values = function(response.line(places), section)
+    return np.asarray(np.tensordot(shares, values, 1))
+
+
+def column(values: Array) -> Array:
+    """Of sections (X,), beside fields (X, 2, K, S)."""
+    return values[:, None, None, None]
+
+
+def of(pair: tuple[float, float]) -> Array:
+    """Of both planes, beside amplitudes (2, K, S)."""
+    return np.array(pair)[:, None, None]
+
+
+def shaking(response: ToolResponse) -> dict[str, Array]:
+    """Force (2, K, S), N, that shakes at each station."""
+    found = {
+        one.name: np.zeros((2, *response.frequency.shape), complex)
+        for one in response.tool.stations
+    }
+    for shake in response.shakes:
+        order = int(np.flatnonzero(response.orders == shake.order)[0])
+        found[shake.station][:, order] += shake.at(response.speed)
+    return found
+
+
+def absorbed(response: ToolResponse, station: Station) -> Array:
+    """Force of a station on its absorber, from the equation of the absorber's mass."""
+    if station.absorber is None:
+        return np.zeros((2, *response.frequency.shape))
+    s = 1j * response.frequency
+    link = of(station.absorber.stiffness) + of(station.absorber.damping) * s
+    moved = link * response.displacement(station.name) / (link + station.absorber.mass * s**2)
+    return link * (response.displacement(station.name) - moved)
+
+
+# -- balance and energy ----------------------------------------------------------------------------
+# 1e-9: quadrature of 12 points between stations is exact to rounding, of which a thousand meet.
+
+
+@subjects
+def test_forces_and_moments_on_the_whole_tool(theory: Theory, seed: int) -> None:
+    """Newton and Euler: what shakes it, less what holds it, is the change of its momentum.
+
+    Moments are about the left end; those of rotation are of slopes.
+    """
+    found = respond_tool(made(theory, seed), SPEEDS)
+    w2 = found.frequency**2
+
+    def pushed(line: Line, part: Array) -> Array:
+        return column(part[:, 1]) * line.displacement
+
+    def turned(line: Line, part: Array) -> Array:
+        return column(part[:, 4]) * pushed(line, part) + column(part[:, 3]) * line.slope
+
+    force, moment = integral(found, pushed) * w2, integral(found, turned) * w2
+    size = 0.0
+    causes = shaking(found)
+    for one in found.tool.stations:
+        moved, x = found.displacement(one.name), one.position
+        slope = found.line([x]).slope[0]
+        held: Any = sum(found.forces(one.name).values(), np.zeros_like(moved))
+        across = causes[one.name] - held - absorbed(found, one) + one.mass * w2 * moved
+        s = 1j * found.frequency
+        twist = of(one.rotational_stiffness) + of(one.rotational_damping) * s - of(one.inertia) * w2
+        force = force + across
+        moment = moment + x * across - twist * slope
+        size = max(size, float(np.max(np.abs(held))), float(np.max(np.abs(causes[one.name]))))
+    assert np.max(np.abs(force)) < 1e-9 * size
+    assert np.max(np.abs(moment)) < 1e-9 * size * found.tool.shaft.length
+
+
+@subjects
+def test_power_fed_in_is_taken(theory: Theory, seed: int) -> None:
+    """By hands, harness, ground and absorber, and by the shaft's material."""
+    found = respond_tool(made(theory, seed), SPEEDS)
+    taken = found.lost_in_shaft
+    for one in found.tool.stations:
+        taken = taken + sum(found.power(one.name).values(), np.zeros_like(taken))
+    np.testing.assert_allclose(found.fed_in, taken, rtol=1e-9)
+    for one in found.tool.stations:
+        assert all(np.all(power >= 0) for power in found.power(one.name).values())
+    assert np.all(found.lost_in_shaft > 0)
+
+
+@subjects
+def test_power_that_the_material_takes(theory: Theory, seed: int) -> None:
+    """eta w / 2 times EI |theta'|^2 and kGA |w' - theta|^2, by moment and shear."""
+    found = respond_tool(made(theory, seed), SPEEDS)
+    loss = found.tool.shaft.loss_factor
+
+    def strained(line: Line, part: Array) -> Array:
+        bent = np.abs(line.moment) ** 2 / column(part[:, 0])
+        return bent + np.abs(line.shear) ** 2 / column(part[:, 2])
+
+    wanted = loss / (1 + loss**2) * found.frequency / 2 * np.sum(integral(found, strained), axis=0)
+    np.testing.assert_allclose(found.lost_in_shaft, wanted, rtol=1e-8)
+
+
+@subjects
+def test_power_of_each_damper(theory: Theory, seed: int) -> None:
+    """c |v|^2 / 2 of its own velocity."""
+    found = respond_tool(made(theory, seed), SPEEDS)
+    for one in found.tool.stations:
+        velocity = np.abs(found.velocity(one.name)) ** 2 / 2
+        told = found.power(one.name)
+        if one.hand is not None:
+            wanted = one.hand.hands * np.sum(of(one.hand.damping) * velocity, axis=0)
+            np.testing.assert_allclose(told["hand"], wanted, rtol=1e-9)
+        if one.harness is not None:
+            wanted = np.sum(of(one.harness.damping) * velocity, axis=0)
+            np.testing.assert_allclose(told["harness"], wanted, rtol=1e-9)
+        if one.absorber is not None:
+            own = 1j * found.frequency * absorbed(found, one)
+            link = of(one.absorber.stiffness) + 1j * found.frequency * of(one.absorber.damping)
+            wanted = np.sum(of(one.absorber.damping) * np.abs(own / link) ** 2 / 2, axis=0)
+            np.testing.assert_allclose(told["absorber"], wanted, rtol=1e-9)
+        turning = np.abs(found.line([one.position]).slope[0] * found.frequency) ** 2 / 2
+        ground = np.sum(of(one.damping) * velocity + of(one.rotational_damping) * turning, axis=0)
+        np.testing.assert_allclose(told.get("ground", 0 * ground), ground, rtol=1e-9)
+
+
+@subjects
+def test_work_of_the_forces_is_twice_the_potential_less_the_kinetic_energy(
+    theory: Theory, seed: int
+) -> None:
+    """Without damping, at any frequency: F y = M^2 / EI + V^2 / kGA + k y^2 - w^2 (m y^2 + ...)."""
+    tool = shaken(
+        still(made(theory, seed)),
+        Excitation("e", "rear", force=3.0),
+        Excitation("f", "head", force=2.0, direction="lateral"),
+    )
+    found = respond_tool(tool, SPEEDS)
+    potential, kinetic = energies(found)
+    work = sum(np.real(force * found.displacement(name)) for name, force in shaking(found).items())
+    size = np.max(potential)
+    assert np.max(np.abs(work - (potential - kinetic))) < 1e-10 * size
+
+
+def energies(found: ToolResponse) -> tuple[Array, Array]:
+    """Twice the potential and the kinetic energy (2, K, S) of an undamped tool."""
+    w2 = found.frequency**2
+
+    def strained(line: Line, part: Array) -> Array:
+        bent = line.moment**2 / column(part[:, 0])
+        return bent + line.shear**2 / column(part[:, 2])
+
+    def moving(line: Line, part: Array) -> Array:
+        across = column(part[:, 1]) * line.displacement**2
+        return across + column(part[:, 3]) * line.slope**2
+
+    potential = integral(found, strained).real
+    kinetic = integral(found, moving).real * w2
+    for one in found.tool.stations:
+        moved = found.displacement(one.name).real ** 2
+        slope = found.line([one.position]).slope[0].real ** 2
+        potential = potential + of(one.stiffness) * moved + of(one.rotational_stiffness) * slope
+        kinetic = kinetic + w2 * (one.mass * moved + of(one.inertia) * slope)
+        if one.hand is not None:
+            potential = potential + one.hand.hands * of(one.hand.stiffness) * moved
+            kinetic = kinetic + one.hand.hands * one.hand.mass * w2 * moved
+        if one.harness is not None:
+            potential = potential + of(one.harness.stiffness) * moved
+        if one.absorber is not None:
+            stretch = (absorbed(found, one) / of(one.absorber.stiffness)).real
+            own = found.displacement(one.name).real - stretch
+            potential = potential + of(one.absorber.stiffness) * stretch**2
+            kinetic = kinetic + one.absorber.mass * w2 * own**2
+    return potential, kinetic
+
+
+@subjects
+def test_at_a_mode_kinetic_and_potential_energy_are_the_same(theory: Theory, seed: int) -> None:
+    """1e-7 beside the resonance they differ by 1e-7 of them, as the force has next to no work."""
+    plain = still(made(theory, seed))
+    tool = shaken(plain, Excitation("e", "rear", force=1.0))
+    natural = natural_frequencies(plain, 7)[0, 1:]
+    found = respond_tool(tool, natural * (1 + 1e-7))
+    potential, kinetic = energies(found)
+    np.testing.assert_allclose(potential[0, 0] / kinetic[0, 0], 1, atol=1e-6)
+
+
+# -- reciprocity and superposition -----------------------------------------------------------------
+
+
+@subjects
+@pytest.mark.parametrize("direction", ["vertical", "lateral"])
+def test_reciprocity(theory: Theory, seed: int, direction: str) -> None:
+    """A force at one place moves another as a force there moves the one, whatever is between."""
+    tool = made(theory, seed)
+    rng = np.random.default_rng([seed, 4])
+    places = np.sort(rng.uniform(0, tool.shaft.length, 3))
+    marks = tuple(Station(f"mark {k}", float(x)) for k, x in enumerate(places))
+    tool = replace(tool, stations=(*tool.stations, *marks))
+    names = ["engine", "middle", "head", *(mark.name for mark in marks)]
+    plane = ("vertical", "lateral").index(direction)
+    answer = []
+    for name in names:
+        cause = Excitation("e", name, force=1.0, direction=direction)  # type: ignore[arg-type]
+        found = respond_tool(shaken(tool, cause), SPEEDS)
+        answer.append([found.displacement(other)[plane, 0] for other in names])
+    matrix = np.array(answer)
+    size = np.max(np.abs(matrix), axis=(0, 1))
+    assert np.max(np.abs(matrix - np.swapaxes(matrix, 0, 1)) / size) < 1e-11
+
+
+@subjects
+def test_what_shakes_adds_up(theory: Theory, seed: int) -> None:
+    """At one order two causes together do what each does alone; other orders know nothing of it."""
+    tool = made(theory, seed)
+    whole = respond_tool(tool, SPEEDS)
+    total = {one.name: np.zeros_like(whole.displacement(one.name)) for one in tool.stations}
+    for cause in tool.excitations:
+        alone = respond_tool(shaken(tool, cause), SPEEDS)
+        k = int(np.flatnonzero(whole.orders == alone.orders[0])[0])
+        for name, sum_of in total.items():
+            sum_of[:, k] += alone.displacement(name)[:, 0]
+    for name, wanted in total.items():
+        size = np.max(np.abs(wanted))
+        np.testing.assert_allclose(whole.displacement(name), wanted, atol=1e-11 * size)
+
+
+def test_an_unbalance_grows_with_the_square_of_its_own_speed() -> None:
+    """Beside a force of the same amplitude: u (r speed)^2."""
+    tool = made("timoshenko", 21)
+    unbalance = respond_tool(
+        shaken(tool, Excitation("e", "head", unbalance=2e-4, ratio=0.4)), SPEEDS
+    )
+    force = respond_tool(
+        shaken(tool, Excitation("e", "head", force=2e-4, direction="rotating", ratio=0.4)), SPEEDS
+    )
+    for name in ("engine", "rear"):
+        np.testing.assert_allclose(
+            unbalance.displacement(name),
+            force.displacement(name) * (0.4 * SPEEDS) ** 2,
+            rtol=1e-12,
+        )
+
+
+# -- the same described otherwise ------------------------------------------------------------------
+
+
+def mirrored(tool: Tool) -> Tool:
+    """The tool seen from the other side: its right end is the left one."""
+    length = tool.shaft.length
+    segments = tuple(
+        replace(one, start=length - one.stop, stop=length - one.start)
+        for one in tool.shaft.segments
+    )
+    stations = tuple(replace(one, position=length - one.position) for one in tool.stations)
+    return replace(tool, shaft=replace(tool.shaft, segments=segments), stations=stations)
+
+
+def swapped(tool: Tool) -> Tool:
+    """Vertical for lateral: each pair the other way round, and each force along the other axis."""
+
+    def turn(part: Any) -> Any:
+        if part is None:
+            return None
+        pairs = {name: getattr(part, name)[::-1] for name, s in part.shapes.items() if s == "pair"}
+        return replace(part, **pairs)
+
+    stations = tuple(
+        replace(
+            turn(one), hand=turn(one.hand), harness=turn(one.harness), absorber=turn(one.absorber)
+        )
+        for one in tool.stations
+    )
+    return replace(tool, stations=stations)
+
+
+@subjects
+def test_mirror_image(theory: Theory, seed: int) -> None:
+    """It moves alike; slope and shear change their signs.  Where a station is, sides change too."""
+    tool = made(theory, seed)
+    found, wanted = respond_tool(mirrored(tool), SPEEDS), respond_tool(tool, SPEEDS)
+    for one in tool.stations:
+        moved = wanted.displacement(one.name)
+        size = np.max(np.abs(moved))
+        np.testing.assert_allclose(found.displacement(one.name), moved, atol=1e-10 * size)
+    x = np.linspace(0.013, 0.987, 25) * tool.shaft.length
+    here, there = wanted.line(x), found.line(tool.shaft.length - x)
+    for name, sign in (("displacement", 1), ("slope", -1), ("moment", 1), ("shear", -1)):
+        one, other = getattr(here, name), getattr(there, name)
+        np.testing.assert_allclose(sign * other, one, atol=1e-10 * np.max(np.abs(one)))
+    np.testing.assert_allclose(
+        natural_frequencies(mirrored(tool), 8), natural_frequencies(tool, 8), rtol=3e-9
+    )
+
+
+@subjects
+def test_planes_change_places(theory: Theory, seed: int) -> None:
+    """What is vertical here is lateral there, frequencies, eigenvalues and motion."""
+    up = shaken(made(theory, seed), Excitation("e", "rear", force=1.0))
+    across = shaken(swapped(up), Excitation("e", "rear", force=1.0, direction="lateral"))
+    one, other = (respond_tool(tool, SPEEDS).displacement("head") for tool in (up, across))
+    np.testing.assert_allclose(one, other[::-1], atol=1e-12 * np.max(np.abs(one)))
+    np.testing.assert_allclose(
+        natural_frequencies(up, 6), natural_frequencies(across, 6)[::-1], rtol=3e-9
+    )
+    here, there = (vibrate_tool(tool, 5).planes for tool in (up, across))
+    for first, second in zip(here, there[::-1], strict=True):
+        np.testing.assert_allclose(
+            [mode.eigenvalue for mode in first.damped],
+            [mode.eigenvalue for mode in second.damped],
+            rtol=1e-10,
+        )
+
+
+def scaled(tool: Tool, length: float, stiffness: float, mass: float) -> tuple[Tool, float]:
+    """The tool with lengths, EI and mass per length so many times as large, and its time scale.
+
+    Whatever has no unit stays as it is.
+    """
+    rate = np.sqrt(stiffness / mass) / length**2
+    units = {
+        "mass": mass * length,
+        "inertia": mass * length**3,
+        "stiffness": stiffness / length**3,
+        "damping": stiffness / length**3 / rate,
+        "rotational_stiffness": stiffness / length,
+        "rotational_damping": stiffness / length / rate,
+        "position": length,
+        "start": length,
+        "stop": length,
+        "length": length,
+        "bending_stiffness": stiffness,
+        "mass_per_length": mass,
+        "shear_stiffness": stiffness / length**2,
+        "rotary_inertia": mass * length**2,
+    }
+
+    def grown(part: Any) -> Any:
+        if part is None:
+            return None
+        changes: dict[str, Any] = {}
+        for name in part.shapes:
+            if name in units:
+                value = getattr(part, name)
+                pair = isinstance(value, tuple)
+                changes[name] = (
+                    tuple(units[name] * one for one in value) if pair else units[name] * value
+                )
+        for name in ("hand", "harness", "absorber"):
+            if hasattr(part, name):
+                changes[name] = grown(getattr(part, name))
+        if hasattr(part, "profile"):
+            changes["profile"] = grown(_plain(part.profile, tool.shaft.theory))
+        return replace(part, **changes)
+
+    shaft = replace(grown(tool.shaft), segments=tuple(grown(one) for one in tool.shaft.segments))
+    return replace(tool, shaft=shaft, stations=tuple(map(grown, tool.stations))), float(rate)
+
+
+def _plain(profile: Any, theory: Theory) -> Section:
+    return profile.section(theory)
+
+
+@subjects
+def test_scale(theory: Theory, seed: int) -> None:
+    """Frequencies as sqrt(EI / m) / L^2, and the motion under a force as F L^3 / EI."""
+    tool = shaken(
+        made(theory, seed),
+        Excitation("e", "rear", force=1.0),
+        Excitation("f", "head", force=1.0, direction="lateral"),
+    )
+    for numbers in ((2.0, 1.0, 1.0), (1.0, 5.0, 1.0), (1.0, 1.0, 0.3), (0.37, 11.0, 2.3)):
+        other, rate = scaled(tool, *numbers)
+        found, wanted = (
+            natural_frequencies(other, 7),
+            rate * natural_frequencies(tool, 7),
+        )
+        np.testing.assert_allclose(found, wanted, rtol=3e-9)
+        softer = numbers[0] ** 3 / numbers[1]
+        here = respond_tool(tool, SPEEDS).displacement("front")
+        there = respond_tool(other, rate * SPEEDS).displacement("front")
+        np.testing.assert_allclose(there, softer * here, atol=1e-10 * softer * np.max(np.abs(here)))
+
+
+@subjects
+def test_stations_with_nothing_and_borders_between_equals_change_nothing(
+    theory: Theory, seed: int
+) -> None:
+    """More nodes at random places, and each segment told in two parts of its own section."""
+    tool = made(theory, seed)
+    rng = np.random.default_rng(seed)
+    nothing = tuple(
+        Station(f"nothing {k}", float(x))
+        for k, x in enumerate(rng.uniform(0, tool.shaft.length, 4))
+    )
+    halves = []
+    for one in tool.shaft.segments:
+        middle = one.start + 0.3 * (one.stop - one.start)
+        halves += [replace(one, stop=middle), replace(one, start=middle)]
+    first = min(one.start for one in tool.shaft.segments)
+    halves.append(Segment(0.2 * first, 0.7 * first, tool.shaft.profile))
+    other = replace(
+        tool,
+        shaft=replace(tool.shaft, segments=tuple(halves)),
+        stations=(*tool.stations, *nothing),
+    )
+    found, wanted = respond_tool(other, SPEEDS), respond_tool(tool, SPEEDS)
+    x = np.linspace(0.01, 0.99, 12) * tool.shaft.length
+    for one, exact in zip(found.line(x), wanted.line(x), strict=True):
+        np.testing.assert_allclose(one, exact, atol=1e-11 * np.max(np.abs(exact)))
+    np.testing.assert_allclose(
+        natural_frequencies(other, 8), natural_frequencies(tool, 8), rtol=3e-9
+    )
+
+
+def test_order_of_the_stations_changes_nothing() -> None:
+    tool = made("timoshenko", 22)
+    other = replace(tool, stations=tool.stations[::-1])
+    for name in ("engine", "front", "head"):
+        found, wanted = (respond_tool(one, SPEEDS).displacement(name) for one in (other, tool))
+        np.testing.assert_allclose(found, wanted, rtol=1e-12)
+
+
+def test_two_hands_are_twice_one() -> None:
+    """Twice its mass, spring and damper."""
+    tool = made("euler-bernoulli", 21)
+    hand = Hand(0.2, (5e3, 7e3), (30.0, 40.0), hands=2)
+    one = tool.with_station("rear", hand=hand)
+    other = tool.with_station("rear", hand=Hand(0.4, (1e4, 1.4e4), (60.0, 80.0)))
+    found, wanted = (respond_tool(each, SPEEDS) for each in (one, other))
+    for name in ("rear", "front"):
+        np.testing.assert_allclose(found.displacement(name), wanted.displacement(name), rtol=1e-12)
+    np.testing.assert_allclose(found.forces("rear")["hand"], wanted.forces("rear")["hand"])
+
+
+# -- limits ----------------------------------------------------------------------------------------
+
+
+def test_a_hard_absorber_is_a_mass_and_a_soft_one_is_nothing() -> None:
+    """Their difference falls with k and rises with it: ten times as far, a tenth of it is left."""
+    tool = made("timoshenko", 21).with_station("middle", absorber=None)
+    mass = tool.with_station("middle", mass=tool.station("middle").mass + 0.3)
+
+    def moved(one: Tool) -> Array:
+        return respond_tool(one, SPEEDS).displacement("head")
+
+    def away(stiffness: float, limit: Tool) -> float:
+        absorber = Absorber(0.3, both(stiffness))
+        return float(
+            np.max(np.abs(moved(tool.with_station("middle", absorber=absorber)) - moved(limit)))
+        )
+
+    for limit, stiffnesses in ((mass, (1e9, 1e10)), (tool, (1e-2, 1e-3))):
+        far, near = (away(stiffness, limit) for stiffness in stiffnesses)
+        assert far / near == pytest.approx(10, rel=0.01)
+        assert far < 1e-3 * np.max(np.abs(moved(tool)))
+
+
+def test_stiff_in_shear_is_the_plain_beam() -> None:
+    """Its difference falls as 1 / kGA and as rho I."""
+    stations = made("euler-bernoulli", 21).stations
+    frequency = [
+        natural_frequencies(
+            Tool(
+                "t",
+                replace(
+                    bare(theory=theory, section=Section(1000.0, 2.0, shear, rotary)).shaft,
+                    length=made("euler-bernoulli", 21).shaft.length,
+                ),
+                stations,
+            ),
+            6,
+        )
+        for theory, shear, rotary in (
+            ("euler-bernoulli", np.inf, 0.0),
+            ("timoshenko", 1e7, 1e-6),
+            ("timoshenko", 1e8, 1e-7),
+        )
+    ]
+    far, near = (np.max(np.abs(frequency[k] / frequency[0] - 1)) for k in (1, 2))
+    assert 0 < far < 0.01
+    assert far / near == pytest.approx(10, rel=0.01)
+
+
+# -- natural frequencies ---------------------------------------------------------------------------
+
+
+@subjects
+@pytest.mark.parametrize("what", ["mass", "inertia", "stiffness", "rotational_stiffness"])
+def test_frequencies_fall_with_mass_and_rise_with_stiffness(
+    theory: Theory, seed: int, what: str
+) -> None:
+    """And no further than to the next: one number more is of rank one (Rayleigh).
+
+    2e-9 is what a frequency is good to.
+    """
+    tool = made(theory, seed)
+    before = natural_frequencies(tool, 9)
+    for name in ("engine", "middle", "head"):
+        one = tool.station(name)
+        by = 3 * {"mass": 1.0, "inertia": 0.05, "stiffness": 1e4}.get(what, 500.0)
+        value: Any = getattr(one, what)
+        value = tuple(part + by for part in value) if isinstance(value, tuple) else value + by
+        after = natural_frequencies(tool.with_station(name, **{what: value}), 9)
+        low, high = (after, before) if what in ("mass", "inertia") else (before, after)
+        assert np.all(low <= high * (1 + 2e-9))
+        assert np.all(high[:, :-1] <= low[:, 1:] * (1 + 2e-9))
+        assert np.max(high / low) > 1 + 1e-4
+
+
+def test_modes_share_no_momentum() -> None:
+    """Between any two of a tool of masses and springs: by Simpson's rule between 401 places."""
+    stations = (
+        Station("a", 0.0, mass=1.2, stiffness=both(900.0)),
+        Station("b", 0.75, mass=0.4, hand=Hand(0.3, both(5e3))),
+        Station("c", 1.5, mass=0.7),
+    )
+    found = vibrate_tool(bare(*stations, section=Section(1000.0, 2.0)), 7)
+    shapes, places = found.planes[0].shapes, found.places
+    simpson = np.array([1.0, *([4.0, 2.0] * 200)[:-1], 1.0]) * (places[1] / 3)
+    momentum = 2.0 * (shapes * simpson) @ shapes.T
+    for one, mass in zip(stations, (1.2, 0.7, 0.7), strict=True):
+        here = shapes[:, int(np.argmin(np.abs(places - one.position)))]
+        momentum = momentum + mass * np.outer(here, here)
+    own = np.sqrt(np.diag(momentum))
+    np.testing.assert_allclose(momentum / np.outer(own, own), np.eye(7), atol=1e-6)
+
+
+def modal(tool: Tool) -> tuple[Array, Array, Array]:
+    """Frequency, displacement at each station and modal mass of the vertical modes of masses."""
+    found = vibrate_tool(tool, 6)
+    shapes, places = found.planes[0].shapes, found.places
+    simpson = np.array([1.0, *([4.0, 2.0] * 200)[:-1], 1.0]) * (places[1] / 3)
+    mass = 2.0 * shapes**2 @ simpson
+    at = [int(np.argmin(np.abs(places - one.position))) for one in tool.stations]
+    for one, k in zip(tool.stations, at, strict=True):
+        mass = mass + one.mass * shapes[:, k] ** 2
+    return found.planes[0].frequency, shapes[:, at], mass
+
+
+def masses_and_springs(damping: float = 0.0, loss: float = 0.0) -> Tool:
+    """Make a tool whose stations are at places of 401, without inertia."""
+    stations = (
+        Station("a", 0.0, mass=1.2, stiffness=both(900.0), damping=both(damping)),
+        Station("b", 0.75, mass=0.7, stiffness=both(5e3)),
+        Station("c", 1.2, mass=0.4, damping=both(2 * damping)),
+    )
+    return bare(*stations, section=Section(1000.0, 2.0), loss_factor=loss)
+
+
+def test_near_a_resonance_the_answer_is_that_of_one_mode() -> None:
+    """(w_k^2 - w^2) y on both sides of it goes to phi_a phi_b / m_k; what others add cancels."""
+    tool = masses_and_springs()
+    frequency, shapes, mass = modal(tool)
+    cause = Excitation("e", "a", force=1.0)
+    for k, natural in enumerate(frequency):
+        beside = natural * np.array([1 - 1e-5, 1 + 1e-5])
+        found = respond_tool(shaken(tool, cause), beside)
+        for j, one in enumerate(tool.stations):
+            moved = found.displacement(one.name)[0, 0].real
+            residue = np.mean(moved * (natural**2 - beside**2))
+            wanted = shapes[k, 0] * shapes[k, j] / mass[k]
+            largest = np.max(np.abs(shapes[k])) ** 2 / mass[k]
+            assert residue == pytest.approx(wanted, abs=2e-5 * largest)
+
+
+def test_little_damping_takes_from_each_mode_what_its_shape_tells() -> None:
+    """Re s = -sum c phi^2 / (2 m_k), but for the square of the damping."""
+    frequency, shapes, mass = modal(masses_and_springs())
+    away = []
+    for damping in (1e-2, 1e-3):
+        told = vibrate_tool(masses_and_springs(damping), 6).planes[0].damped
+        found = np.array([mode.eigenvalue for mode in told])
+        wanted = -damping * (shapes[:, 0] ** 2 + 2 * shapes[:, 2] ** 2) / (2 * mass)
+        np.testing.assert_allclose(found.real, wanted, rtol=1e-5)
+        away.append(np.max(np.abs(found.imag / frequency - 1)))
+    assert away[0] < 1e-6
+
+
+def test_little_hysteresis_takes_from_each_mode_its_share_of_bending() -> None:
+    """Re s = -eta w / 2 times the share of the shaft in the potential energy of the mode."""
+    plain = masses_and_springs()
+    loss = 1e-5
+    natural = natural_frequencies(plain, 6)[0]
+    tool = shaken(plain, Excitation("e", "a", force=1.0))
+    near = respond_tool(tool, natural * (1 + 1e-8))
+    whole = energies(near)[0][0, 0]
+    bent = integral(near, lambda line, part: line.moment**2 / column(part[:, 0])).real[0, 0]
+    told = vibrate_tool(masses_and_springs(0.0, loss), 6).planes[0].damped
+    found = np.array([mode.eigenvalue.real for mode in told])
+    np.testing.assert_allclose(found, -loss * natural / 2 * bent / whole, rtol=1e-5)
