@@ -301,3 +301,11 @@ def test_no_design_within_the_limits() -> None:
     file = written(example_text("nagamine-irie") + SMALL + limit)
     said = refused(equipoise("tool", file, "--design"))
     assert "no design within the limits was found" in said
+
+
+def test_numbers_out_of_scale() -> None:
+    """A length in km for mm: told at once, not computed for hours."""
+    far = written(example_text("nagamine-irie"), 'length = "1.544 m"', 'length = "1544 km"')
+    said = refused(equipoise("tool", far, "--respond", "1000 rpm : 9000 rpm"))
+    assert said.startswith("tool.toml: shaft: at ")
+    assert "check its length, stiffness and mass" in said

@@ -91,11 +91,12 @@ def carry(chain: Chain) -> Carried:
     first = chain.stations[0]
     z = Symmetric(first.across, 0.0, first.turning)
     stiffness, steps = [z], []
-    for over, station in zip(chain.segments, chain.stations[1:], strict=True):
-        step, z = _cross(over, z)
-        z = Symmetric(z.aa + station.across, z.at, z.tt + station.turning)
-        steps.append(step)
-        stiffness.append(z)
+    with np.errstate(all="ignore"):  # whoever asks looks whether the answer is finite
+        for over, station in zip(chain.segments, chain.stations[1:], strict=True):
+            step, z = _cross(over, z)
+            z = Symmetric(z.aa + station.across, z.at, z.tt + station.turning)
+            steps.append(step)
+            stiffness.append(z)
     return Carried(chain, stiffness, steps)
 
 
@@ -119,7 +120,15 @@ def _cross(over: Transfer, z: Symmetric) -> tuple[Step, Symmetric]:
 
 
 def solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
-    """The motion under harmonic forces and couples on the nodes; None for no load there."""
+    """The motion under harmonic forces and couples on the nodes; None for no load there.
+
+    At a resonance without damping it is not finite.
+    """
+    with np.errstate(all="ignore"):
+        return _solve(carried, loads)
+
+
+def _solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
     z, chain = carried.stiffness, carried.chain
     g = _less(Pair(0.0, 0.0), loads[0])
     held = [g]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from math import ceil
+from math import ceil, pi
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
+from equipoise.errors import ModelError
 from equipoise.tools.chain import Chain, Pair
 from equipoise.tools.duals import Dual, stacked, value_of
 from equipoise.tools.hands import impedance
@@ -20,6 +21,8 @@ Array = np.ndarray[Any, Any]
 Kind = Literal["undamped", "free", "forced"]
 """What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
 which are known at real frequencies alone."""
+MOST_CELLS = 2000
+"""Between two stations; far beyond any tool."""
 TUNED, NEARLY_NOTHING = 1e-15, 1e-200
 """Share of its stiffness by which an undamped absorber misses its own frequency, and what one
 without mass and spring is divided by."""
@@ -85,7 +88,14 @@ class Layout:
         most = longest(
             self.highest, flexibility, shear, section.mass_per_length, section.rotary_inertia
         )
-        parts = max(1, ceil(length / most))
+        parts = max(1, ceil(min(length / most, MOST_CELLS + 1)))
+        if parts > MOST_CELLS:
+            raise ModelError(
+                "shaft",
+                f"at {self.highest / (2 * pi):.4g} Hz its waves are some {4 * most:.2g} m long, "
+                f"too short for {self.tool.shaft.length:.4g} m; check its length, stiffness and "
+                "mass, and the speeds",
+            )
         return [Cell(left + k * length / parts, gap / parts, section) for k in range(parts)]
 
     def _section(self, place: float) -> Section:

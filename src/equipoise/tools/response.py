@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, ResponseError, UsageError
 from equipoise.tools.chain import Pair, carry, solve
 from equipoise.tools.fields import Field, Line
 from equipoise.tools.hands import check_coverage
@@ -156,6 +156,7 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
     ------
     ModelError : nothing shakes it, or a hand's table does not reach that far.
     MassError, MotionError : of a linkage that shakes it.
+    ResponseError : a speed is that of a resonance without damping.
     UsageError : a speed is not above 0.
     """
     speeds = checked_speeds(speed)
@@ -167,7 +168,23 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
     check_coverage(tool, *ends)
     layout = Layout(tool, ends[1])
     field = shaken(layout, all_shakes, orders, speeds)
+    _check_finite(field, orders, speeds)
     return ToolResponse(tool, speeds, orders, all_shakes, field)
+
+
+def _check_finite(field: Field, orders: Array, speeds: Array) -> None:
+    """No resonance is met exactly, without damping."""
+    finite = np.ones(field.s.shape[-1], dtype=bool)
+    for pair in field.states.motion:
+        finite &= np.all(np.isfinite(pair.across) & np.isfinite(pair.turning), axis=0)
+    if np.all(finite):
+        return
+    order, speed = np.unravel_index(int(np.argmin(finite)), (len(orders), len(speeds)))
+    raise ResponseError(
+        f"at {speeds[speed] * 30 / np.pi:.6g} rpm order {orders[order]:.4g} meets a resonance "
+        "without damping, and the vibration has no bound; give dampers, a loss_factor, or another "
+        "speed"
+    )
 
 
 NOTHING = (

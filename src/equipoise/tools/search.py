@@ -121,7 +121,7 @@ class Search:
     def _worth(self, place: Array) -> float:
         measures, limits = self.at(place, slopes=False)
         beyond = float(np.sum(np.maximum(limits.value - 1, 0)))
-        return float(np.max(measures.value)) * (1 + 10 * beyond)
+        return float(np.nan_to_num(np.max(measures.value), nan=np.inf)) * (1 + 10 * beyond)
 
     def _downhill(self, place: Array) -> Array:
         """The least bound on all measures, by sequential quadratic programs."""

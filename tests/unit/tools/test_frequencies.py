@@ -361,7 +361,7 @@ def test_a_measured_hand_does_not_hold() -> None:
 
 
 def test_an_absorber_without_a_spring_floats() -> None:
-    """Its mass is at rest whatever the shaft does: one more frequency of 0, the others as without."""
+    """Its mass stays at rest: one frequency of 0 more, and the others as without it."""
     station = Station("a", 0.4, mass=0.5, absorber=Absorber(0.3, (0.0, 2e4)))
     found = natural_frequencies(bare(station), 6)
     plain = natural_frequencies(bare(Station("a", 0.4, mass=0.5)), 5)[0]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.errors import ModelError, ResponseError, UsageError
+from equipoise.tools.chain import Pair, States
 from equipoise.tools.frequencies import natural_frequencies
 from equipoise.tools.model import (
     Absorber,
@@ -21,7 +22,7 @@ from equipoise.tools.model import (
     Station,
     Tool,
 )
-from equipoise.tools.response import ToolResponse, respond_tool
+from equipoise.tools.response import ToolResponse, _check_finite, respond_tool
 from equipoise.tools.sweep import speeds_between, sweep_tool
 from unit.tools.samples import THEORIES, bare, both, random_tool
 
@@ -364,3 +365,31 @@ def test_speeds_between() -> None:
     for resonance in inside:
         near = np.abs(found / resonance - 1)
         assert np.sum(near < 0.011) >= 4
+
+
+# -- a resonance without damping -------------------------------------------------------------------
+
+
+def test_beside_a_resonance_without_damping() -> None:
+    """However near, the answer is finite, and the nearer the larger."""
+    tool = bare(Station("a", 0.0, stiffness=both(400.0)))
+    tool = replace(tool, excitations=(Excitation("push", "a", force=1.0),))
+    omega = float(natural_frequencies(tool, 3)[0, 2])
+    sizes = [
+        abs(respond_tool(tool, omega * (1 + beside)).displacement("a")[0, 0, 0])
+        for beside in (1e-3, 1e-6, 1e-9)
+    ]
+    assert sizes[1] / sizes[0] == pytest.approx(1e3, rel=0.01)
+    assert sizes[2] / sizes[1] == pytest.approx(1e3, rel=0.01)
+
+
+def test_on_a_resonance_without_damping() -> None:
+    """What is not finite is no answer; told with speed and order."""
+    tool = bare(Station("a", 0.0, stiffness=both(400.0)))
+    tool = replace(tool, excitations=(Excitation("push", "a", force=1.0, ratio=2.0),))
+    found = respond_tool(tool, np.array([100.0, 150.0]))
+    motion = [Pair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
+    motion[0].across[0, 1] = np.inf
+    field = replace(found.field, states=States(motion, found.field.states.force))
+    with pytest.raises(ResponseError, match=r"at 1432\.39 rpm order 2 meets a resonance without"):
+        _check_finite(field, found.orders, found.speed)
