@@ -42,7 +42,6 @@ class Layout:
 
     changed : numbers of stations that stand in the place of the tool's, by name and key, with or
         without derivatives.
-    further : places (m) that shall be nodes too.
     """
 
     tool: Tool

@@ -88,7 +88,11 @@ def source_of(tool: Tool) -> str:
 
 def held(tool: Tool) -> list[Station]:
     """Stations at which the body or the ground holds the tool."""
-    return [one for one in tool.stations if one.hand or one.harness or any(one.stiffness)]
+    return [
+        one
+        for one in tool.stations
+        if one.hand or one.harness or any(one.stiffness) or any(one.damping)
+    ]
 
 
 def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissions:
