@@ -79,7 +79,7 @@ def test_every_bundled_tool_is_told(name: str) -> None:
     shown = succeeded(equipoise("tool", name))
     for words in ("Natural frequencies", "Force at", "Largest forces", "a_hv"):
         assert words in shown
-    assert "nan" not in shown
+    assert not re.search(r"\b(nan|inf)\b", shown)
 
 
 def test_two_planes_are_told_apart() -> None:
@@ -168,7 +168,9 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     assert a_hv.tolist() == pytest.approx(found["a_hv_after"])
     weights = np.ones(len(speeds))
     weights[[0, -1]] = 0.5
-    assert np.sqrt(np.average(a_hv**2, weights=weights)) == pytest.approx(measure["after"])
+    assert np.sqrt(np.average(a_hv**2, weights=weights)) == pytest.approx(
+        measure["after"], rel=1e-3
+    )
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -218,15 +220,17 @@ def test_start_is_quick_and_alone() -> None:
         (["--number", "0"], "--number: got '0'; give a whole number from 1 to 100"),
         (["--number", "many"], "--number: got 'many'"),
         (["--speeds", "1"], "--speeds: got '1'; give a whole number from 2 to 5000"),
-        (["--at", "2 m"], "got a place off the shaft; give places from 0 to 1.544 m"),
+        (["--at", "2 m"], "--at: got 2 m, off the shaft; give places from 0 to 1.544 m"),
         (["--at", "2"], "--at: got '2'"),
         (["--duration", "25 h"], "--duration: got '25 h'; give more than 0 and at most 24 h a day"),
         (["--duration", "0 h"], "--duration: got '0 h'"),
         (["--vary", "harness"], "--vary: got 'harness'; give a station, one of its numbers and"),
-        (["--vary", "belt position = 0 m : 1 m"], "no station is called 'belt'"),
+        (["--vary", "belt position = 0 m : 1 m"], "--vary: stations: no station is called 'belt'"),
         (["--vary", "harness length = 0 m : 1 m"], "no number of 'harness' is called 'length'"),
         (["--vary", "engine harness.stiffness = 1 N/m : 2 N/m"], "'engine' has no harness"),
         (["--vary", "harness position = 0 m : 2 m"], "the shaft"),
+        (["--vary", "harness harness.damping = 0 N s/m : 9 N s/m"], "do not feel; vary another"),
+        (["--design", "--out", "."], "--out: . is a directory"),
         (["--vary", "harness position = 1 m : 0 m"], "the smaller value first"),
         (["--vary", "harness position = 0 kg : 1 kg"], "--vary: got '0 kg'"),
         (["--design"], "design: missing; add the table [design]"),

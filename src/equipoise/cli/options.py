@@ -83,6 +83,8 @@ def check_new_files(path: str, files: Callable[[str], Iterable[Path]]) -> None:
 
     if not path:
         raise UsageError("--out: got an empty name; give the name of a file")
+    if os.path.isdir(path):
+        raise UsageError(f"--out: {printable(path)} is a directory; give the name of a file")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(f"{printable(path)}: there is no such folder; make it, or choose another")
     for file in files(path):

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from types import ModuleType
@@ -19,7 +20,8 @@ from equipoise.cli.options import (
     whole,
 )
 from equipoise.cli.results import Columns, Kind, draw, write_csv
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
+from equipoise.io.files import printable
 from equipoise.terminal.units import Units
 from equipoise.tools.model import Tool
 
@@ -98,7 +100,10 @@ class Asked:
             return _range("--respond", self.respond)
         operation = self.tool.operation
         if operation is None:
-            raise UsageError(f"no range of speeds is told; give --respond {RANGE}")
+            raise UsageError(
+                f"{printable(self.file)}: operation: missing, so that no speeds are told; add the "
+                f"table [operation], or give --respond {RANGE}"
+            )
         if operation.speeds:
             return operation.speeds[0], operation.speeds[1]
         return AROUND[0] * operation.speed, AROUND[1] * operation.speed
@@ -133,6 +138,15 @@ class Asked:
 
         with counted("search") as told:
             return design_tool(self.tool, told)
+
+
+@contextmanager
+def _blaming(option: str) -> Iterator[None]:
+    """Put the option in front of what turns out wrong with what it asks for."""
+    try:
+        yield
+    except (ModelError, UsageError) as error:
+        raise UsageError(f"{option}: {error}") from error
 
 
 def _range(option: str, text: str) -> tuple[float, float]:
@@ -179,6 +193,12 @@ def _of_modes(asked: Asked) -> Part:
 def _of_speeds(asked: Asked) -> Part:
     from equipoise.tools.sweep import sweep_tool
 
+    length = asked.tool.shaft.length
+    for place in asked.places:
+        if not 0 <= place <= length:
+            raise UsageError(
+                f"--at: got {place:g} m, off the shaft; give places from 0 to {length:g} m"
+            )
     found = sweep_tool(asked.tool, asked.range, asked.places)
 
     def show() -> None:
@@ -231,11 +251,19 @@ def _of_variation(asked: Asked) -> Part:
             '"harness position = 0 mm : 400 mm"'
         )
     station, key = match["station"], match["key"]
-    check_key(asked.tool.station(station), key)
+    with _blaming("--vary"):
+        check_key(asked.tool.station(station), key)
+    if key.endswith("damping"):
+        raise UsageError(
+            f"--vary: got {key!r}, which natural frequencies without damping do not feel; vary "
+            "another number"
+        )
     low, high = (quantity("--vary", match[end], KEYS[key]) for end in ("low", "high"))
     if not low < high:
         raise UsageError(f"--vary: got {text!r}; give a range, the smaller value first")
-    found = vary_tool(asked.tool, station, key, np.linspace(low, high, VALUES), asked.count)
+    values = np.linspace(low, high, VALUES)
+    with _blaming("--vary"):
+        found = vary_tool(asked.tool, station, key, values, asked.count)
 
     def show() -> None:
         from equipoise.terminal.tool import print_variation

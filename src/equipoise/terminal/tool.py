@@ -23,6 +23,8 @@ Array = np.ndarray[Any, Any]
 
 SILENT = 1e3
 """Times 1e-10 of the largest transmission, below which it is none."""
+MOST_QUIET = 8
+"""Quiet speeds that are told of each curve."""
 MOST_PEAKS = 5
 """Peaks that are told of each curve."""
 MOST_ROWS = 25
@@ -78,10 +80,10 @@ def _frequencies(name: str, plane: PlaneModes, units: Units) -> str:
 def _damped(name: str, plane: PlaneModes) -> str:
     rows = [
         (
-            number(mode.eigenvalue.real),
+            number(mode.eigenvalue.real, 1e-3 * abs(mode.eigenvalue)),
             number(mode.eigenvalue.imag),
             number(mode.cycles_per_second),
-            number(mode.damping_ratio),
+            number(mode.damping_ratio, 1e-3),
             "" if mode.eigenvalue.imag else "does not swing",
         )
         for mode in plane.damped
@@ -98,6 +100,8 @@ def print_sweep(found: ToolSweep, units: Units) -> None:
     ends = [units.shown(float(found.speed[k]), "angular speed") for k in (0, -1)]
     print(f"\nengine at {ends[0]} to {ends[1]} {units.name('angular speed')}, ", end="")
     print(f"{len(found.speed)} speeds")
+    for line in unbounded(found.tool):
+        print(line)
     if found.transmissions is not None:
         for name, one in found.transmissions.stations.items():
             source = found.transmissions.source
@@ -111,6 +115,16 @@ def print_sweep(found: ToolSweep, units: Units) -> None:
         print(
             f"\nlargest bending moment: {number(float(moment[k]))} N m RMS at {where} "
             f"{units.name('length')} of the shaft, engine at {_speed(found.speed[k], units)}"
+        )
+
+
+def unbounded(tool: Tool) -> Iterable[str]:
+    """What to know of peaks where nothing takes power."""
+    measured = any(one.hand is not None and one.hand.impedance for one in tool.stations)
+    if not (tool.damped or measured):
+        yield (
+            "note: nothing takes power from this tool, so at its resonances there is no bound; "
+            "peaks are only those at the speeds that are computed"
         )
 
 
@@ -128,8 +142,10 @@ def _transmission(
         told = ", ".join(f"{number(size[k])} at {_bare(speed[k], units)}" for k in peaks)
         quiet = ", ".join(
             f"{number(depth, SILENT * float(np.max(size)))} at {_bare(at, units)}"
-            for at, depth in zip(one.quiet[plane], one.lowest[plane], strict=True)
+            for at, depth in zip(one.quiet[plane][:MOST_QUIET], one.lowest[plane], strict=False)
         )
+        more = len(one.quiet[plane]) - MOST_QUIET
+        quiet += f" and {more} more" if more > 0 else ""
         rows.append(("both planes" if alike else label, told or "none", quiet or "none"))
     unit = units.name("angular speed")
     title = f"Force at {name} over a force at {source}, once a turn; at {unit}"
@@ -151,6 +167,7 @@ def _stations(found: ToolSweep, units: Units) -> str:
     named = [(one.name, one.position) for one in found.tool.stations]
     named += [("", place) for place in found.further]
     at = found.places([place for _, place in named])
+    largest = float(np.max(found.largest_moment[0]))
     rows = []
     for row, (name, place) in enumerate(named):
         k = int(np.argmax(at.acceleration[row]))
@@ -162,7 +179,7 @@ def _stations(found: ToolSweep, units: Units) -> str:
                 units.shown(float(at.displacement[row, k]), "length"),
                 units.shown(float(at.velocity[row, k]), "speed"),
                 units.shown(float(at.acceleration[row, k]), "acceleration"),
-                number(float(at.moment[row, k])),
+                number(float(at.moment[row, k]), largest),
             )
         )
     header = (
@@ -174,8 +191,8 @@ def _stations(found: ToolSweep, units: Units) -> str:
         units.name("acceleration"),
         "N m",
     )
-    title = "Stations at the speed that shakes them most; RMS over time, both planes together"
-    return table(f"{title}; bending moment", header, rows)
+    title = "Stations at the speed at which each is accelerated most, and what it does there"
+    return table(f"{title}; RMS over time, both planes, and bending moment", header, rows)
 
 
 def _forces(found: ToolSweep, units: Units) -> str:
@@ -195,7 +212,10 @@ def _forces(found: ToolSweep, units: Units) -> str:
                 )
             )
     header = ("", "", units.name("force"), f"at {units.name('angular speed')}", "power, W")
-    return table("Largest forces on what holds the tool, RMS over time", header, rows, words=2)
+    if not rows:
+        return "\nnothing holds the tool"
+    title = "Largest forces on what holds the tool, of both hands where two hold on, RMS over time"
+    return table(title, header, rows, words=2)
 
 
 # -- studies ---------------------------------------------------------------------------------------

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.terminal.exposure import print_exposure
 from equipoise.terminal.tables import Row, number, table
-from equipoise.terminal.tool import in_units
+from equipoise.terminal.tool import in_units, unbounded
 from equipoise.terminal.units import Units
 from equipoise.tools.wishes import KEYS
 
@@ -31,6 +31,8 @@ def print_tool_exposure(found: ToolExposure, units: Units) -> None:
     ]
     print(f"\nworst hand over this range: a_hv from {told[0]} to {told[1]}")
     print("along the shaft nothing moves in bending, so a_hv has two axes")
+    for line in unbounded(found.response.tool):
+        print(line)
     if found.worst is None:
         print("there is no daily exposure without work; add [[work]], or give --duration")
         return
@@ -79,6 +81,8 @@ def print_design(found: ToolDesign, units: Units) -> None:
     low, high = (units.shown(float(found.speed[k]), "angular speed") for k in (0, -1))
     title = f"What to change, and what that brings at {low} to {high} {units.name('angular speed')}"
     print(table(title, ("", "", "before", "after", "change", ""), rows, words=2))
+    for line in unbounded(found.tool):
+        print(f"\n{line}")
     print(
         f"\n{found.arrived} of {found.searches} searches from places spread over the whole room "
         "came to this design"

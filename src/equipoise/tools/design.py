@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.tools.exposed import grips
-from equipoise.tools.felt import band_weights, values_of
+from equipoise.tools.felt import values_of
 from equipoise.tools.model import Tool
 from equipoise.tools.response import respond_tool
 from equipoise.tools.search import Search, Told
 from equipoise.tools.studies import changed
+from equipoise.tools.sweep import speeds_between
 from equipoise.tools.wishes import KEYS
 
 Array = np.ndarray[Any, Any]
@@ -24,6 +25,8 @@ SPEEDS = 81
 FINER, STILL = 4, 0.002
 """On so many times as many speeds the measure must be the same to this share; else they double."""
 DOUBLINGS = 3
+DIGITS = 6
+"""Significant digits of the numbers of a better tool, for people to set."""
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
 ACCELERATION = "acceleration"
@@ -124,39 +127,49 @@ def _told(search: Search, best: Array, arrived: int, searches: int) -> ToolDesig
     tool, design = search.tool, search.design
     values = search.low + search.wide * best
     better = tool
-    for (station, key), value in zip(search.numbers, values, strict=True):
-        better = changed(better, station, key, float(value))
+    for one, value in zip(design.variables, values, strict=True):
+        handy = min(max(float(f"{value:.{DIGITS}g}"), one.low), one.high)
+        better = changed(better, one.station, one.key, handy)
     after = values_of(better, search.numbers)
     rows = tuple(
         Before(one.name, KEYS[one.key], float(start), float(end))
         for one, start, end in zip(design.variables, search.start, after, strict=True)
     )
-    curves = [_curves(one, search.band.speed, search.hands) for one in (tool, better)]
+    speed = search.band.speed
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
-    a_hv = np.array([np.max(list(curve.values()), axis=0) for curve in curves])
+    a_hv = np.array([np.max(_curves(one, speed, search.hands), axis=0) for one in (tool, better)])
     return ToolDesign(
         tool,
-        replace(better, design=None),
+        better,
         rows,
-        tuple(_figures(search, curves, better)),
+        tuple(_figures(search, better)),
         tuple(edges),
         searches,
         arrived,
-        search.band.speed,
+        speed,
         a_hv,
     )
 
 
-def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> dict[str, Array]:
+def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> list[Array]:
+    """a_hv of each hand (S,), m/s2."""
     found = grips(respond_tool(tool, speed))
-    return {name: found[name].a_hv for name in hands}
+    return [found[name].a_hv for name in hands]
 
 
-def _figures(search: Search, curves: list[dict[str, Array]], better: Tool) -> Iterable[Before]:
-    """Figures of the tools themselves, not of the search, the measure first."""
-    weights = band_weights(len(search.band.speed))
-    means = [{name: float(np.sqrt(one**2 @ weights)) for name, one in c.items()} for c in curves]
-    tops = [{name: float(np.max(one)) for name, one in c.items()} for c in curves]
+def _figures(search: Search, better: Tool) -> Iterable[Before]:
+    """Figures of the tools themselves, not of the search, the measure first.
+
+    Each tool at speeds of its own, that are dense about its resonances.
+    """
+    low, high = search.design.speeds
+    means, tops = [], []
+    for tool in (search.tool, better):
+        speed = speeds_between(tool, low, high, len(search.band.speed))
+        curves = dict(zip(search.hands, _curves(tool, speed, search.hands), strict=True))
+        squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
+        means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
+        tops.append({name: float(np.max(one)) for name, one in curves.items()})
     yield Before(f"a_hv of the worst hand, {WORDS['rms']}", ACCELERATION, *map(_worst, means))
     yield Before(f"a_hv of the worst hand, {WORDS['peak']}", ACCELERATION, *map(_worst, tops))
     for name in search.hands if len(search.hands) > 1 else ():

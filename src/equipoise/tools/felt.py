@@ -20,6 +20,8 @@ from equipoise.tools.studies import has, number_of
 from equipoise.tools.wishes import KEYS
 
 Array = np.ndarray[Any, Any]
+TOGETHER = 24
+"""Numbers of whose derivatives memory has to hold at once."""
 Number = tuple[str, str]
 """Station and key of a number of the tool."""
 
@@ -146,8 +148,9 @@ def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
     In m/s2 for each SI unit; of a pair of numbers, by both together.
     """
     numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
-    felt = Band(tool, speed).felt(numbers)
-    means = [mean_over_band(one) for one in felt.hands.values()]
-    worst = max(means, key=lambda one: float(one.value[0]))
-    slopes = worst.slopes[:, 0] / (2 * np.sqrt(worst.value[0]))
-    return dict(zip(numbers, slopes.tolist(), strict=True))
+    band = Band(tool, speed)
+    parts = [band.felt(numbers[k : k + TOGETHER]) for k in range(0, len(numbers), TOGETHER)]
+    means = {name: mean_over_band(one).value[0] for name, one in parts[0].hands.items()}
+    worst = max(means, key=lambda name: float(means[name]))
+    slopes = np.concatenate([mean_over_band(part.hands[worst]).slopes[:, 0] for part in parts])
+    return dict(zip(numbers, (slopes / (2 * np.sqrt(means[worst]))).tolist(), strict=True))

@@ -21,7 +21,7 @@ Array = np.ndarray[Any, Any]
 Kind = Literal["undamped", "free", "forced"]
 """What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
 which are known at real frequencies alone."""
-MOST_CELLS = 2000
+MOST_CELLS = 1000
 """Between two stations; far beyond any tool."""
 TUNED, NEARLY_NOTHING = 1e-15, 1e-200
 """Share of its stiffness by which an undamped absorber misses its own frequency, and what one

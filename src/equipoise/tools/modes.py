@@ -12,7 +12,13 @@ import numpy as np
 from equipoise.tools.chain import Pair, carry, solve
 from equipoise.tools.damped import eigenvalues
 from equipoise.tools.fields import Field
-from equipoise.tools.frequencies import floating, natural_frequencies, rigid_modes, scale_of
+from equipoise.tools.frequencies import (
+    floating,
+    frequencies_below,
+    natural_frequencies,
+    rigid_modes,
+    scale_of,
+)
 from equipoise.tools.layout import Kind, Layout
 from equipoise.tools.model import PLANES, Station, Tool
 
@@ -222,7 +228,7 @@ def _damped_modes(
     """Modes with damping of both planes, by size, and how many were not found."""
     starts = np.maximum(frequency, 1e-3 * radius[:, None])
     if layout.tool.damped:
-        low = SLOWEST * scale_of(layout.tool)
+        low = _slowest(layout.tool, frequency)
         values, lacking = eigenvalues(layout, starts, (low, radius))
     else:
         values, lacking = [1j * row[row > 0] for row in frequency], [0, 0]
@@ -232,6 +238,26 @@ def _damped_modes(
         shapes = _scaled(np.moveaxis(_shapes(layout, own[None], places, "free")[0], 0, -1))
         found.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
     return found, lacking
+
+
+def _slowest(tool: Tool, frequency: Array) -> float:
+    """Smallest size of an eigenvalue that is looked for, 1/s, by the natural frequencies, rad/s."""
+    least = SLOWEST * scale_of(tool)
+    return min(least, SLOWEST * float(np.min(frequency[frequency > 0], initial=least / SLOWEST)))
+
+
+def swinging_below(tool: Tool, highest: float) -> Array:
+    """Eigenvalues (K,) of both planes that swing, 1/s, smaller than a frequency, rad/s."""
+    natural = frequencies_below(tool, highest)
+    most = max(map(len, natural)) + max(map(len, rigid_modes(tool)))
+    if not tool.damped or most == 0:
+        return np.asarray(1j * np.concatenate(natural))
+    frequency = natural_frequencies(tool, most)
+    starts = np.maximum(frequency, 1e-3 * highest)
+    layout, ends = Layout(tool, 2 * highest), np.full(2, highest)
+    values, _ = eigenvalues(layout, starts, (_slowest(tool, frequency), ends))
+    both = np.concatenate(values)
+    return np.asarray(both[both.imag > 0])
 
 
 def _shapes(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
@@ -267,17 +293,22 @@ def _scaled(shapes: Array) -> Array:
 def _zeros(places: Array, shape: Array) -> Array:
     """Places at which a shape changes its sign, by a cubic through the four points about each."""
     before = np.flatnonzero(np.signbit(shape[1:]) != np.signbit(shape[:-1]))
-    first = np.clip(before - 1, 0, len(places) - 4)
-    found = []
-    for k in first:
-        x, y = places[k : k + 4], shape[k : k + 4]
-        # the place as a cubic of the displacement, as the shape rises or falls through it
-        found.append(
-            sum(
-                x[i] * np.prod([y[j] / (y[j] - y[i]) for j in range(4) if j != i]) for i in range(4)
-            )
-        )
-    return np.array(found)
+    return np.array([_zero(places, shape, int(k)) for k in before])
+
+
+def _zero(places: Array, shape: Array, k: int) -> float:
+    """The place between two points, as a cubic of the displacement; on a line across a kink."""
+    first = min(max(k - 1, 0), len(places) - 4)
+    x, y = places[first : first + 4], shape[first : first + 4]
+    cubic = 0.0
+    with np.errstate(all="ignore"):
+        for i in range(4):
+            others = np.delete(y, i)
+            cubic += float(x[i] * np.prod(others / (others - y[i])))
+    if places[k] <= cubic <= places[k + 1]:
+        return cubic
+    share = shape[k] / (shape[k] - shape[k + 1])
+    return float(places[k] + share * (places[k + 1] - places[k]))
 
 
 def rigid_names(free: Array) -> tuple[str, ...]:
@@ -298,6 +329,8 @@ def _notes(tool: Tool, lacking: Sequence[int]) -> list[str]:
         for one in tool.stations
         if one.hand is not None and one.hand.impedance
     ]
-    if max(lacking) > 0:
-        notes.append(f"{max(lacking)} eigenvalues with damping could not be found")
+    for name, count in zip(PLANES, lacking, strict=True):
+        if count > 0:
+            many = "1 eigenvalue" if count == 1 else f"{count} eigenvalues"
+            notes.append(f"{many} with damping of the {name} plane could not be found")
     return notes

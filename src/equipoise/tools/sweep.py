@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.tools.frequencies import frequencies_below
 from equipoise.tools.model import PLANES, Tool
+from equipoise.tools.modes import swinging_below
 from equipoise.tools.response import ToolResponse, respond_tool
 from equipoise.tools.sources import shakes
 from equipoise.tools.transmission import Transmissions, held, transmit
@@ -22,7 +22,12 @@ Array = np.ndarray[Any, Any]
 SPEEDS = 400
 """Equally spaced speeds in a range, if not told otherwise."""
 BESIDE = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
-"""Shares of a resonance beside which it is looked at more closely."""
+"""Shares of a resonance without damping beside which it is looked at."""
+HALF = np.array([0.2, 0.4, 0.6, 0.8, 1, 1.3, 1.7, 2.3, 3, 4, 6, 9, 14, 22, 35])
+WIDTHS = np.concatenate([-HALF, [0.0], HALF])
+"""Half widths of a resonance with damping at which it is looked at."""
+NARROW = 1e-9
+"""Damping ratio below which a resonance is one without damping."""
 PLACES = 401
 """Of the shaft at which the bending moment is looked at."""
 LARGEST = 200_000
@@ -194,7 +199,12 @@ def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> 
     }
     loudest = max(loudness.values(), default=0.0)
     orders = {order for order, size in loudness.items() if size >= LOUD * loudest} | {1.0}
-    natural = np.concatenate(frequencies_below(tool, max(orders) * high))
-    beside = [np.outer(natural / order, 1 + BESIDE).ravel() for order in orders]
+    found = swinging_below(tool, max(orders) * high)
+    wide = np.abs(found.real) > NARROW * found.imag
+    about = [
+        (found.imag[~wide, None] * (1 + BESIDE)).ravel(),
+        (found.imag[wide, None] + np.abs(found.real[wide, None]) * WIDTHS).ravel(),
+    ]
+    beside = [part / order for order in orders for part in about]
     speeds = np.unique(np.concatenate([np.linspace(low, high, count), *beside]))
     return np.asarray(speeds[(speeds >= low) & (speeds <= high)])

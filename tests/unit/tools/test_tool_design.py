@@ -182,9 +182,9 @@ def test_added_mass_is_limited() -> None:
 
 @problems
 def test_figures_are_those_of_the_tools(name: str) -> None:
-    """Before and after, computed again from both tools."""
+    """Before and after, computed again from both tools; theirs are at speeds of their own."""
     plan, found = PLANS[name], designed(name)
-    assert found.better.design is None
+    assert found.better.design == plan
     figures = {row.name: row for row in found.figures}
     wide = found.speed[-1] - found.speed[0]
     hands = plan.hands or ("rear", "front")
@@ -197,10 +197,10 @@ def test_figures_are_those_of_the_tools(name: str) -> None:
     for word, values in (("RMS over the band", rms), ("largest", tops)):
         row = figures[f"a_hv of the worst hand, {word}"]
         wanted = [max(one.values()) for one in values]
-        assert [row.before, row.after] == pytest.approx(wanted, rel=1e-10)
+        assert [row.before, row.after] == pytest.approx(wanted, rel=1e-3)
         for hand in hands if len(hands) > 1 else ():
             row = figures[f"a_hv at {hand}, {word}"]
-            assert [row.before, row.after] == pytest.approx([one[hand] for one in values])
+            assert [row.before, row.after] == pytest.approx([one[hand] for one in values], rel=1e-3)
     mass = figures["mass"]
     assert [mass.before, mass.after] == pytest.approx([found.tool.mass, found.better.mass])
     for k, each in enumerate(both_curves):

@@ -271,7 +271,7 @@ def test_notes(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(damped, "TRIES", 1)
     monkeypatch.setattr(damped, "ROUNDS", 1)
     notes = vibrate_tool(tool, 3).notes
-    assert any("eigenvalues with damping could not be found" in note for note in notes)
+    assert any("could not be found" in note for note in notes)
 
 
 def test_as_plain_values() -> None:

@@ -55,7 +55,7 @@ DASHED: Any = (0, (4, 2))
 
 
 def moment_figure(response: ToolResponse, speed: float | None) -> Figure:
-    """Amplitude of the bending moment, and the shape of each order when it is largest."""
+    """RMS of the bending moment, and the shape of each order when it is largest."""
     tool = response.tool
     speed = speed_shown(response) if speed is None else speed
     one = respond_tool(tool, speed)
@@ -67,7 +67,7 @@ def moment_figure(response: ToolResponse, speed: float | None) -> Figure:
     names = names_of(tool, LEFT, RIGHT)
     above = TOP + LINE * rows_of(keys) + names.height
     figure = blank(WIDTH, above + MOMENT + GAP + SHAPE + FOOT)
-    what = "Amplitude of the bending moment, and shape of each order when it is largest"
+    what = "RMS of the bending moment, and shape of each order when it is largest"
     heading(figure, tool.title, f"{what}; {turns(speed)} rpm", LEFT)
     legend_at(figure, keys, TOP - 0.06)
     wide = WIDTH - LEFT - RIGHT
@@ -149,8 +149,8 @@ def _keys(orders: Array, loudest: list[int], shapes: dict[tuple[int, int], Array
 
 
 def _draw_moment(axes: Axes, places: Array, line: Line, loudest: list[int]) -> None:
-    """Root of the squares of all orders and planes, and of the planes of the loudest orders."""
-    squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1)
+    """RMS over time of all orders and planes, and of both planes of the loudest orders."""
+    squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1) / 2
     total = np.sqrt(np.sum(squares, axis=1))
     unit = Unit.of("force", True, total)
     name_y(axes, f"moment, {unit.name}")
