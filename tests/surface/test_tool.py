@@ -173,6 +173,26 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     )
 
 
+def test_design_before_and_after() -> None:
+    """One table: what to change, and what that brings; what ends at its range says so."""
+    text = example_text("pole-saw")
+    shown = succeeded(equipoise("tool", written(text + SMALL.replace('"harness"', '"belt"'))))
+    assert "What to change" not in shown
+    shown = succeeded(equipoise("tool", "tool.toml", "--design"))
+    row = re.search(r"^belt position +mm +600\.0 +(\S+) +(\S+ %)(.*)$", shown, re.MULTILINE)
+    assert row
+    assert 200 <= float(row[1]) <= 300
+    assert "that it may be" in row[3] or 200 < float(row[1]) < 300
+    assert "a_hv of the worst hand, RMS over the band  m/s^2" in shown
+    assert re.search(r"^[1-8] of 8 searches from places", shown, re.MULTILINE)
+
+
+def test_sensitivities_have_no_picture(folder: Path) -> None:
+    said = refused(equipoise("tool", "pole-saw", "--sensitivities", "--plot", "pictures"))
+    assert "--plot: sensitivities have no picture" in said
+    assert not list(folder.iterdir())
+
+
 # -- files -----------------------------------------------------------------------------------------
 
 
@@ -235,6 +255,7 @@ def test_start_is_quick_and_alone() -> None:
         (["--vary", "harness position = 0 kg : 1 kg"], "--vary: got '0 kg'"),
         (["--design"], "design: missing; add the table [design]"),
         (["--out", "new.toml"], "--out belongs to --design; give both"),
+        (["--number", "5", "--exposure"], "--number belongs to --modes or --vary"),
         (["--format", "png"], "--format belongs to --plot; give both"),
         (["--csv", ""], "--csv: got an empty name"),
         (["--csv", "no/where.csv"], "there is no such folder"),

@@ -15,7 +15,7 @@ def tool(
     /,
     *,
     modes: bool = False,
-    number: Annotated[str, SIGNED] = "6",
+    number: Annotated[str | None, SIGNED] = None,
     respond: Annotated[str | None, SIGNED] = None,
     speeds: Annotated[str | None, SIGNED] = None,
     at: Annotated[str | None, SIGNED] = None,
@@ -43,7 +43,7 @@ def tool(
     modes
         Natural frequencies, eigenvalues with damping, shapes and their nodes.
     number
-        How many natural frequencies.
+        With --modes or --vary: how many natural frequencies, 6 if not given.
     respond
         Transmission, forces and motion over a range of speeds of the engine: "2000 rpm : 9000 rpm".
     speeds

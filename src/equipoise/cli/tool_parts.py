@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 VARY = re.compile(r"(?P<station>\S.*?)\s+(?P<key>\S+)\s*=\s*(?P<low>[^:]*\S)\s*:\s*(?P<high>.*\S)")
 RANGE = '"2000 rpm : 9000 rpm"'
-MOST_MODES, MOST_SPEEDS = 100, 5_000
+MODES, MOST_MODES, MOST_SPEEDS = 6, 100, 5_000
 VALUES, BAND = 81, 201
 """Values of a number that is varied; speeds over which sensitivities are told."""
 AROUND = (0.5, 1.25)
@@ -57,7 +57,7 @@ class Asked:
 
     tool: Tool
     file: str
-    number: str
+    number: str | None
     respond: str | None
     speeds: str | None
     duration: str | None
@@ -67,6 +67,8 @@ class Asked:
 
     def names(self, chosen: Sequence[str]) -> Sequence[str]:
         """Answers that are asked for; where none is, those that the file has what is needed for."""
+        if self.number is not None and chosen and not {"modes", "vary"} & {*chosen}:
+            raise UsageError("--number belongs to --modes or --vary; give one of them too")
         if chosen:
             return chosen
         tool = self.tool
@@ -91,7 +93,7 @@ class Asked:
     @property
     def count(self) -> int:
         """Natural frequencies."""
-        return whole("--number", self.number, 1, MOST_MODES)
+        return MODES if self.number is None else whole("--number", self.number, 1, MOST_MODES)
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -345,6 +347,8 @@ def give(
         drawn: dict[str, Figure] = {}
         for part in parts:
             drawn |= part.drawings()
+        if not drawn:
+            raise UsageError("--plot: sensitivities have no picture; leave it out")
         draw(drawn, plot, kind)
     if json:
         from equipoise.io.output import json_text
