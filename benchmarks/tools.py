@@ -91,7 +91,7 @@ def build(theory: str) -> Tool:
         "brush cutter",
         Shaft(LENGTH, tube, theory=theory),
         STATIONS,
-        (Excitation("engine", ENGINE, unbalance=UNBALANCE),),
+        (Excitation("engine", ENGINE, unbalance=UNBALANCE, ratio=-1.0, phase=np.pi / 2),),
     )
     return tool.with_station(HANDLE, hand=replace(tool.station(HANDLE).hand, hands=2))
 

@@ -226,7 +226,10 @@ CONTENTS = {
     ),
     "no hours": (f"{TASKS}raking,3,0\n", "x.csv, line 5, column duration: got 0 h; give more than"),
     "no time": (f"{TASKS}raking,3,\n", "x.csv, line 5, column duration: got ''; give a finite"),
-    "negative task": (f"{TASKS}raking,-3,1\n", "x.csv, line 5, column acceleration: got -3; give"),
+    "negative task": (
+        f"{TASKS}raking,-3,1\n",
+        "x.csv, line 5, column acceleration: got -3 m",
+    ),
     "long day": (f"{TASKS}raking,3,20\n", "the tasks take 25 h together; give at most 24 h a day"),
 }
 

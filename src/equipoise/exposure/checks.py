@@ -14,12 +14,12 @@ Array = np.ndarray[Any, Any]
 AXES = ("x", "y", "z")
 
 
-def not_negative(name: str, value: Any) -> float:
+def not_negative(name: str, value: Any, unit: str = "m/s^2") -> float:
     """A finite number of 0 or more."""
     if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
         raise UsageError(f"{name}: got {value!r}; give a number of 0 or more")
     if value != 0 and not TINY <= value <= HUGE:
-        raise UsageError(f"{name}: got {value:g}; give a finite number of 0 or more")
+        raise UsageError(f"{name}: got {value:g} {unit}; give a finite number of 0 or more")
     return float(value)
 
 

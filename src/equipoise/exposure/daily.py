@@ -79,8 +79,8 @@ class Task:
     duration: float
 
     def __post_init__(self) -> None:
-        for key in ("acceleration", "duration"):
-            object.__setattr__(self, key, not_negative(key, getattr(self, key)))
+        for key, unit in (("acceleration", "m/s^2"), ("duration", "s")):
+            object.__setattr__(self, key, not_negative(key, getattr(self, key), unit))
         if not 0 < self.duration <= DAY:
             raise UsageError(
                 f"duration: got {self.duration / 3600:g} h; give more than 0 and at most 24 h a day"

@@ -63,7 +63,7 @@ def test_the_whole_day_may_be_worked() -> None:
 @pytest.mark.parametrize(
     ("acceleration", "duration", "said"),
     [
-        (-1.0, HOUR, "acceleration: got -1; give a finite number of 0 or more"),
+        (-1.0, HOUR, r"acceleration: got -1 m/s\^2; give a finite number of 0 or more"),
         (nan, HOUR, "acceleration: got nan"),
         (inf, HOUR, "acceleration: got inf"),
         (1e-200, HOUR, "acceleration: got 1e-200"),
@@ -87,5 +87,5 @@ def test_days_that_are_refused() -> None:
 
 
 def test_modes_that_are_refused() -> None:
-    with pytest.raises(UsageError, match="racing: got -2; give a finite number of 0 or more"):
+    with pytest.raises(UsageError, match=r"racing: got -2 m/s\^2; give a finite number"):
         equivalent(1.0, -2.0)
