@@ -95,7 +95,7 @@ OPTIONS = {
         *["--periodic", "--json", "--plot", "--format"],
     ],
     "modes": ["FILE", "--model", "--json", "--plot", "--format"],
-    "new": ["FILE"],
+    "new": ["FILE", "--tool"],
     "plant": [
         *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
         *["--plot", "--format", "--fit", "--out", "--seed"],

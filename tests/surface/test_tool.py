@@ -135,6 +135,15 @@ def test_sensitivities_are_those_of_python() -> None:
     assert "mm/s^2" in succeeded(equipoise("tool", "pole-saw", "--sensitivities"))
 
 
+def test_a_file_to_start_from() -> None:
+    result = equipoise("new", "mine.toml", "--tool")
+    assert result.err == "wrote mine.toml; next: equipoise tool mine.toml\n"
+    shown = succeeded(equipoise("tool", "mine.toml"))
+    assert "A day at handle" in shown
+    assert "ready: equipoise tool mine.toml" in succeeded(equipoise("check", "mine.toml"))
+    assert "is there already" in refused(equipoise("new", "mine.toml", "--tool"))
+
+
 # -- a better tool ---------------------------------------------------------------------------------
 
 SMALL = """

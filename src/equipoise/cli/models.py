@@ -62,18 +62,21 @@ def schema(*, tool: bool = False) -> None:
 
 
 @app.command
-def new(file: Annotated[str, FILE] = "machine.toml", /) -> None:
+def new(file: Annotated[str, FILE] = "machine.toml", /, *, tool: bool = False) -> None:
     """Write a commented model file to start from.
 
     Parameters
     ----------
     file
         Where to write it; a file that is there already is left alone.
+    tool
+        That of a hand-held tool, not of a linkage.
     """
     from importlib.resources import files
 
     from equipoise.io.output import write
 
-    start = files("equipoise").joinpath("io", "start.toml").read_text(encoding="utf-8")
+    name, command = ("start-tool.toml", "tool") if tool else ("start.toml", "analyze")
+    start = files("equipoise").joinpath("io", name).read_text(encoding="utf-8")
     write(file, start, replace=False)
-    print(f"wrote {file}; next: equipoise analyze {file}", file=sys.stderr)
+    print(f"wrote {file}; next: equipoise {command} {file}", file=sys.stderr)

@@ -227,25 +227,30 @@ def _is_given(value: float | tuple[float, float]) -> bool:
 
 
 def _wrong_impedance(where: str, table: Impedance) -> Iterator[ModelError]:
+    """What is wrong with a table, with the name of its file where it has one."""
+    what = _wrong_rows(table)
+    if what:
+        yield ModelError(where, f"{table.file}: {what}" if table.file else what)
+
+
+def _wrong_rows(table: Impedance) -> str:
     rows = len(table.frequency)
     if {rows} != {len(table.resistance), len(table.reactance)}:
-        yield ModelError(where, "the columns differ in length")
-    elif rows < 2:
-        yield ModelError(where, "the table has fewer than two rows; a curve needs two")
-    elif any(b <= a for a, b in pairwise(table.frequency)):
-        yield ModelError(where, "the frequencies must rise from row to row")
-    elif table.frequency[0] <= 0:
-        yield ModelError(
-            where, f"the first frequency is {table.frequency[0]:g} Hz; give more than 0"
-        )
-    elif min(table.resistance) < 0:
-        least = min(table.resistance)
-        at = table.frequency[table.resistance.index(least)]
-        yield ModelError(
-            where,
-            f"the resistance at {at:g} Hz is {least:g} N s/m; a hand only takes energy away, "
-            "give 0 or more",
-        )
+        return "the columns differ in length"
+    if rows < 2:
+        return "the table has fewer than two rows; a curve needs two"
+    if any(b <= a for a, b in pairwise(table.frequency)):
+        return "the frequencies must rise from row to row"
+    if table.frequency[0] <= 0:
+        return f"the first frequency is {table.frequency[0]:g} Hz; give more than 0"
+    least = min(table.resistance)
+    if least >= 0:
+        return ""
+    at = table.frequency[table.resistance.index(least)]
+    return (
+        f"the resistance at {at:g} Hz is {least:g} N s/m; a hand only takes energy away, give 0 or "
+        "more"
+    )
 
 
 # -- excitations, operation, work ------------------------------------------------------------------
