@@ -33,9 +33,10 @@ from scipy.optimize import differential_evolution
 from equipoise.tools.design import design_tool
 from equipoise.tools.exposed import grips
 from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import Excitation, Hand, Harness, Shaft, Station, Tool, Tube
+from equipoise.tools.model import Excitation, Hand, Harness, Station, Tool
 from equipoise.tools.modes import vibrate_tool
 from equipoise.tools.response import respond_tool
+from equipoise.tools.sections import Shaft, Tube
 from equipoise.tools.studies import changed
 from equipoise.tools.transmission import transmit
 from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable

@@ -66,9 +66,9 @@ _HOMES = {
     "Regressor": "mechanism.parameters",
     "Response": "structures.response",
     "Row": "mechanism.support",
-    "Section": "tools.model",
-    "Segment": "tools.model",
-    "Shaft": "tools.model",
+    "Section": "tools.sections",
+    "Segment": "tools.sections",
+    "Shaft": "tools.sections",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
@@ -86,7 +86,7 @@ _HOMES = {
     "ToolSweep": "tools.sweep",
     "Transient": "structures.transient",
     "Transmissions": "tools.transmission",
-    "Tube": "tools.model",
+    "Tube": "tools.sections",
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighted",
     "Work": "tools.model",
@@ -273,17 +273,17 @@ if TYPE_CHECKING:
     from equipoise.tools.model import Harness as Harness
     from equipoise.tools.model import Impedance as Impedance
     from equipoise.tools.model import Operation as Operation
-    from equipoise.tools.model import Section as Section
-    from equipoise.tools.model import Segment as Segment
-    from equipoise.tools.model import Shaft as Shaft
     from equipoise.tools.model import Station as Station
     from equipoise.tools.model import Tool as Tool
-    from equipoise.tools.model import Tube as Tube
     from equipoise.tools.model import Work as Work
     from equipoise.tools.modes import ToolModes as ToolModes
     from equipoise.tools.modes import vibrate_tool as vibrate_tool
     from equipoise.tools.response import ToolResponse as ToolResponse
     from equipoise.tools.response import respond_tool as respond_tool
+    from equipoise.tools.sections import Section as Section
+    from equipoise.tools.sections import Segment as Segment
+    from equipoise.tools.sections import Shaft as Shaft
+    from equipoise.tools.sections import Tube as Tube
     from equipoise.tools.studies import vary_tool as vary_tool
     from equipoise.tools.sweep import ToolSweep as ToolSweep
     from equipoise.tools.sweep import sweep_tool as sweep_tool

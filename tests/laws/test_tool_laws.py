@@ -13,18 +13,10 @@ import pytest
 
 from equipoise.tools.fields import Line
 from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import (
-    Absorber,
-    Excitation,
-    Hand,
-    Section,
-    Segment,
-    Station,
-    Theory,
-    Tool,
-)
+from equipoise.tools.model import Absorber, Excitation, Hand, Station, Tool
 from equipoise.tools.modes import vibrate_tool
 from equipoise.tools.response import ToolResponse, respond_tool
+from equipoise.tools.sections import Section, Segment, Theory
 from unit.tools.samples import THEORIES, bare, both, pieces_of, random_tool, still
 
 Array = np.ndarray[Any, Any]

@@ -17,9 +17,10 @@ import numpy as np
 import pytest
 
 from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import Hand, Impedance, Theory, Tool
+from equipoise.tools.model import Hand, Impedance, Tool
 from equipoise.tools.modes import vibrate_tool
 from equipoise.tools.response import ToolResponse, respond_tool
+from equipoise.tools.sections import Theory
 from support.beam_reference import Response
 from unit.tools.samples import THEORIES, attached_of, random_tool, reference, still
 

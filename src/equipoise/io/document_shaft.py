@@ -18,7 +18,7 @@ from equipoise.io.planes import (
     TorsionalDampings,
     TorsionalStiffnesses,
 )
-from equipoise.tools import model
+from equipoise.tools import model, sections
 from equipoise.tools.model import NOTHING
 
 _PLANES = "; a table for unlike planes"
@@ -145,8 +145,8 @@ class Segment(Profile):
     start: Length = Field(alias="from", description="where it begins", examples=["1.2 m"])
     stop: Length = Field(alias="to", description="where it ends", examples=["1.35 m"])
 
-    def to_segment(self, where: str) -> model.Segment:
-        return model.Segment(self.start, self.stop, self.to_profile(where))
+    def to_segment(self, where: str) -> sections.Segment:
+        return sections.Segment(self.start, self.stop, self.to_profile(where))
 
 
 class Shaft(Profile):
@@ -171,8 +171,8 @@ class Shaft(Profile):
     segments: list[Segment] = Field([], description="parts with another section")
     stations: list[Station] = Field([], description="what sits on it and holds it")
 
-    def to_shaft(self) -> model.Shaft:
-        return model.Shaft(
+    def to_shaft(self) -> sections.Shaft:
+        return sections.Shaft(
             length=self.length,
             profile=self.to_profile("shaft", self._linear()),
             segments=tuple(

@@ -21,14 +21,11 @@ from equipoise.tools.model import (
     Hand,
     Harness,
     Operation,
-    Section,
-    Segment,
-    Shaft,
     Station,
     Tool,
-    Tube,
     Work,
 )
+from equipoise.tools.sections import Section, Segment, Shaft, Tube
 from equipoise.tools.wishes import KEYS, OUTPUTS, DesignLimit, DesignPlan, DesignVariable
 
 

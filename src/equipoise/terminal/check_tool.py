@@ -10,7 +10,8 @@ from equipoise.io.files import printable
 from equipoise.terminal.tables import PER_RPM, number
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Both, Excitation, Hand, Operation, Shaft, Station, Tool
+    from equipoise.tools.model import Both, Excitation, Hand, Operation, Station, Tool
+    from equipoise.tools.sections import Shaft
     from equipoise.tools.wishes import DesignPlan
 
 RATES = (

@@ -11,23 +11,14 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
 from equipoise.mechanism.checks import not_finite, positive, unknown, wrong_text
-from equipoise.tools.wishes import KEYS, MEASURES, OUTPUTS
+from equipoise.tools.design_checks import wrong_design
+from equipoise.tools.places import places, unknown_station, wrong_range
 
 if TYPE_CHECKING:
     from typing_extensions import TypeIs
 
-    from equipoise.tools.model import (
-        Excitation,
-        Hand,
-        Impedance,
-        Operation,
-        Section,
-        Shaft,
-        Station,
-        Tool,
-        Tube,
-    )
-    from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable
+    from equipoise.tools.model import Excitation, Hand, Impedance, Operation, Station, Tool
+    from equipoise.tools.sections import Section, Shaft, Tube
 
 MOST = 200
 """Far beyond any tool, as in `mechanism.checks`."""
@@ -63,19 +54,15 @@ def problems(tool: Tool) -> Iterator[ModelError]:
     for key in ("excitations", "operation", "work", "design"):
         yield from not_finite(key, getattr(tool, key))
     yield from _wrong_shaft(tool.shaft)
-    for where, station in _places("shaft.stations", tool.stations):
+    for where, station in places("shaft.stations", tool.stations):
         yield from _wrong_station(where, station, tool.shaft)
-    for where, excitation in _places("excitations", tool.excitations):
+    for where, excitation in places("excitations", tool.excitations):
         yield from _wrong_excitation(where, excitation, tool)
     if tool.operation is not None:
         yield from _wrong_operation(tool.operation)
     yield from _wrong_work(tool)
     if tool.design is not None:
-        yield from _wrong_design(tool.design, tool)
-
-
-def _places(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-    return ((f"{key}[{number}]", item) for number, item in enumerate(items, 1))
+        yield from wrong_design(tool.design, tool)
 
 
 def _named(tool: Tool) -> Iterable[tuple[str, Sequence[Any]]]:
@@ -96,7 +83,7 @@ def _wrong_names(tool: Tool) -> Iterator[ModelError]:
     yield from wrong_text("title", tool.title)
     for key, items in _named(tool):
         seen: set[str] = set()
-        for where, item in _places(key, items):
+        for where, item in places(key, items):
             name = item.name
             yield from wrong_text(f"{where}.name", name)
             if not name.strip():
@@ -127,7 +114,7 @@ def _wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
     if shaft.theory not in THEORIES:
         yield ModelError("shaft.theory", unknown(shaft.theory, THEORIES, "theory"))
     yield from _wrong_profile("shaft", shaft.profile, shaft)
-    for where, segment in _places("shaft.segments", shaft.segments):
+    for where, segment in places("shaft.segments", shaft.segments):
         if not 0 <= segment.start < segment.stop <= shaft.length:
             yield ModelError(
                 where,
@@ -135,8 +122,8 @@ def _wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
                 f"which goes from 0 m to {shaft.length:g} m",
             )
         yield from _wrong_profile(where, segment.profile, shaft)
-    places = sorted(_places("shaft.segments", shaft.segments), key=lambda place: place[1].start)
-    for (before, first), (where, second) in pairwise(places):
+    ordered = sorted(places("shaft.segments", shaft.segments), key=lambda place: place[1].start)
+    for (before, first), (where, second) in pairwise(ordered):
         if second.start < first.stop:
             yield ModelError(
                 where,
@@ -257,7 +244,7 @@ def _wrong_rows(table: Impedance) -> str:
 
 
 def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterator[ModelError]:
-    yield from _unknown_station(f"{where}.station", excitation.station, tool)
+    yield from unknown_station(f"{where}.station", excitation.station, tool)
     if sum(getattr(excitation, key) is not None for key in CAUSES) != 1:
         yield ModelError(where, "give exactly one of force, unbalance and linkage")
     yield from _negative(where, excitation, "force", "unbalance")
@@ -270,112 +257,20 @@ def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterato
         yield ModelError(f"{where}.ratio", "got 0; what does not turn shakes nothing, give another")
 
 
-def _unknown_station(where: str, name: str, tool: Tool) -> Iterator[ModelError]:
-    names = [station.name for station in tool.stations]
-    if name not in names:
-        yield ModelError(where, unknown(name, names, "station"))
-
-
 def _wrong_operation(operation: Operation) -> Iterator[ModelError]:
     for key in ("speed", "idling", "racing"):
         yield from positive(f"operation.{key}", getattr(operation, key), "rad/s")
     if operation.speeds:
-        yield from _wrong_range("operation.speeds", operation.speeds)
+        yield from wrong_range("operation.speeds", operation.speeds)
     idling, racing = operation.idling, operation.racing
     if idling is not None and racing is not None and idling >= racing:
         yield ModelError("operation.racing", "is not above idling; give a higher speed")
 
 
-def _wrong_range(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
-    if len(speeds) != 2:
-        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
-    elif not 0 < speeds[0] < speeds[1]:
-        low, high = speeds
-        yield ModelError(
-            where, f"got {low:g} to {high:g} rad/s; give two above 0, the lower one first"
-        )
-
-
 def _wrong_work(tool: Tool) -> Iterator[ModelError]:
-    for where, work in _places("work", tool.work):
+    for where, work in places("work", tool.work):
         yield from positive(f"{where}.speed", work.speed, "rad/s")
         yield from positive(f"{where}.duration", work.duration, "s")
     total = sum(work.duration for work in tool.work)
     if total > DAY * (1 + 1e-9):
         yield ModelError("work", f"takes {total / 3600:.4g} h together; a day has 24 h")
-
-
-# -- design ----------------------------------------------------------------------------------------
-
-
-def _wrong_design(design: DesignPlan, tool: Tool) -> Iterator[ModelError]:
-    yield from _wrong_range("design.speeds", design.speeds)
-    if design.measure not in MEASURES:
-        yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
-    if not design.variables:
-        yield ModelError("design.variables", "there is nothing to change; give at least one")
-    if not tool.excitations:
-        yield ModelError("design", "nothing shakes the tool; give [[excitations]]")
-    if not tool.grips:
-        yield ModelError("design", "no hand holds the tool; give a station a hand")
-    for number, name in enumerate(design.hands, 1):
-        yield from _not_held(f"design.hands[{number}]", name, tool)
-    seen = set()
-    for where, variable in _places("design.variables", design.variables):
-        yield from _wrong_variable(where, variable, tool)
-        if (variable.station, variable.key) in seen:
-            yield ModelError(where, f"{variable.name!r} is given twice; give one of both")
-        seen.add((variable.station, variable.key))
-    for where, limit in _places("design.limits", design.limits):
-        yield from _wrong_limit(where, limit, tool)
-
-
-def _not_held(where: str, name: str, tool: Tool) -> Iterator[ModelError]:
-    held = [station.name for station in tool.grips]
-    if name not in held:
-        yield ModelError(where, unknown(name, held, "station with a hand"))
-
-
-def _wrong_variable(where: str, variable: DesignVariable, tool: Tool) -> Iterator[ModelError]:
-    yield from _unknown_station(f"{where}.station", variable.station, tool)
-    if variable.key not in KEYS:
-        yield ModelError(f"{where}.key", unknown(variable.key, KEYS, "key of a station"))
-        return
-    part, dot, _ = variable.key.partition(".")
-    for station in tool.stations:
-        if dot and station.name == variable.station and getattr(station, part) is None:
-            yield ModelError(f"{where}.key", f"{station.name!r} has no {part}; give it one")
-    if variable.low < 0:
-        yield ModelError(f"{where}.from", f"got {variable.low:g} in SI units; give 0 or more")
-    if variable.low >= variable.high:
-        yield ModelError(
-            f"{where}.to",
-            f"got {variable.high:g} after from {variable.low:g} in SI units; give more than that",
-        )
-    length = tool.shaft.length
-    if variable.key == "position" and variable.high > length:
-        yield ModelError(
-            f"{where}.to",
-            f"got {variable.high:g} m, which is off the shaft; give at most {length:g} m",
-        )
-
-
-def _wrong_limit(where: str, limit: DesignLimit, tool: Tool) -> Iterator[ModelError]:
-    if limit.output not in OUTPUTS:
-        yield ModelError(f"{where}.output", unknown(limit.output, OUTPUTS, "output"))
-        return
-    if limit.at_most < 0 or (limit.at_most == 0 and limit.output != "added_mass"):
-        least = "0 or more" if limit.output == "added_mass" else "more than 0"
-        yield ModelError(f"{where}.at_most", f"got {limit.at_most:g} in SI units; give {least}")
-    if limit.output == "added_mass":
-        if limit.station is not None:
-            yield ModelError(f"{where}.station", "added_mass is of the whole tool; leave it out")
-    elif limit.station is None:
-        yield ModelError(f"{where}.station", f"missing; give that of the {limit.output}")
-    elif limit.output == "acceleration":
-        yield from _not_held(f"{where}.station", limit.station, tool)
-    else:
-        touching = [one.name for one in tool.stations if one.hand or one.harness]
-        if limit.station not in touching:
-            sentence = unknown(limit.station, touching, "station with a hand or harness")
-            yield ModelError(f"{where}.station", sentence)

@@ -14,7 +14,8 @@ from equipoise.errors import ModelError
 from equipoise.tools.chain import Chain, Pair
 from equipoise.tools.duals import Dual, stacked, value_of
 from equipoise.tools.hands import impedance
-from equipoise.tools.model import Section, Station, Tool
+from equipoise.tools.model import Station, Tool
+from equipoise.tools.sections import Section
 from equipoise.tools.segment import Transfer, longest, shear_transfer, transfer
 
 Array = np.ndarray[Any, Any]

@@ -9,19 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.tools.model import (
-    Absorber,
-    Excitation,
-    Hand,
-    Harness,
-    Section,
-    Segment,
-    Shaft,
-    Station,
-    Theory,
-    Tool,
-    Tube,
-)
+from equipoise.tools.model import Absorber, Excitation, Hand, Harness, Station, Tool
+from equipoise.tools.sections import Section, Segment, Shaft, Theory, Tube
 from support.beam_reference import Attached, Piece, Reference
 
 Array = np.ndarray[Any, Any]

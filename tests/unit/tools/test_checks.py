@@ -17,14 +17,11 @@ from equipoise.tools.model import (
     Harness,
     Impedance,
     Operation,
-    Section,
-    Segment,
-    Shaft,
     Station,
     Tool,
-    Tube,
     Work,
 )
+from equipoise.tools.sections import Section, Segment, Shaft, Tube
 from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable
 
 SECTION = Section(980.0, 2.3)

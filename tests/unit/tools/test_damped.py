@@ -15,8 +15,9 @@ from equipoise.tools import damped
 from equipoise.tools.damped import characteristic, eigenvalues, overdamped
 from equipoise.tools.frequencies import natural_frequencies, scale_of
 from equipoise.tools.layout import Layout
-from equipoise.tools.model import Absorber, Section, Station, Tool
+from equipoise.tools.model import Absorber, Station, Tool
 from equipoise.tools.modes import SLOWEST, ToolModes, vibrate_tool
+from equipoise.tools.sections import Section
 from unit.tools.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

@@ -13,8 +13,9 @@ from equipoise.errors import ModelError
 from equipoise.tools.duals import Dual
 from equipoise.tools.exposed import grips
 from equipoise.tools.felt import Band, mean_over_band, tool_sensitivities, values_of
-from equipoise.tools.model import Excitation, Hand, Impedance, Section, Station, Tool
+from equipoise.tools.model import Excitation, Hand, Impedance, Station, Tool
 from equipoise.tools.response import respond_tool
+from equipoise.tools.sections import Section
 from equipoise.tools.studies import changed, has, number_of
 from equipoise.tools.wishes import KEYS
 from unit.tools.samples import THEORIES, bare, both, random_tool

@@ -15,19 +15,9 @@ from equipoise.tools.frequencies import (
     rigid_modes,
     scale_of,
 )
-from equipoise.tools.model import (
-    Absorber,
-    Hand,
-    Harness,
-    Impedance,
-    Section,
-    Segment,
-    Shaft,
-    Station,
-    Tool,
-    Tube,
-)
+from equipoise.tools.model import Absorber, Hand, Harness, Impedance, Station, Tool
 from equipoise.tools.modes import rigid_names
+from equipoise.tools.sections import Section, Segment, Shaft, Tube
 from unit.tools.samples import HARD, THEORIES, bare, both, clamp, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

@@ -10,7 +10,8 @@ import pytest
 from equipoise.tools.chain import carry, log_determinant
 from equipoise.tools.duals import stacked, value_of, variables
 from equipoise.tools.layout import Layout
-from equipoise.tools.model import Absorber, Hand, Harness, Impedance, Segment, Station, Tool
+from equipoise.tools.model import Absorber, Hand, Harness, Impedance, Station, Tool
+from equipoise.tools.sections import Segment
 from equipoise.tools.segment import longest
 from unit.tools.samples import SECTION, THEORIES, bare, both, pieces_of, random_tool
 

@@ -11,8 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, MotionError
-from equipoise.tools.model import Excitation, Shaft, Station, Tool
+from equipoise.tools.model import Excitation, Station, Tool
 from equipoise.tools.response import respond_tool
+from equipoise.tools.sections import Shaft
 from equipoise.tools.sources import Shake, shakes
 from support.machines import make
 from unit.tools.samples import SECTION, both

@@ -15,17 +15,9 @@ from equipoise.errors import ModelError, ResponseError
 from equipoise.tools import search
 from equipoise.tools.design import ToolDesign, design_tool
 from equipoise.tools.exposed import grips
-from equipoise.tools.model import (
-    Absorber,
-    Excitation,
-    Hand,
-    Harness,
-    Section,
-    Shaft,
-    Station,
-    Tool,
-)
+from equipoise.tools.model import Absorber, Excitation, Hand, Harness, Station, Tool
 from equipoise.tools.response import respond_tool
+from equipoise.tools.sections import Section, Shaft
 from equipoise.tools.studies import changed, number_of
 from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable
 from unit.tools.samples import both

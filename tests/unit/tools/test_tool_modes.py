@@ -11,15 +11,9 @@ from scipy.optimize import brentq
 
 from equipoise.tools import damped
 from equipoise.tools.frequencies import scale_of
-from equipoise.tools.model import (
-    Absorber,
-    Hand,
-    Impedance,
-    Section,
-    Station,
-    Tool,
-)
+from equipoise.tools.model import Absorber, Hand, Impedance, Station, Tool
 from equipoise.tools.modes import PlaneModes, vibrate_tool
+from equipoise.tools.sections import Section
 from unit.tools.samples import HARD, THEORIES, bare, both, clamp, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

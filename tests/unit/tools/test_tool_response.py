@@ -12,17 +12,9 @@ import pytest
 from equipoise.errors import ModelError, ResponseError, UsageError
 from equipoise.tools.chain import Pair, States
 from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import (
-    Absorber,
-    Excitation,
-    Hand,
-    Harness,
-    Section,
-    Shaft,
-    Station,
-    Tool,
-)
+from equipoise.tools.model import Absorber, Excitation, Hand, Harness, Station, Tool
 from equipoise.tools.response import ToolResponse, _check_finite, respond_tool
+from equipoise.tools.sections import Section, Shaft
 from equipoise.tools.sweep import speeds_between, sweep_tool
 from unit.tools.samples import THEORIES, bare, both, random_tool
 

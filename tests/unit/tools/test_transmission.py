@@ -12,15 +12,8 @@ import pytest
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import (
-    Excitation,
-    Hand,
-    Harness,
-    Section,
-    Shaft,
-    Station,
-    Tool,
-)
+from equipoise.tools.model import Excitation, Hand, Harness, Station, Tool
+from equipoise.tools.sections import Section, Shaft
 from equipoise.tools.transmission import source_of, transmit
 from unit.tools.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
 
