@@ -93,7 +93,7 @@ REFUSED = {
     "task: cells": (f"{TASKS}\na,1\n", "line 2: got 2 values; the header has 3 columns"),
     "task: nan": (f"{TASKS}\na,1,1\nb,nan,1\n", "line 3, column acceleration: got 'nan'; give"),
     "task: no time": (f"{TASKS}\na,1,\n", "line 2, column duration: got ''; give a finite number"),
-    "task: negative": (f"{TASKS}\na,-1,1\n", "line 2, column acceleration: got -1 m/s^2; give a finite"),
+    "task: negative": (f"{TASKS}\na,-1,1\n", "line 2, column acceleration: got -1 m/s^2; give a"),
     "task: no hours": (f"{TASKS}\na,1,0\n", "line 2, column duration: got 0 h; give more than 0"),
     "task: long": (f"{TASKS}\na,1,25\n", "line 2, column duration: got 25 h; give more"),
     "task: none": (TASKS, "line 1: there are no rows below the header; give at least one"),
