@@ -174,7 +174,7 @@ REFUSED: dict[str, tuple[tuple[str, ...], str]] = {
     # files
     "no folder": (("balance-crank", "-o", "no/x.toml"), "no/x.toml: there is no such folder; make"),
     "empty name": (("balance-crank", "-o", ""), "--out: got an empty name; give the name of a fil"),
-    "folder": (("balance-crank", "-o", "."), ".: is there already; choose another name by --out"),
+    "folder": (("balance-crank", "-o", "."), "--out: . is a directory; give the name of a file"),
     "same file": (("balance-crank", "-o", "x", "--csv", "x"), "--csv: x has another part in this"),
     "no csv": (("balance-crank", "--csv", "no/x.csv"), "no/x.csv: there is no such folder; make i"),
 }  # fmt: skip
