@@ -54,6 +54,19 @@ def quantity(option: str, text: str, dimension: str) -> float:
         raise UsageError(f"{option}: {error}") from error
 
 
+def ends_of_range(text: str) -> list[str]:
+    """Parts of a range such as ``20 : 400 rpm``, whose unit may stand after the second only.
+
+    One part where there is no colon; none where a part is empty or there are more than two.
+    """
+    parts = [part.strip() for part in text.split(":")]
+    if len(parts) > 2 or not all(parts):
+        return []
+    if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
+        parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"
+    return parts
+
+
 def whole(option: str, text: str, least: int, most: int) -> int:
     """A whole number between two others."""
     if not re.fullmatch("[+-]?[0-9]{1,9}", text) or not least <= int(text) <= most:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import Model, naming, quantity, whole
+from equipoise.cli.options import Model, ends_of_range, naming, quantity, whole
 from equipoise.cli.results import Kind, Wanted, vibration
 from equipoise.errors import UsageError
 
@@ -85,13 +85,11 @@ def respond(
 
 def _speeds(text: str) -> list[float]:
     """One speed, or the two ends of a range; a unit may stand after the second only."""
-    parts = [part.strip() for part in text.split(":")]
-    if len(parts) > 2 or not all(parts):
+    parts = ends_of_range(text)
+    if not parts:
         raise UsageError(
             f'--speed: got {text!r}; give a speed, "193 rpm", or a range: "20 rpm : 400 rpm"'
         )
-    if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
-        parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"
     ends = [quantity("--speed", part, "angular speed") for part in parts[::-1]][::-1]
     if ends == [0.0]:
         raise UsageError(

@@ -73,7 +73,8 @@ def tool(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.cli.tool_parts import Asked, give, wanted_parts
+    from equipoise.cli.tool_asked import Asked
+    from equipoise.cli.tool_parts import PARTS, give
     from equipoise.io.tools import load_tool
     from equipoise.terminal.units import OF_VIBRATION, Units
 
@@ -101,5 +102,5 @@ def tool(
     names = asked.names([name for name, is_chosen in chosen.items() if is_chosen])
     asked.check_places(csv, plot, out)
     with naming(file):
-        parts = [wanted_parts[name](asked) for name in names]
+        parts = [PARTS[name](asked) for name in names]
     give(asked, parts, json, csv, plot, format or "svg", out)

@@ -12,7 +12,7 @@ from equipoise.errors import ModelError
 from equipoise.tools.exposed import grips
 from equipoise.tools.felt import values_of
 from equipoise.tools.model import Tool
-from equipoise.tools.response import respond_tool
+from equipoise.tools.response import respond_tool, rms_over_time
 from equipoise.tools.search import Search, Told
 from equipoise.tools.studies import changed
 from equipoise.tools.sweep import speeds_between
@@ -187,5 +187,4 @@ def _worst(values: dict[str, float]) -> float:
 
 def _largest_force(tool: Tool, speed: Array, station: str) -> float:
     """RMS over time of the force on all that holds a station, at the worst speed, N."""
-    total = sum(respond_tool(tool, speed).forces(station).values())
-    return float(np.max(np.sqrt(np.sum(np.abs(total) ** 2, axis=(0, 1)) / 2)))
+    return float(np.max(rms_over_time(respond_tool(tool, speed).whole_force(station))))

@@ -15,7 +15,7 @@ from equipoise.tools.hands import check_coverage
 from equipoise.tools.layout import Layout
 from equipoise.tools.model import Tool
 from equipoise.tools.response import NOTHING, shaken
-from equipoise.tools.sources import Shake, shakes
+from equipoise.tools.sources import loud, orders_of, shakes
 from equipoise.tools.studies import has, number_of
 from equipoise.tools.wishes import KEYS
 
@@ -54,8 +54,8 @@ class Band:
         if not tool.excitations:
             raise ModelError("excitations", NOTHING)
         self.tool, self.speed = tool, speed
-        self.shakes = _loud(shakes(tool), float(np.max(speed)), least)
-        self.orders = np.array(sorted({shake.order for shake in self.shakes}))
+        self.shakes = loud(shakes(tool), float(np.max(speed)), least)
+        self.orders = orders_of(self.shakes)
         self.highest = float(self.orders[-1] * np.max(speed))
         check_coverage(tool, float(self.orders[0] * np.min(speed)), self.highest)
         self.frequency = np.multiply.outer(self.orders, speed).reshape(1, -1)
@@ -94,17 +94,11 @@ class Band:
 
     def _own(self, station: str, key: str) -> Array:
         """A number of the tool as (1, 1), a pair as (2, 1)."""
-        value: Any = self.tool.station(station)
-        for part in key.split("."):
-            value = getattr(value, part)
-        return np.atleast_1d(np.array(value, dtype=float))[:, None]
+        return np.atleast_1d(np.array(self.tool.station(station).number(key)))[:, None]
 
     def _force(self, layout: Layout, s: Array, name: str, moved: Any) -> Dual:
         """Mean square of the force on all that holds a station."""
-        station = self.tool.station(name)
-        stiffness: Any = sum(layout.holding(station, s).values())
-        if station.hand is not None:
-            stiffness = stiffness + station.hand.hands * station.hand.mass * s * s
+        stiffness: Any = sum(layout.on_body(self.tool.station(name), s).values())
         force = stiffness * moved
         return self._over_orders(force * force.conj() * 0.5)
 
@@ -115,13 +109,6 @@ class Band:
         count = len(squares.slopes)
         full = np.broadcast_to(squares.slopes.real, (count, *squares.value.shape))
         return Dual(value, full.reshape(count, *shape).sum(axis=(1, 2)))
-
-
-def _loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake, ...]:
-    """Orders whose force at a speed, rad/s, is at least a share of the largest."""
-    sizes = [float(np.max(np.abs(shake.at(np.array([speed]))))) for shake in all_shakes]
-    limit = least * max(sizes)
-    return tuple(one for one, size in zip(all_shakes, sizes, strict=True) if size >= limit)
 
 
 def values_of(tool: Tool, numbers: Sequence[Number]) -> Array:

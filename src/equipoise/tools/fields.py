@@ -51,9 +51,5 @@ class Field:
         over = self.layout.part(which, places - starts[which], self.s, self.kind)
         w, t = (np.array(part)[which] for part in zip(*self.states.motion, strict=True))
         v, m = (np.array(part)[which] for part in zip(*self.states.force, strict=True))
-        return Line(
-            over.ww * w + over.wt * t + over.wv * v + over.wm * m,
-            over.tw * w + over.tt * t + over.tv * v + over.tm * m,
-            over.mw * w + over.mt * t + over.mv * v + over.mm * m,
-            over.vw * w + over.vt * t + over.vv * v + over.vm * m,
-        )
+        displacement, slope, shear, moment = over.carried(w, t, v, m)
+        return Line(displacement, slope, moment, shear)

@@ -53,10 +53,8 @@ class Layout:
         """A number of a station; of a pair, both planes as (2, 1)."""
         if (station.name, key) in self.changed:
             return self.changed[station.name, key]
-        owner: Any = station
-        for part in key.split("."):
-            owner = getattr(owner, part)
-        return np.array(owner)[:, None] if isinstance(owner, tuple) else owner
+        value = station.number(key)
+        return np.array(value)[:, None] if isinstance(value, tuple) else value
 
     @cached_property
     def _laid(self) -> tuple[list[list[Station]], list[Cell]]:
@@ -180,6 +178,13 @@ class Layout:
             found["hand"] = hand.hands * self._spring(station, "hand.", s, kind)
         elif hand is not None and kind == "forced":
             found["hand"] = hand.hands * impedance(hand.impedance, s) * s
+        return found
+
+    def on_body(self, station: Station, s: Any) -> dict[str, Any]:
+        """Force over displacement (N/m) on what holds a station; on a hand with its own mass."""
+        found = self.holding(station, s)
+        if station.hand is not None:
+            found["hand"] = found["hand"] + station.hand.hands * station.hand.mass * s * s
         return found
 
     def _spring(self, station: Station, owner: str, s: Any, kind: Kind) -> Any:

@@ -122,6 +122,14 @@ class Station(Frozen):
     hand: Hand | None = None
     harness: Harness | None = None
 
+    def number(self, key: str) -> float | Both:
+        """A number by its key, such as ``mass`` or ``harness.stiffness``, in SI units."""
+        value: Any = self
+        for part in key.split("."):
+            value = getattr(value, part)
+        found: float | Both = value
+        return found
+
 
 @dataclass(frozen=True)
 class Excitation(Frozen):

@@ -25,6 +25,8 @@ Array = np.ndarray[Any, Any]
 
 POINTS = 401
 """Places at which a shape is told."""
+NUDGE = 1e-3
+"""Share of the radius at which the search for what moves without a spring begins."""
 SLOWEST = 1e-4
 """Smallest eigenvalue looked for that does not swing, over the frequency of the bare shaft."""
 
@@ -161,10 +163,8 @@ def _damped_modes(
     layout: Layout, frequency: Array, radius: Array, places: Array
 ) -> tuple[list[tuple[DampedMode, ...]], list[int]]:
     """Modes with damping of both planes, by size, and how many were not found."""
-    starts = np.maximum(frequency, 1e-3 * radius[:, None])
     if layout.tool.damped:
-        low = _slowest(layout.tool, frequency)
-        values, lacking = eigenvalues(layout, starts, (low, radius))
+        values, lacking = _eigenvalues(layout, frequency, radius)
     else:
         values, lacking = [1j * row[row > 0] for row in frequency], [0, 0]
     found = []
@@ -173,6 +173,12 @@ def _damped_modes(
         shapes = scaled(np.moveaxis(shapes_beside(layout, own[None], places, "free")[0], 0, -1))
         found.append(tuple(map(DampedMode, own.tolist(), shapes[plane])))
     return found, lacking
+
+
+def _eigenvalues(layout: Layout, frequency: Array, radius: Array) -> tuple[list[Array], list[int]]:
+    """As `eigenvalues`, from the natural frequencies (2, K); rigid motions begin beside 0."""
+    starts = np.maximum(frequency, NUDGE * radius[:, None])
+    return eigenvalues(layout, starts, (_slowest(layout.tool, frequency), radius))
 
 
 def _slowest(tool: Tool, frequency: Array) -> float:
@@ -188,9 +194,7 @@ def swinging_below(tool: Tool, highest: float) -> Array:
     if not tool.damped or most == 0:
         return np.asarray(1j * np.concatenate(natural))
     frequency = natural_frequencies(tool, most)
-    starts = np.maximum(frequency, 1e-3 * highest)
-    layout, ends = Layout(tool, 2 * highest), np.full(2, highest)
-    values, _ = eigenvalues(layout, starts, (_slowest(tool, frequency), ends))
+    values, _ = _eigenvalues(Layout(tool, 2 * highest), frequency, np.full(2, highest))
     both = np.concatenate(values)
     return np.asarray(both[both.imag > 0])
 

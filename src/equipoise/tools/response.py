@@ -15,7 +15,7 @@ from equipoise.tools.fields import Field, Line
 from equipoise.tools.hands import check_coverage
 from equipoise.tools.layout import Layout
 from equipoise.tools.model import Station, Tool
-from equipoise.tools.sources import Shake, shakes
+from equipoise.tools.sources import Shake, orders_of, shakes
 
 Array = np.ndarray[Any, Any]
 
@@ -70,18 +70,18 @@ class ToolResponse:
         That on a hand is what a gauge in the handle would read: of its spring and damper, as in
         (26) of Nagamine and Irie, and of its mass.
         """
-        held = self._holding(self.tool.station(station))
-        moved = self._node(station).across
+        one, moved = self.tool.station(station), self._node(station).across
+        held = self.field.layout.on_body(one, self.field.s)
+        if not (any(one.stiffness) or any(one.damping)):
+            held.pop("ground")
         return {part: self._shaped(stiffness * moved) for part, stiffness in held.items()}
 
-    def _holding(self, station: Station) -> dict[str, Any]:
-        s = self.field.s
-        held = self.field.layout.holding(station, s)
-        if not (any(station.stiffness) or any(station.damping)):
-            held.pop("ground")
-        if station.hand is not None:
-            held["hand"] = held["hand"] + station.hand.hands * station.hand.mass * s * s
-        return held
+    def whole_force(self, station: str) -> Array:
+        """Force (2, K, S), N, of a station on all that holds it."""
+        total = np.zeros((2, *self.frequency.shape), complex)
+        for force in self.forces(station).values():
+            total += force
+        return total
 
     def power(self, station: str) -> dict[str, Array]:
         """Mean power (K, S), W, that goes into the hand, harness, ground and absorber there."""
@@ -123,8 +123,7 @@ class ToolResponse:
                 np.array([k]), np.array([length]), self.field.s, "forced"
             ).part(0)
             q, f, after = states.motion[k], states.force[k], states.motion[k + 1]
-            v = over.vw * q.across + over.vt * q.turning + over.vv * f.across + over.vm * f.turning
-            m = over.mw * q.across + over.mt * q.turning + over.mv * f.across + over.mm * f.turning
+            _, _, v, m = over.carried(*q, *f)
             entered = (
                 v * np.conj(after.across)
                 + m * np.conj(after.turning)
@@ -142,6 +141,11 @@ class ToolResponse:
         """From (2, K S) to (2, K, S)."""
         both = np.broadcast_to(values, (2, self.frequency.size))
         return np.asarray(both.reshape(2, *self.frequency.shape))
+
+
+def rms_over_time(amplitudes: Array) -> Array:
+    """Root of the mean square (..., S) of amplitudes (..., 2, K, S), planes and orders together."""
+    return np.asarray(np.sqrt(np.sum(np.abs(amplitudes) ** 2, axis=(-3, -2)) / 2))
 
 
 def _power(force: Array, velocity: Array) -> Array:
@@ -163,7 +167,7 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
     if not tool.excitations:
         raise ModelError("excitations", NOTHING)
     all_shakes = shakes(tool)
-    orders = np.array(sorted({shake.order for shake in all_shakes}))
+    orders = orders_of(all_shakes)
     ends = float(orders[0] * np.min(speeds)), float(orders[-1] * np.max(speeds))
     check_coverage(tool, *ends)
     layout = Layout(tool, ends[1])

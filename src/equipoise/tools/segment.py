@@ -45,6 +45,15 @@ class Transfer(NamedTuple):
     mv: Any
     mm: Any
 
+    def carried(self, w: Any, t: Any, v: Any, m: Any) -> tuple[Any, Any, Any, Any]:
+        """Displacement, slope, shear force and moment at the right end, by those at the left."""
+        return (
+            self.ww * w + self.wt * t + self.wv * v + self.wm * m,
+            self.tw * w + self.tt * t + self.tv * v + self.tm * m,
+            self.vw * w + self.vt * t + self.vv * v + self.vm * m,
+            self.mw * w + self.mt * t + self.mv * v + self.mm * m,
+        )
+
     def part(self, key: Any) -> Transfer:
         """The same of some of many segments."""
         return Transfer(*(entry[key] for entry in self))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -103,3 +103,17 @@ def unit_shaking_force(machine: Machine) -> Periodic:
     motion = move(machine, ANGLES, 1.0, 0.0)
     force = forces(motion).shaking_force
     return Periodic.of(np.array([force.y, force.x]), turns)
+
+
+def orders_of(all_shakes: Iterable[Shake]) -> Array:
+    """Orders (K,) of what shakes, each once, rising."""
+    return np.array(sorted({shake.order for shake in all_shakes}))
+
+
+def loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake, ...]:
+    """Orders whose force at a speed, rad/s, is at least a share of the largest."""
+    if not all_shakes:
+        return ()
+    sizes = [float(np.max(np.abs(shake.at(np.array([speed]))))) for shake in all_shakes]
+    limit = least * max(sizes)
+    return tuple(one for one, size in zip(all_shakes, sizes, strict=True) if size >= limit)

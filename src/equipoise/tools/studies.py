@@ -53,10 +53,8 @@ def has(station: Station, key: str) -> bool:
 
 def number_of(tool: Tool, station: str, key: str) -> float:
     """A number of a station; of a pair the vertical one."""
-    value: Any = tool.station(station)
-    for part in key.split("."):
-        value = getattr(value, part)
-    return float(value[0] if isinstance(value, tuple) else value)
+    value = tool.station(station).number(key)
+    return value[0] if isinstance(value, tuple) else value
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -13,8 +12,8 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.tools.model import PLANES, Tool
 from equipoise.tools.modes import swinging_below
-from equipoise.tools.response import ToolResponse, respond_tool
-from equipoise.tools.sources import shakes
+from equipoise.tools.response import NOTHING, ToolResponse, respond_tool, rms_over_time
+from equipoise.tools.sources import loud, shakes
 from equipoise.tools.transmission import Transmissions, held, transmit
 
 Array = np.ndarray[Any, Any]
@@ -75,13 +74,15 @@ class ToolSweep:
         """The same of a few places, so that memory lasts."""
         line, frequency = self.shaken.line(places), self.shaken.frequency
         moved = line.displacement
-        return tuple(map(_rms, (moved, moved * frequency, moved * frequency**2, line.moment)))
+        return tuple(
+            map(rms_over_time, (moved, moved * frequency, moved * frequency**2, line.moment))
+        )
 
     @property
     def shaken(self) -> ToolResponse:
         """The response; a `ModelError` where nothing shakes the tool."""
         if self.response is None:
-            raise ModelError("excitations", "nothing shakes the tool; add a table [[excitations]]")
+            raise ModelError("excitations", NOTHING)
         return self.response
 
     @cached_property
@@ -97,7 +98,7 @@ class ToolSweep:
 
     def force(self, station: str) -> dict[str, Array]:
         """Force (S,) on hand, harness and ground at a station, N, RMS over time and planes."""
-        return {part: _rms(force) for part, force in self.shaken.forces(station).items()}
+        return {part: rms_over_time(force) for part, force in self.shaken.forces(station).items()}
 
     def power(self, station: str) -> dict[str, Array]:
         """Mean power (S,), W, that goes into hand, harness, ground and absorber at a station."""
@@ -166,12 +167,6 @@ class ToolSweep:
 UNITS = {"displacement": "m", "velocity": "m/s", "acceleration": "m/s^2", "moment": "N m"}
 
 
-def _rms(amplitudes: Array) -> Array:
-    """Root of the mean square (..., S) of amplitudes (..., 2, K, S)."""
-    squares = np.sum(np.abs(amplitudes) ** 2, axis=(-3, -2))
-    return np.asarray(np.sqrt(squares) / sqrt(2))
-
-
 def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolSweep:
     """A tool at speeds (S,) of its engine, rad/s.
 
@@ -193,12 +188,7 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
 
 def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> Array:
     """Equally spaced speeds, rad/s, and more of them about the resonances of loud orders."""
-    all_shakes = shakes(tool)
-    loudness = {
-        shake.order: float(np.max(np.abs(shake.at(np.array([high]))))) for shake in all_shakes
-    }
-    loudest = max(loudness.values(), default=0.0)
-    orders = {order for order, size in loudness.items() if size >= LOUD * loudest} | {1.0}
+    orders = {shake.order for shake in loud(shakes(tool), high, LOUD)} | {1.0}
     found = swinging_below(tool, max(orders) * high)
     wide = np.abs(found.real) > NARROW * found.imag
     about = [

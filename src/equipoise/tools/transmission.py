@@ -110,9 +110,9 @@ def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissio
 
     def one(name: str) -> Transmission:
         def again(speeds: Array) -> Array:
-            return _whole(_unit(tool, speeds, source), name)
+            return _unit(tool, speeds, source).whole_force(name)[:, 0]
 
-        ratio = _whole(found, name)
+        ratio = found.whole_force(name)[:, 0]
         (up, least_up), (across, least_across) = (
             lowest_places(speed, np.abs(row), plane, again) for plane, row in enumerate(ratio)
         )
@@ -128,14 +128,6 @@ def _unit(tool: Tool, speed: Array, source: str) -> ToolResponse:
         for plane in PLANES
     )
     return respond_tool(replace(tool, excitations=forces, design=None), speed)
-
-
-def _whole(response: ToolResponse, station: str) -> Array:
-    """Force (2, S) on all that holds a station, N."""
-    total = np.zeros((2, len(response.speed)), complex)
-    for force in response.forces(station).values():
-        total += force[:, 0]
-    return total
 
 
 def lowest_places(

@@ -340,14 +340,19 @@ def test_exposure_and_levels() -> None:
     assert flat == pytest.approx([2.5 * np.sqrt(8 / hours), 5 * np.sqrt(8 / hours)])
     told = words(figure)
     assert f"A(8) = {exposure.a8:.4g} m/s² at {exposure.worst}" in told
-    assert "rear-grip" in told and "front-handle" in told and "limit value: A(8) of 5 m/s²" in told
+    assert (
+        "rear-grip" in told
+        and "front-handle" in told
+        and "limit: A(8) of 5 m/s²" in told
+        and "action: A(8) of 2.5 m/s²" in told
+    )
     assert "work, 7500 rpm" in told
 
 
 def test_eight_hours_where_no_work_is_told() -> None:
     tool = replace(machine("paper"), work=(), operation=None)
     exposure = expose_tool(tool, SPEEDS)
-    assert levels(exposure) == {"action value: A(8) of": 2.5, "limit value: A(8) of": 5.0}
+    assert levels(exposure) == {"action: A(8) of": 2.5, "limit: A(8) of": 5.0}
     drawn = exposure_drawings(exposure)["exposure"]
     assert "8 h a day" in words(drawn) and "A(8) =" not in words(drawn)
     assert "work," not in words(drawn)

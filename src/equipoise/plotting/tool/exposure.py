@@ -53,8 +53,8 @@ Array = np.ndarray[Any, Any]
 TOP, TALL = 0.58, 3.4
 """Inches: heading, and height of the panel."""
 LEVELS = (
-    (ACTION, "action value: A(8) of", (0, (1, 2.4)), 1.2),
-    (LIMIT, "limit value: A(8) of", (0, (1, 1)), 1.6),
+    (ACTION, "action: A(8) of", (0, (1, 2.4)), 1.2),
+    (LIMIT, "limit: A(8) of", (0, (1, 1)), 1.6),
 )
 """m/s2 of A(8), name, dots and width of each level."""
 
@@ -144,7 +144,7 @@ def _levels(axes: Axes, speed: Array, allowed: Mapping[str, Array]) -> None:
     """Dotted lines, and a shade above what must not be."""
     x, top = speed * RPM, axes.get_ylim()[1]
     axes.fill_between(
-        x, allowed["limit value: A(8) of"], top, color=PALE, alpha=0.55, linewidth=0, zorder=0
+        x, allowed["limit: A(8) of"], top, color=PALE, alpha=0.55, linewidth=0, zorder=0
     )
     for _, name, dots, width in LEVELS:
         axes.plot(x, allowed[name], zorder=2.2, **_dotted(dots, width))
