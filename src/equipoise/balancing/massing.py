@@ -73,6 +73,9 @@ class Masses:
         program.zero(Affine.of(share, 1.0, -1.0))
         exact = program.copy()
         exact.zero(Affine.of(x[:, MASS], np.eye(len(x)), -self.mass))
+        # The cone says as much of a link without mass, but too faintly for the solver to be sure.
+        moments = x[self.mass == 0][:, [X, Y]].ravel()
+        exact.zero(Affine.of(moments, np.eye(len(moments))))
         if exact.feasible(stalled=False):
             return {}
         program.cost = dict.fromkeys(x[:, MASS].tolist(), 1.0)
