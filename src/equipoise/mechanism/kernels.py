@@ -3,7 +3,9 @@
 Planar vectors are complex numbers, x + i y.  A kernel does arithmetic only: ``+ - * /``,
 ``** 0.5``, ``abs`` and the parts of a complex number.  It calls no library and takes no branch on
 a value, so that the same function runs on Python numbers, NumPy arrays, mpmath numbers and under
-Numba.
+Numba.  It divides by real numbers only, and a vector is multiplied by ``1 / x``, not divided by x:
+compiled, a complex division is a branch, which keeps a loop from handling several crank angles at
+once and makes it ten times as slow.  For the same reason lengths are roots, not ``abs``.
 
 Every position, and the rotation of every link, is followed by its first and second derivative
 with respect to the crank angle (kinematic coefficients): ``p, p1, p2`` for a point and
@@ -38,6 +40,16 @@ def positive(x):
     return (x + abs(x)) * 0.5
 
 
+def length(a):
+    """Length of a vector."""
+    return (a.real * a.real + a.imag * a.imag) ** 0.5
+
+
+def inverse(a):
+    """1 / a of a vector."""
+    return a.conjugate() * (1 / (a.real * a.real + a.imag * a.imag))
+
+
 # -- motion ----------------------------------------------------------------------------------------
 
 
@@ -58,11 +70,11 @@ def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
 
 def along_line(d, d1, d2, n, w, a):
     """Vector d and its derivatives in axes along the unit vector n, which turns by w, a."""
-    inverse = n.conjugate()
+    back = n.conjugate()
     return (
-        d * inverse,
-        (d1 - 1j * w * d) * inverse,
-        (d2 - 2j * w * d1 - (1j * a + w * w) * d) * inverse,
+        d * back,
+        (d1 - 1j * w * d) * back,
+        (d2 - 2j * w * d1 - (1j * a + w * w) * d) * back,
     )
 
 
@@ -73,14 +85,14 @@ def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     side : +1 where c lies left of the line from p to q, -1 right.
     Returns rotation of link p, rotation of link q, the pin c, sin^2 of the transmission angle.
     """
-    length_p, length_q = abs(arm_p), abs(arm_q)
+    length_p, length_q = length(arm_p), length(arm_q)
     d = q - p
     distance2 = d.real * d.real + d.imag * d.imag
     cosine = (length_p * length_p + length_q * length_q - distance2) / (2 * length_p * length_q)
     number = 1 - cosine * cosine
     area = side * length_p * length_q * positive(number) ** 0.5
     along = (distance2 + length_p * length_p - length_q * length_q) * 0.5
-    to_p = d * (along + 1j * area) / distance2
+    to_p = d * (along + 1j * area) * (1 / distance2)
     to_q = to_p - d
     e = q1 - p1
     w_p = dot(to_q, e) / area
@@ -90,7 +102,8 @@ def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     a_q = dot(to_p, e) / area
     c1 = p1 + 1j * w_p * to_p
     c2 = p2 + (1j * a_p - w_p * w_p) * to_p
-    return to_p / arm_p, w_p, a_p, to_q / arm_q, w_q, a_q, p + to_p, c1, c2, number
+    u_p, u_q = to_p * inverse(arm_p), to_q * inverse(arm_q)
+    return u_p, w_p, a_p, u_q, w_q, a_q, p + to_p, c1, c2, number
 
 
 def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):
@@ -103,23 +116,23 @@ def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):
     side : +1 where c lies ahead of p along the line, -1 behind.
     Returns rotation of the pinned link, rotation of the sliding link, c, the dyad's number.
     """
-    length = abs(arm)
+    reach_most = length(arm)
     n = u * along
-    inverse = n.conjugate()
-    start = (p - g) * inverse - shift
-    sine = start.imag / length
+    back = n.conjugate()
+    start = (p - g) * back - shift
+    sine = start.imag / reach_most
     number = 1 - sine * sine
-    reach = side * length * positive(number) ** 0.5
+    reach = side * reach_most * positive(number) ** 0.5
     from_g = n * (start.real + reach + shift)
     to_p = g + from_g - p
-    e = (g1 + 1j * w * from_g - p1) * inverse
+    e = (g1 + 1j * w * from_g - p1) * back
     w_p = e.imag / reach
     slip = w_p * start.imag - e.real
-    e = (g2 + (1j * a - w * w) * from_g + 2j * w * slip * n - p2 + w_p * w_p * to_p) * inverse
+    e = (g2 + (1j * a - w * w) * from_g + 2j * w * slip * n - p2 + w_p * w_p * to_p) * back
     a_p = e.imag / reach
     c1 = p1 + 1j * w_p * to_p
     c2 = p2 + (1j * a_p - w_p * w_p) * to_p
-    return to_p / arm, w_p, a_p, n * turn, w, a, p + to_p, c1, c2, number
+    return to_p * inverse(arm), w_p, a_p, n * turn, w, a, p + to_p, c1, c2, number
 
 
 def rpr(p, p1, p2, q, q1, q2, offset, turn, back, small, side):
@@ -136,12 +149,12 @@ def rpr(p, p1, p2, q, q1, q2, offset, turn, back, small, side):
     reach2 = distance2 - offset * offset
     number = reach2 / (distance2 + small)
     reach = side * positive(reach2) ** 0.5
-    n = d / (reach + 1j * offset)
-    inverse = n.conjugate()
-    e = (p1 - q1) * inverse
+    n = d * inverse(reach + 1j * offset)
+    along = n.conjugate()
+    e = (p1 - q1) * along
     w = e.imag / reach
     slip = e.real + w * offset
-    e = (p2 - q2) * inverse
+    e = (p2 - q2) * along
     a = (e.imag + w * w * offset - 2 * w * slip) / reach
     return n * turn, w, a, n * back, w, a, number
 
@@ -241,7 +254,7 @@ def transfer_couple(force, moment, anchor, at, reaction, couple):
 def rrr_forces(p, q, c, force_p, moment_p, force_q, moment_q):
     """Demands about the outer pins; returns force on link p at p, on link q at q, on q at c."""
     to_p, to_q = c - p, c - q
-    inner = -(moment_q * to_p + moment_p * to_q) / cross(to_p, to_q)
+    inner = (moment_q * to_p + moment_p * to_q) * (-1 / cross(to_p, to_q))
     return force_p + inner, force_q - inner, inner
 
 
@@ -252,10 +265,11 @@ def rrp_forces(p, c, u, force_p, moment_p, force_s, moment_s, along):
     and the pinned link's force on the sliding link at c.
     """
     n = u * along
-    inverse = n.conjugate()
-    lever = (c - p) * inverse
-    tangential = (force_s * inverse).real
-    inner = n * (tangential + 1j * (lever.imag * tangential - moment_p) / lever.real)
+    back = n.conjugate()
+    lever = (c - p) * back
+    tangential = (force_s * back).real
+    normal = (lever.imag * tangential - moment_p) / lever.real
+    inner = n * (tangential + 1j * normal)
     return force_p + inner, force_s - inner, moment_s, inner
 
 
@@ -268,7 +282,7 @@ def rpr_forces(p, q, u, force_p, moment_p, force_q, moment_q, back):
     with its couple.
     """
     n = u * back
-    inner = -1j * n * (moment_p + moment_q) / dot(n, p - q)
+    inner = -1j * n * ((moment_p + moment_q) / dot(n, p - q))
     return force_p - inner, force_q + inner, inner, moment_p
 
 
@@ -279,7 +293,7 @@ def prp_forces(u, v, force_g, moment_g, force_h, moment_h, along_g, along_h):
     on the second.
     """
     n, m = u * along_g, v * along_h
-    inner = 1j * (dot(m, force_h) * n + dot(n, force_g) * m) / cross(n, m)
+    inner = 1j * (dot(m, force_h) * n + dot(n, force_g) * m) * (1 / cross(n, m))
     return force_g + inner, moment_g, force_h - inner, moment_h, inner
 
 
@@ -303,7 +317,7 @@ def flank(moment):
 
 def tooth(u, sense, lever, radial):
     """Tooth force on a driven gear, complex, for a unit of tangential force; see `gear_forces`."""
-    return (1j + radial * sense) * u * lever / abs(lever)
+    return (1j + radial * sense) * u * lever * (1 / length(lever))
 
 
 def gear_forces(force, moment, u, sense, lever, radial):
@@ -316,6 +330,6 @@ def gear_forces(force, moment, u, sense, lever, radial):
     Returns force on the gear at its pin, tooth force on the gear at the pitch point, and the
     tooth force's tangential part.
     """
-    tangential = moment / abs(lever)
+    tangential = moment / length(lever)
     mesh = tooth(u, sense, lever, radial) * tangential
     return force - mesh, mesh, tangential
