@@ -438,6 +438,8 @@ SIGNATURES = {
     "inertia_demand": "ccurrrrrcr",
     "weight_demand": "urcc",
     "load_demand": "cccr",
+    "spring": "ccrr",
+    "drive_torque": "crcr",
     "transfer": "crccc",
     "transfer_couple": "crcccr",
     "rrr_forces": "ccccrcr",
@@ -473,10 +475,10 @@ def test_every_force_kernel_is_tried() -> None:
 @pytest.mark.parametrize("name", SIGNATURES)
 def test_force_kernels_on_every_kind_of_number(name: str) -> None:
     given = arguments(name)
-    want = np.array(FUNCTIONS[name](*given))
-    arrays = FUNCTIONS[name](*[np.full(3, value) for value in given])
-    agree(np.array(arrays), np.repeat(want[:, None], 3, axis=1))
+    want = np.atleast_1d(FUNCTIONS[name](*given))
+    arrays = np.atleast_2d(FUNCTIONS[name](*[np.full(3, value) for value in given]))
+    agree(arrays, np.repeat(want[:, None], 3, axis=1))
     with mpmath.workdps(50):
-        exact = FUNCTIONS[name](*[mpmath.mpmathify(value) for value in given])
+        exact = np.atleast_1d(FUNCTIONS[name](*[mpmath.mpmathify(value) for value in given]))
     agree([complex(value) for value in exact], want)
-    agree(np.array(getattr(compiled(), name)(*given)), want)
+    agree(np.atleast_1d(getattr(compiled(), name)(*given)), want)

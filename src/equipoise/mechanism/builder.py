@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from cmath import exp
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import reduce
 from typing import Any, Literal
 
 import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.model import FRAME, Machine, Slider, size_of
-from equipoise.mechanism.steps import Call, RunningAngle, State, Step, p, u
+from equipoise.mechanism.model import FRAME, Machine, Slider, Vector
+from equipoise.mechanism.steps import Call, RunningAngle, State, Step, p, run, u
 
 Array = np.ndarray[Any, Any]
 
@@ -74,9 +74,9 @@ class Guide:
     def seen_from(cls, slider: Slider, known: str) -> Guide:
         """The line is the same whichever of the two bodies is known."""
         if slider.on == known:
-            along, turn = exp(1j * slider.direction), exp(1j * slider.angle)
+            along, turn = np.exp(1j * slider.direction), np.exp(1j * slider.angle)
             return cls(slider.name, slider.through, along, slider.point, turn)
-        along, turn = exp(-1j * slider.angle), exp(-1j * slider.direction)
+        along, turn = np.exp(-1j * slider.angle), np.exp(-1j * slider.direction)
         return cls(slider.name, slider.point, along, slider.through, turn)
 
 
@@ -96,8 +96,7 @@ class Builder:
 
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
     other points are reached and about which its moments are taken.  sides : joints whose
-    assembly side was asked for.  motion : steps so far, and
-    now : the state they lead to at crank angle 0.
+    assembly side was asked for.  motion : steps so far.
     """
 
     machine: Machine
@@ -105,9 +104,21 @@ class Builder:
     anchors: dict[str, str] = field(default_factory=dict)
     points: set[str] = field(default_factory=set)
     motion: list[Step] = field(default_factory=list)
-    now: State = field(default_factory=dict)
     sides: set[str] = field(default_factory=set)
     running: set[str] = field(default_factory=set)
+    _now: State = field(init=False)
+    _ran: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self._now = initial_state(self.machine, np.zeros(1))
+
+    @property
+    def now(self) -> State:
+        """State at crank angle 0 that the steps so far lead to; run when someone asks."""
+        with np.errstate(all="ignore"):
+            run(self.motion[self._ran :], self._now)
+        self._ran = len(self.motion)
+        return self._now
 
     def add(self, anchors: dict[str, str], points: Iterable[str] = ()) -> None:
         """Record links as known, in the order given, with their anchors."""
@@ -119,12 +130,13 @@ class Builder:
     def arm(self, link: str, origin: str, point: str) -> complex:
         """Vector from one point of a link to another, in the link's axes."""
         points = self.machine.points_of(link)
-        return complex(*points[point]) - complex(*points[origin])
+        return planar(points[point]) - planar(points[origin])
 
-    def size(self) -> float:
+    def size(self) -> Any:
         """Size of the largest body, m; 1 where all are points."""
         bodies = [self.machine.frame, *(link.points for link in self.machine.links.values())]
-        return max(map(size_of, bodies)) or 1.0
+        size = reduce(np.maximum, map(_size, bodies))
+        return size + (size == 0)
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -166,6 +178,19 @@ class Builder:
         return Call(kernels.transfer_couple, (*inputs, couple), (), demand)
 
 
+def planar(place: Vector) -> complex:
+    """A vector as a complex number; of columns, a column of them."""
+    x, y = place
+    return x + 1j * y
+
+
+def _size(points: Mapping[str, Vector]) -> Any:
+    """Diagonal of the rectangle around some points, m, as `model.size_of`; of columns too."""
+    xs, ys = zip(*points.values(), strict=True)
+    spans = (reduce(np.maximum, values) - reduce(np.minimum, values) for values in (xs, ys))
+    return np.hypot(*spans)
+
+
 def demand_names(link: str) -> tuple[str, str]:
     """Names of what a link's joints must supply: force, and moment about its anchor."""
     return f"F({link})", f"M({link})"
@@ -184,7 +209,7 @@ def initial_state(machine: Machine, theta: Array) -> State:
     """State in which only the frame and the drive link are known, at crank angles (N,)."""
     state: State = {"theta": theta}
     for name, place in machine.frame.items():
-        here = np.complex128(complex(*place))  # unlike Python's, it divides by 0 without an error
+        here = planar(place) + np.complex128()  # unlike Python's, it divides by 0 without an error
         state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
     state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
     drive = machine.drive.link

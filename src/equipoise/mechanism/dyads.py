@@ -6,6 +6,8 @@ bodies.  Each builder turns links and joints into kernel calls.
 
 from __future__ import annotations
 
+import numpy as np
+
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import (
@@ -193,7 +195,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
     link, other, guide = pinned.link, sliding.link, _guide(sliding)
     inner_guide = Guide.seen_from(slider, other)
     line = guide.turn * inner_guide.along
-    if abs(line.imag) < 1e-9:
+    if np.all(abs(line.imag) < 1e-9):
         raise ModelError(
             f"sliders[{builder.machine.sliders.index(slider) + 1}]",
             f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "

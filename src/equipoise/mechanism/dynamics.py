@@ -18,8 +18,9 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.builder import planar
 from equipoise.mechanism.loads import load_demands, spring_demands
-from equipoise.mechanism.model import Machine, Vector, unknown
+from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
     Array,
@@ -245,12 +246,17 @@ def massless(machine: Machine) -> str:
 
 def inertia_about_anchor(motion: Motion, link: str) -> tuple[float, complex, float]:
     """Mass, first moment (complex) and moment of inertia of a link about its anchor."""
-    body = motion.machine.links[link]
+    return inertia_about(motion.machine.links[link], motion.linkage.anchors[link])
+
+
+def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
+    """Mass, first moment (complex) and moment of inertia of a link about one of its points.
+
+    Columns where the numbers of the link are.
+    """
     assert body.mass is not None and body.center_of_mass is not None and body.inertia is not None
-    anchor = complex(*body.points[motion.linkage.anchors[link]])
-    mass, moment, inertia = kernels.about(
-        body.mass, 0.0, body.inertia, anchor - complex(*body.center_of_mass)
-    )
+    shift = planar(body.points[point]) - planar(body.center_of_mass)
+    mass, moment, inertia = kernels.about(body.mass, 0.0, body.inertia, shift)
     return mass, moment, inertia
 
 

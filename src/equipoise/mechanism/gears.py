@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import tan
+
+import numpy as np
 
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
@@ -32,13 +33,13 @@ class Mesh:
         driver_pin, driven_pin = gear_pins(joints, gear)
         ratio = gear.speed_ratio
         centres = builder.arm(gear.carrier, driven_pin, driver_pin)
-        if centres == 0:
+        if np.all(centres == 0):
             raise ModelError(
                 f"gears[{builder.machine.gears.index(gear) + 1}]",
                 f"both gears turn about {driven_pin}; set their centres apart",
             )
         ring_driven = 0 < ratio < 1
-        radial = tan(gear.pressure_angle) * (1 if ring_driven else -1)
+        radial = np.tan(gear.pressure_angle) * (1 if ring_driven else -1)
         return cls(driver_pin, driven_pin, centres / (1 - ratio), radial)
 
 
@@ -55,7 +56,7 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
     )
     bare = Call(kernels.gear, (*angles[0], *angles[1]), (ratio, 0.0), angles[2])
     at_start = run([bare], dict(now))[f"phi({link})"]
-    offset = gear.start - float(at_start[0])
+    offset = gear.start - (at_start if at_start.ndim > 1 else float(at_start[0]))
     motion = (
         *before,
         *builder.reach(bearer, pin),

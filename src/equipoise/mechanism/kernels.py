@@ -241,6 +241,21 @@ def load_demand(anchor, at, force, torque):
     return -force, -cross(at - anchor, force) - torque
 
 
+def spring(p, to, stiffness, free_length):
+    """Force of a linear spring on its end p; `to` is the other end, which must lie elsewhere."""
+    along = to - p
+    return along * (stiffness * (1 - free_length / (length(along) + 1e-300)))
+
+
+def drive_torque(p1, w, force, moment):
+    """Torque at the drive that a link's demand about its point p asks for.
+
+    p1, w : derivatives of p and of the link's angle.  By virtual work: joints between rigid links
+    do none.
+    """
+    return dot(p1, force) + w * moment
+
+
 def transfer(force, moment, anchor, at, reaction):
     """Add to a body's demand a reaction that it exerts on another body at the point `at`."""
     return force + reaction, moment + cross(at - anchor, reaction)

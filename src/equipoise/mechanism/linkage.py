@@ -118,11 +118,16 @@ def assemble(machine: Machine) -> Linkage:
 
 
 def _assemble(machine: Machine) -> Linkage:
-    joints = structure(machine)
+    linkage = ordered(machine, structure(machine))
+    _check_names(linkage)
+    return linkage
+
+
+def ordered(machine: Machine, joints: Structure) -> Linkage:
+    """Order the links into steps, whose numbers are columns where those of the machine are."""
     drive = machine.drive.link
     pivot = drive_pivot(joints, drive)
     builder = Builder(machine, points=set(machine.frame), running={FRAME, drive})
-    builder.now = initial_state(machine, np.zeros(1))
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
     groups = []
@@ -130,13 +135,9 @@ def _assemble(machine: Machine) -> Linkage:
         group = next_group(builder, joints, unknown)
         groups.append(group)
         builder.motion += group.motion
-        with np.errstate(all="ignore"):
-            run(group.motion, builder.now)
         unknown = [link for link in unknown if link not in group.links]
     _check_assembly(machine, builder.sides)
-    linkage = Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
-    _check_names(linkage)
-    return linkage
+    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 
 
 def _check_names(linkage: Linkage) -> None:

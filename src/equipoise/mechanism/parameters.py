@@ -16,8 +16,9 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.builder import planar
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, massless, place_of
-from equipoise.mechanism.model import Machine, Vector, unknown
+from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import JointForce, MeshForce, reactions
 
@@ -87,14 +88,17 @@ def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
 
 def parameter_values(machine: Machine) -> Array:
     """Inertial parameters of a machine (P,), in the order of `parameter_names`."""
-    values: list[float] = []
-    for link in machine.links.values():
-        if link.mass is None or link.center_of_mass is None or link.inertia is None:
-            raise MassError(massless(machine))
-        to_origin = -complex(*link.center_of_mass)
-        mass, moment, inertia = kernels.about(link.mass, 0j, link.inertia, to_origin)
-        values += [mass, moment.real, moment.imag, inertia]
-    return np.array(values)
+    if missing := massless(machine):
+        raise MassError(missing)
+    return np.array([value for link in machine.links.values() for value in parameters_of(link)])
+
+
+def parameters_of(link: Link) -> tuple[Any, Any, Any, Any]:
+    """The four of one link, in the order of `QUANTITIES`; columns where its numbers are."""
+    assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
+    to_origin = -planar(link.center_of_mass)
+    mass, moment, inertia = kernels.about(link.mass, 0j, link.inertia, to_origin)
+    return mass, moment.real, moment.imag, inertia
 
 
 def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Regressor:

@@ -8,6 +8,7 @@ from math import degrees
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.frozen import Frozen
 
@@ -89,11 +90,11 @@ def spring_force(motion: Motion, spring: Spring) -> Any:
     ------
     ModelError : its ends meet, so that a spring with a free length points nowhere.
     """
-    along = spring_vector(motion, spring.point, spring.to)
-    if not spring.free_length:
-        return spring.stiffness * along
-    way = spring_direction(motion, spring.link, spring.point, spring.to)
-    return spring.stiffness * (along - spring.free_length * way)
+    if spring.free_length:
+        spring_direction(motion, spring.link, spring.point, spring.to)
+    to = complex(*motion.machine.frame[spring.to])
+    place = motion.points[spring.point].place
+    return kernels.spring(place, to, spring.stiffness, spring.free_length)
 
 
 def spring_vector(motion: Motion, point: str, to: str) -> Any:

@@ -1,0 +1,244 @@
+"""Designs that differ in masses alone: mean squares without going round the cycle again.
+
+Every output is linear in the inertial parameters (`mechanism.parameters`).  So the mean square of
+one is a quadratic form in them, whose Gram matrix is the same for all designs.  It is kept as a
+factor, A = U S W', of which U is not needed: a sum of few squares loses no digits where outputs
+nearly cancel, as the Gram matrix itself would.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.fused.figures import Figure
+from equipoise.fused.reasons import MOST_ANGLES, NO_MACHINE, NOT_STILL
+from equipoise.mechanism.columns import NUMBERS, with_columns, wrong
+from equipoise.mechanism.dynamics import Forces, SliderForce, forces
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine, size_of
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.parameters import (
+    QUANTITIES,
+    Regressor,
+    parameter_names,
+    parameter_values,
+    parameters_of,
+    regressor,
+)
+
+Array = np.ndarray[Any, Any]
+
+FIRST = 180
+"""Crank angles in a turn from which their number doubles."""
+TINY = 1e-14
+"""Of the largest of the squares that are summed: smaller ones are rounding."""
+AT_ONCE = 8192
+"""Designs whose numbers stay in the processor's cache."""
+NOTHING = 1e-9
+"""Of the largest effect of any parameter: a smaller one is rounding."""
+EXACT = 1e-10
+"""To which Gram matrices stand still where a user allows less; smooth ones do so at once."""
+
+VECTORS = ("shaking_force", "frame_force")
+SCALARS = ("shaking_moment", "frame_moment", "drive_torque")
+
+
+def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) -> bool:
+    """Whether designs differ in masses alone and means and mean squares are all that is wanted."""
+    masses = all(NUMBERS[kind].fullmatch(p) for p in paths for kind in _kind_of_mass(p))
+    return masses and all(_can_have(machine, figure) for figure in wanted)
+
+
+def _kind_of_mass(path: str) -> tuple[str]:
+    return ("mass",) if NUMBERS["mass"].fullmatch(path) else ("center",)
+
+
+def _can_have(machine: Machine, figure: Figure) -> bool:
+    """Lengths have no linear mean; with gears, masses decide which flank of the teeth pushes."""
+    signal = figure.signal
+    joint = signal.startswith("joints.")
+    if joint and machine.gears:
+        return False
+    scalar = signal in SCALARS or signal.endswith((".x", ".y", ".moment", ".force_x", ".force_y"))
+    known = signal.removesuffix(".x").removesuffix(".y") in (*VECTORS, *SCALARS) or joint
+    return known and (figure.name == "rms" or (figure.name == "mean" and scalar))
+
+
+@dataclass(frozen=True, eq=False)
+class Square:
+    """A figure as the root of a sum of squares, or a mean: factors (R, V) and constants (R, 1)."""
+
+    factors: Array
+    constants: Array
+    mean: bool
+
+    def of(self, parameters: Array) -> Array:
+        """The figure (P,) of varied parameters (V, P)."""
+        found = self.factors @ parameters + self.constants
+        if self.mean:
+            mean: Array = found[0]
+            return mean
+        root: Array = np.sqrt(np.einsum("ij,ij->j", found, found))
+        return root
+
+
+class MassBatch:
+    """Designs of one machine that differ in masses; parameters as those of `Batch`."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        paths: Sequence[str],
+        wanted: Sequence[Figure],
+        angles: int | None = None,
+        tolerance: float = 1e-4,
+    ) -> None:
+        if not can_use(machine, paths, wanted):
+            raise UsageError("these designs or figures need the way round the cycle")
+        self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
+        links = {
+            m["link"] for p in paths for k in _kind_of_mass(p) if (m := NUMBERS[k].fullmatch(p))
+        }
+        self.links = [link for link in machine.links if link in links]
+        self.scale = np.append(_scales(machine, len(self.links)), 1.0)
+        self.still = True
+        self.squares = self._squares(angles, tolerance)
+
+    def __call__(self, values: Array) -> tuple[Array, Array]:
+        """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
+        figures = np.empty((len(values), len(self.wanted)))
+        reason = np.zeros(len(values), dtype=np.uint8)
+        if not self.still:
+            reason[:] = NOT_STILL
+        for begin in range(0, len(values), AT_ONCE):
+            some = slice(begin, begin + AT_ONCE)
+            self._fill(figures[some], reason[some], values[some])
+        figures[reason != 0] = np.nan
+        return figures, reason
+
+    def _fill(self, figures: Array, reason: Array, values: Array) -> None:
+        columns = np.ascontiguousarray(values.T)
+        named = {path: column[:, None] for path, column in zip(self.paths, columns, strict=True)}
+        machine = with_columns(self.base.machine, named)
+        parameters = np.empty((len(QUANTITIES) * len(self.links), len(values)))
+        rows = (value for link in self.links for value in parameters_of(machine.links[link]))
+        with np.errstate(all="ignore"):
+            for row, value in zip(parameters, rows, strict=True):
+                row[:] = np.ravel(value)
+            for k, square in enumerate(self.squares):
+                figures[:, k] = square.of(parameters)
+        reason[wrong(machine, self.base, len(values))] = NO_MACHINE
+
+    # -- made once ---------------------------------------------------------------------------------
+
+    def _squares(self, angles: int | None, tolerance: float) -> list[Square]:
+        """Every figure, with as many crank angles as its Gram matrix asks for."""
+        count = angles or FIRST
+        found = self._signals(count)
+        if angles is None:
+            enough = max(EXACT, tolerance**2)
+            while True:
+                before, count = found, 2 * count
+                if count > MOST_ANGLES:
+                    self.still = False
+                    break
+                found = self._signals(count)
+                if all(
+                    _alike(old * self.scale, new * self.scale, enough)
+                    for old, new in zip(before, found, strict=True)
+                ):
+                    break
+        return [self._square(a, f) for a, f in zip(found, self.wanted, strict=True)]
+
+    def _signals(self, count: int) -> list[Array]:
+        """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest."""
+        motion = move(self.base.machine, count)
+        unit, whole = regressor(motion), forces(motion)
+        return [np.column_stack([*self._parts(f.signal, unit, whole)]) for f in self.wanted]
+
+    def _parts(self, signal: str, unit: Regressor, whole: Forces) -> Iterator[Array]:
+        """Columns of a signal over the cycle, one below the other where it has two components."""
+        rows = np.stack([*_components(signal, unit)])
+        own = np.stack([*_components(signal, whole)])
+        machine = self.base.machine
+        varied = [k for k, (link, _) in enumerate(parameter_names(machine)) if link in self.links]
+        for k in varied:
+            yield rows[:, k].ravel()
+        yield (
+            own - np.tensordot(rows[:, varied], parameter_values(machine)[varied], (1, 0))
+        ).ravel()
+
+    def _square(self, samples: Array, figure: Figure) -> Square:
+        count = len(samples)
+        if figure.name == "mean":
+            row = np.mean(samples, axis=0)[None]
+            return Square(row[:, :-1], row[:, -1:], True)
+        if _two(figure.signal):
+            count //= 2
+        _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)
+        kept = singular > TINY * singular[0]
+        factor = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
+        return Square(factor[:, :-1], factor[:, -1:], False)
+
+
+def _scales(machine: Machine, links: int) -> Array:
+    """What parameters of so many links are like in a machine of this mass and size."""
+    mass = machine.mass or 1.0
+    size = max(size_of(link.points) for link in machine.links.values()) or 1.0
+    return np.tile([mass, mass * size, mass * size, mass * size**2], links)
+
+
+def _two(signal: str) -> bool:
+    """Whether a signal is the length of a vector."""
+    return signal in VECTORS or (
+        signal.startswith("joints.") and not signal.endswith((".moment", ".force_x", ".force_y"))
+    )
+
+
+def _components(signal: str, found: Regressor | Forces) -> Iterator[Array]:
+    """One or two components of a signal, (..., N)."""
+    name, _, part = signal.rpartition(".")
+    if signal in SCALARS:
+        yield np.asarray(getattr(found, signal))
+    elif signal in VECTORS or name in VECTORS:
+        value = getattr(found, signal if signal in VECTORS else name)
+        value = np.asarray(getattr(value, "value", value))
+        yield from _chosen(value, part if name in VECTORS else "")
+    else:
+        yield from _of_joint(signal.removeprefix("joints."), found)
+
+
+def _chosen(value: Array, part: str) -> Iterator[Array]:
+    if part != "y":
+        yield value.real
+    if part != "x":
+        yield value.imag
+
+
+def _of_joint(name: str, found: Regressor | Forces) -> Iterator[Array]:
+    joints = found.joints
+    if name in joints:
+        yield from _chosen(joints[name].value, "")
+        return
+    joint, _, part = name.rpartition(".")
+    force = joints[joint]
+    if part == "moment" and isinstance(force, SliderForce):
+        yield force.moment
+    elif part in ("force_x", "force_y"):
+        yield from _chosen(force.value, part[-1])
+    else:
+        raise UsageError(f"got {name!r}; {joint!r} has no such signal")
+
+
+def _alike(one: Array, other: Array, tolerance: float) -> bool:
+    """Whether the Gram matrices of samples at two numbers of crank angles agree."""
+    first, second = (samples.T @ samples / len(samples) for samples in (one, other))
+    sizes = np.sqrt(np.diag(second))
+    sizes = np.maximum(sizes, NOTHING * np.max(sizes))
+    close = np.abs(first - second) <= tolerance * np.outer(sizes, sizes)
+    return bool(np.all(close))

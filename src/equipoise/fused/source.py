@@ -1,0 +1,221 @@
+"""The steps of a linkage written out as source: one crank angle of one design, and the loop.
+
+``state`` is the steps, one line each, calling the kernels; it holds no formula of its own.
+``loop`` calls it for every design and crank angle and gathers what the figures need.  Compiled,
+both become one loop without calls.  NumPy runs ``state`` alone, on arrays.
+"""
+
+from __future__ import annotations
+
+import inspect
+import keyword
+import re
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.fused.figures import Gathered
+from equipoise.mechanism import kernels
+from equipoise.mechanism.linkage import Linkage
+
+Array = np.ndarray[Any, Any]
+Read = Callable[[Linkage], Any]
+START = {
+    "sum": "0.0",
+    "squares": "0.0",
+    "highest": "-1e300",
+    "lowest": "1e300",
+    "highest_at": "0.0",
+    "lowest_at": "0.0",
+}
+ADD = {
+    "sum": ("{g} += {x}",),
+    "squares": ("{g} += {x} * {x}",),
+    "highest": ("{g} = greatest({g}, {x})",),
+    "lowest": ("{g} = smallest({g}, {x})",),
+}
+PLACE = {"highest_at": ">", "lowest_at": "<"}
+"""Beside its place an extreme is found by a branch, which costs the loop its speed."""
+RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
+RESERVED |= {*keyword.kwlist, "smallest", "greatest", "running", "rotation", "complex", "range"}
+RESERVED |= {"state", "loop", "table", "grid", "out", "number", "weakest", "strongest", "i", "k"}
+
+
+@dataclass(frozen=True)
+class Slot:
+    """A number or vector that each design has of its own, and where in its linkage it stands."""
+
+    name: str
+    vector: bool
+    read: Read
+
+
+@dataclass(frozen=True)
+class Row:
+    """Something that depends on the crank angle alone: values (N,) at crank angles (N,), rad."""
+
+    name: str
+    values: Callable[[Array], Array]
+
+
+@dataclass(frozen=True)
+class Source:
+    """A loop as source, with what has to be handed to it.
+
+    slots : columns of its table, in order; a vector takes two.
+    rows : rows of its grid; those of vectors take two.
+    running : links whose angle is counted on from crank angle to crank angle.
+    """
+
+    text: str
+    slots: tuple[Slot, ...]
+    rows: tuple[Row, ...]
+    running: tuple[str, ...]
+    gathered: Gathered
+
+
+class Sheet:
+    """Lines of ``state`` as they are written, and the names of its values."""
+
+    def __init__(self) -> None:
+        self.lines: list[str] = []
+        self.slots: dict[str, Slot] = {}
+        self.rows: dict[str, Row] = {}
+        self.running: list[str] = []
+        self._names: dict[str, str] = {}
+
+    def name(self, value: str) -> str:
+        """An identifier for a value of a state, such as ``p_B`` for ``p(B)``."""
+        if value not in self._names:
+            plain = re.sub(r"\W", "_", value.rstrip(")"), flags=re.ASCII) or "_"
+            taken = RESERVED.union(self._names.values())
+            number = 2
+            found = plain
+            while found in taken:
+                found, number = f"{plain}_{number}", number + 1
+            self._names[value] = found
+        return self._names[value]
+
+    def slot(self, name: str, read: Read, vector: bool) -> str:
+        """A number that each design has of its own."""
+        found = self.name(name)
+        self.slots.setdefault(found, Slot(found, vector, read))
+        return found
+
+    def row(self, name: str, values: Callable[[Array], Array]) -> str:
+        """A number that depends on the crank angle alone."""
+        found = self.name(name)
+        self.rows.setdefault(found, Row(found, values))
+        return found
+
+    def put(self, value: str, expression: str) -> str:
+        """Write a line that gives a value of the state."""
+        found = self.name(value)
+        self.lines.append(f"{found} = {expression}")
+        return found
+
+    def call(self, kernel: str, arguments: Iterable[str], outputs: Sequence[str]) -> None:
+        """Write a line that calls a kernel."""
+        names = ", ".join(self.name(output) for output in outputs)
+        comma = "," if len(outputs) == 1 else ""
+        self.lines.append(f"{names}{comma} = {kernel}({', '.join(arguments)})")
+
+
+def written(sheet: Sheet, signals: Sequence[str], number: str, gathered: Gathered) -> Source:
+    """Put ``state`` and ``loop`` around the lines.
+
+    signals : identifiers of the signals, in the order of `gathered`; number : of the smallest of
+        the dyads' own numbers.
+    """
+    before = [f"before_{link}" for link in sheet.running]
+    arguments = [*sheet.rows, *sheet.slots, *before]
+    results = [*signals, number, *sheet.running]
+    text = "\n".join(
+        [
+            '"""Written out by equipoise.fused from the steps of a linkage."""',
+            "",
+            "",
+            f"def state({', '.join(arguments)}):",
+            *(f"    {line}" for line in sheet.lines),
+            f"    return {', '.join(results)},",
+            "",
+            "",
+            *_loop(sheet, gathered, arguments, before),
+            "",
+        ]
+    )
+    return Source(
+        text,
+        tuple(sheet.slots.values()),
+        tuple(sheet.rows.values()),
+        tuple(sheet.running),
+        gathered,
+    )
+
+
+def _loop(sheet: Sheet, gathered: Gathered, arguments: list[str], before: list[str]) -> list[str]:
+    signals = {signal: f"x{k}" for k, signal in enumerate(gathered.signals)}
+    names = [f"g{k}" for k in range(len(gathered.columns))]
+    return [
+        "def loop(table, grid, out):",
+        "    for i in range(table.shape[0]):",
+        *(f"        {line}" for line in _unpacked(sheet)),
+        *(f"        {name} = 0.0" for name in before),
+        *(
+            f"        {name} = {START[kind]}"
+            for name, (_, kind) in zip(names, gathered.columns, strict=True)
+        ),
+        "        weakest, strongest = 1e300, -1e300",
+        "        for k in range(grid.shape[1]):",
+        *(f"            {name} = grid[{k}, k]" for k, name in enumerate(sheet.rows)),
+        f"            {', '.join([*signals.values(), 'number', *before])}, = state("
+        f"{', '.join(arguments)})",
+        *(f"            {line}" for line in _gathering(gathered, signals, names)),
+        "            weakest = smallest(weakest, number)",
+        "            strongest = greatest(strongest, number)",
+        *_first_angles(before),
+        *(f"        out[i, {k}] = {name}" for k, name in enumerate(names)),
+        *(
+            f"        out[i, {len(names) + k}] = {name}"
+            for k, name in enumerate(["weakest", "strongest", *_windings(before)])
+        ),
+    ]
+
+
+def _unpacked(sheet: Sheet) -> Iterable[str]:
+    """Lines that read a design's numbers from its row of the table."""
+    place = 0
+    for slot in sheet.slots.values():
+        if slot.vector:
+            yield f"{slot.name} = complex(table[i, {place}], table[i, {place + 1}])"
+        else:
+            yield f"{slot.name} = table[i, {place}]"
+        place += 1 + slot.vector
+
+
+def _gathering(gathered: Gathered, signals: dict[str, str], names: list[str]) -> Iterable[str]:
+    columns = dict(zip(gathered.columns, names, strict=True))
+    for (signal, kind), name in columns.items():
+        x = signals[signal]
+        place = columns.get((signal, f"{kind}_at"))
+        if kind in PLACE:
+            continue
+        if place is None:
+            yield from (line.format(g=name, x=x) for line in ADD[kind])
+        else:
+            yield f"if {x} {PLACE[f'{kind}_at']} {name}:"
+            yield f"    {name} = {x}"
+            yield f"    {place} = k"
+
+
+def _first_angles(before: list[str]) -> Iterable[str]:
+    if before:
+        yield "            if k == 0:"
+        yield from (f"                first_{name} = {name}" for name in before)
+
+
+def _windings(before: list[str]) -> list[str]:
+    """Whole turns of the links whose angle is counted on: `rint` of this, once round."""
+    return [f"({name} - first_{name}) * {1 / (2 * np.pi)!r}" for name in before]
