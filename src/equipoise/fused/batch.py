@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from itertools import pairwise
 from math import pi
 from typing import Any
 
@@ -17,6 +18,7 @@ from equipoise.fused.figures import PLACES, Figure, Gathered
 from equipoise.fused.grid import all_angles, between, grid_of
 from equipoise.fused.reasons import (
     CHANGE_POINT,
+    COMPUTED,
     MOST_ANGLES,
     NO_ASSEMBLY,
     NO_FULL_TURN,
@@ -24,8 +26,8 @@ from equipoise.fused.reasons import (
     NOT_COMPUTED,
     NOT_STILL,
 )
-from equipoise.fused.sizes import sizes_of
-from equipoise.fused.table import table_of
+from equipoise.fused.sizes import has_steps
+from equipoise.fused.table import Designs, table_of
 from equipoise.mechanism import cycle
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
@@ -34,14 +36,23 @@ Array = np.ndarray[Any, Any]
 
 FIRST = 128
 """Crank angles in a turn from which their number doubles."""
-DENSER, MOST_LOOKED_AT = 8, 300_000
+DENSER, MOST_LOOKED_AT = 8, 40_000
 """How much closer a dyad's number is looked at near zero, and with how many angles at most."""
+PARTS, ROUNDS = 64, 5
+"""Parts of a range of crank angles of which the one with the extreme is looked at again."""
 SLOPE = 6.0
-"""A dyad's number between two crank angles is no lower than the lower one less (SLOPE h / 2)^2."""
+"""A dyad's number between two crank angles is no lower than the lower one less (SLOPE h / 2)^2, for
+links that turn no faster than the crank."""
 AT_ONCE = 500_000
 """Designs times crank angles that one thread does sooner than several."""
-ROUNDING = 1e-9
-"""Of the size of a signal: what is smaller counts as zero that stands still."""
+SMOOTH = ("mean", "rms")
+"""Figures that stand still for good once they do.  Extremes have to do so twice: crank angles may
+by chance come as close to the top as before."""
+STEP = 4
+"""Crank angles, over the tolerance, that loads take which begin or end at once: means over them
+come closer as 1 / N, and may by chance stand still before."""
+ROUNDING = 1e-12
+"""Of the size of a signal: what moves by less than this stands still."""
 
 
 class Batch:
@@ -79,38 +90,47 @@ class Batch:
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or _processors()
         self.gathered = Gathered.of(self.wanted)
+        self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
+        self.least = STEP / tolerance if has_steps(machine) else FIRST
         self.source = emit(self.base, self.gathered)
-        self.sizes = sizes_of(machine, self.gathered.signals)
+        windings = self.base.cycle.windings if machine.gears else {}
+        self.windings = [windings[link] for link in self.source.running]
+        fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
+        self.slope = SLOPE * max(1.0, fastest)
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
         values = np.ascontiguousarray(values, dtype=float)
-        table, refused = table_of(self.source, self.base, self.paths, values)
-        figures, reason = self._settled(table)
-        reason[refused] = NO_MACHINE
-        figures[reason != 0] = np.nan
+        with np.errstate(all="ignore"):  # a design that fails is told by its reason
+            designs = table_of(self.source, self.base, self.paths, values)
+            figures, reason = self._settled(designs)
+        reason[designs.refused] = NO_MACHINE
+        figures[reason != COMPUTED] = np.nan
         return figures, reason
 
     # -- crank angles ------------------------------------------------------------------------------
 
-    def _settled(self, table: Array) -> tuple[Array, Array]:
+    def _settled(self, designs: Designs) -> tuple[Array, Array]:
         """Figures and reasons, with as many crank angles as it takes."""
         count = self.angles or FIRST
-        found = self._at(table, all_angles(count, self.turns))
-        figures, reason = self._figures(found, count), self._reasons(table, found, count)
+        found = self._at(designs.table, all_angles(count, self.turns))
+        figures = self._figures(found, count)
+        reason = self._reasons(designs.table, found, count)
         if self.angles is not None:
             return figures, reason
-        left = np.flatnonzero(reason == 0)
-        found = found[left]
+        left = np.flatnonzero(reason == COMPUTED)
+        found, calm = found[left], np.zeros(left.size, dtype=int)
         while left.size and 2 * count <= MOST_ANGLES:
-            found = self._doubled(table[left], found, count)
+            found = self._doubled(designs.table[left], found, count)
             count *= 2
             now = self._figures(found, count)
-            moving = ~self._still(now, figures[left], found, count)
+            still = self._still(now, figures[left], found, count, designs.sizes(left))
+            calm = np.where(still, calm + 1, 0)
             figures[left] = now
-            reason[left] = self._reasons(table[left], found, count)
-            moving &= reason[left] == 0
-            left, found = left[moving], found[moving]
+            reason[left] = self._reasons(designs.table[left], found, count)
+            enough = (calm >= self.needed) & (count >= self.least)
+            moving = ~enough & (reason[left] == COMPUTED)
+            left, found, calm = left[moving], found[moving], calm[moving]
         reason[left] = NOT_STILL
         return figures, reason
 
@@ -136,62 +156,85 @@ class Batch:
         if self.source.running:  # their angles are counted on from crank angle 0
             return self._at(table, all_angles(2 * count, self.turns))
         more = self._at(table, between(count, self.turns))
-        weakest = len(self.gathered.columns)
         both = self.gathered.joined(found, more)
-        both[:, weakest] = np.minimum(found[:, weakest], more[:, weakest])
-        both[:, weakest + 1] = np.maximum(found[:, weakest + 1], more[:, weakest + 1])
+        for place, ways in ((self.source.weakest, np.minimum), (self.source.strongest, np.maximum)):
+            both[:, place] = ways(found[:, place], more[:, place])
         return both
 
     def _figures(self, found: Array, count: int) -> Array:
         columns = [self.gathered.figure(found, f, count * self.turns) for f in self.wanted]
         return np.column_stack(columns) if columns else np.empty((len(found), 0))
 
-    def _still(self, now: Array, before: Array, found: Array, count: int) -> Array:
+    def _still(
+        self, now: Array, before: Array, found: Array, count: int, sizes: Mapping[str, Any]
+    ) -> Array:
         """Designs (P,) none of whose figures has moved."""
         still = np.ones(len(now), dtype=bool)
         for k, figure in enumerate(self.wanted):
             step = np.abs(now[:, k] - before[:, k])
             if figure.name in PLACES:
                 period = 2 * pi * self.turns
-                size: Any = 2 * pi
-                step = np.minimum(step, period - step)
+                still &= np.minimum(step, period - step) <= self.tolerance * 2 * pi
             else:
                 rms = self.gathered.rms(found, figure.signal, count * self.turns)
-                size = np.maximum(rms, ROUNDING * self.sizes[figure.signal])
-            still &= step <= self.tolerance * size
+                share = self.tolerance if figure.name in SMOOTH else self.tolerance / 2
+                still &= step <= share * rms + ROUNDING * sizes[figure.signal]
         return still
 
     # -- designs that fail -------------------------------------------------------------------------
 
     def _reasons(self, table: Array, found: Array, count: int) -> Array:
-        """Why designs (P,) cannot be moved through the cycle; 0 where they can."""
+        """Why designs (P,) cannot be moved through the cycle; `COMPUTED` where they can.
+
+        Of several dyads that fail it is the first that tells, as those behind it have no place.
+        """
         reason = np.zeros(len(found), dtype=np.uint8)
-        at = len(self.gathered.columns)
-        weakest, strongest = found[:, at].copy(), found[:, at + 1]
-        for k, name in enumerate(self.source.running, at + 2):
-            reason[np.rint(found[:, k]) != self._windings[name]] = NOT_COMPUTED
-        self._look_closer(table, weakest, count)
-        reason[weakest < cycle.CHANGE_POINT] = CHANGE_POINT
-        reason[weakest < -cycle.CHANGE_POINT] = NO_FULL_TURN
-        reason[strongest < 0] = NO_ASSEMBLY
+        turns = np.rint(found[:, self.source.windings])
+        reason[np.any(turns != self.windings, axis=1)] = NOT_COMPUTED
+        weakest = found[:, self.source.weakest].copy()
+        strongest = found[:, self.source.strongest].copy()
+        self._look_closer(table, weakest, strongest, count)
+        for low, high in zip(weakest.T[::-1], strongest.T[::-1], strict=True):
+            reason[low < cycle.CHANGE_POINT] = CHANGE_POINT
+            reason[low < -cycle.CHANGE_POINT] = NO_FULL_TURN
+            reason[high <= 0] = NO_ASSEMBLY
         return reason
 
-    @property
-    def _windings(self) -> dict[str, int]:
-        """Whole turns in a cycle of the base's links whose angle is counted on."""
-        names = {f"phi_{link}": link for link in self.base.cycle.windings}
-        return {name: self.base.cycle.windings[names[name]] for name in self.source.running}
-
-    def _look_closer(self, table: Array, weakest: Array, count: int) -> None:
-        """Find how low dyads' numbers come between the crank angles, where they come near zero."""
+    def _look_closer(self, table: Array, weakest: Array, strongest: Array, count: int) -> None:
+        """Find how low and high dyads' numbers come between the crank angles, near zero."""
         while True:
-            half = SLOPE * pi / count
-            near = np.flatnonzero((weakest >= -cycle.CHANGE_POINT) & (weakest < half * half))
-            if not near.size or count * DENSER > MOST_LOOKED_AT:
-                return
+            reach = (self.slope * pi / count) ** 2
+            near = (weakest >= -cycle.CHANGE_POINT) & (weakest < reach)
+            near |= (strongest <= 0) & (strongest > -reach)
+            some = np.flatnonzero(near.any(axis=1))
             count *= DENSER
-            found = self._run(table[near], grid_of(self.source, all_angles(count, self.turns)))
-            weakest[near] = found[:, len(self.gathered.columns)]
+            if not some.size or count > MOST_LOOKED_AT:
+                break
+            found = self._run(table[some], grid_of(self.source, all_angles(count, self.turns)))
+            weakest[some] = found[:, self.source.weakest]
+            strongest[some] = found[:, self.source.strongest]
+        if not self.source.running:  # their angles are counted on from crank angle 0
+            for k in some:
+                for dyad in np.flatnonzero(near[k]).tolist():
+                    weakest[k, dyad] = self._extreme(table[k : k + 1], dyad, 1)
+                    strongest[k, dyad] = -self._extreme(table[k : k + 1], dyad, -1)
+
+    def _extreme(self, row: Array, dyad: int, sign: int) -> float:
+        """Smallest value, times `sign`, of one dyad's number in one design, closed in on."""
+        column = (self.source.weakest if sign > 0 else self.source.strongest).start + dyad
+        low, high = 0.0, 2 * pi * self.turns
+        best = np.inf
+        for _ in range(ROUNDS):
+            edges = np.linspace(low, high, PARTS + 1)
+            values = [
+                sign
+                * self._run(row, grid_of(self.source, np.linspace(*ends, PARTS + 1)))[0, column]
+                for ends in pairwise(edges)
+            ]
+            k = int(np.argmin(values))
+            best = min(best, float(values[k]))
+            low, high = edges[max(k - 1, 0)], edges[min(k + 2, PARTS)]
+        return best
 
 
 def _processors() -> int:

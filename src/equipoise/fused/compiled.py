@@ -6,13 +6,15 @@ cache of compiled code looks at that file alone.
 
 from __future__ import annotations
 
+import atexit
 import hashlib
 import importlib.util
 import inspect
 import os
+import shutil
 import sys
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from threading import Lock
@@ -75,7 +77,7 @@ def run(source: Source, table: Array, grid: Array) -> Array:
     loop, module = loop_of(source.text)
     if loop is None:
         return unfused.run(source, module.state, table, grid)
-    out = np.empty((len(table), len(source.gathered.columns) + 2 + len(source.running)))
+    out = np.empty((len(table), source.width))
     loop(table, grid, out)
     return out
 
@@ -132,14 +134,18 @@ def _file_of(text: str) -> Path:
     raise AssertionError("a new temporary folder can be written to")
 
 
-def _folders() -> list[Path]:
-    """Where loops may be kept, the best place first."""
+def _folders() -> Iterator[Path]:
+    """Where loops may be kept, the best place first; the last is for this process alone."""
     own = os.environ.get(FOLDER)
     if own:
-        return [Path(own), Path(tempfile.mkdtemp())]
-    from platformdirs import user_cache_path
+        yield Path(own)
+    else:
+        from platformdirs import user_cache_path
 
-    return [user_cache_path("equipoise", appauthor=False) / "loops", Path(tempfile.mkdtemp())]
+        yield user_cache_path("equipoise", appauthor=False) / "loops"
+    last = tempfile.mkdtemp(prefix="equipoise-")
+    atexit.register(shutil.rmtree, last, ignore_errors=True)
+    yield Path(last)
 
 
 def _imported(name: str, path: Path) -> ModuleType:

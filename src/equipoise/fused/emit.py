@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from equipoise.errors import UsageError
 from equipoise.fused.demands import write_demands, write_joints
 from equipoise.fused.figures import Gathered
 from equipoise.fused.motion import Written, write_motion
@@ -23,9 +24,11 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
 
     Raises
     ------
-    UsageError : there is no such signal, or a loop cannot have it.
+    UsageError : there is no such signal, or a loop cannot have it or this linkage.
     MassError : it needs masses, and the machine lacks some.
     """
+    if not can_emit(linkage):
+        raise UsageError("groups of loops, and fingers in soil, cannot be computed in a loop")
     writer = Written(linkage)
     write_motion(writer)
     if any(map(needs_forces, gathered.signals)):
@@ -33,4 +36,4 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     if any(map(needs_joints, gathered.signals)):
         write_joints(writer)
     signals = [writer.sheet.put(f"signal {s}", expression(writer, s)) for s in gathered.signals]
-    return written(writer.sheet, signals, writer.smallest_number(), gathered)
+    return written(writer.sheet, signals, writer.numbers(), gathered)

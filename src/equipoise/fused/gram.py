@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.fused.figures import Figure
 from equipoise.fused.reasons import MOST_ANGLES, NO_MACHINE, NOT_STILL
-from equipoise.mechanism.columns import NUMBERS, with_columns, wrong
+from equipoise.mechanism.columns import massive_link, with_columns, wrong
 from equipoise.mechanism.dynamics import Forces, SliderForce, forces
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
@@ -50,12 +50,8 @@ SCALARS = ("shaking_moment", "frame_moment", "drive_torque")
 
 def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) -> bool:
     """Whether designs differ in masses alone and means and mean squares are all that is wanted."""
-    masses = all(NUMBERS[kind].fullmatch(p) for p in paths for kind in _kind_of_mass(p))
+    masses = all(massive_link(path) is not None for path in paths)
     return masses and all(_can_have(machine, figure) for figure in wanted)
-
-
-def _kind_of_mass(path: str) -> tuple[str]:
-    return ("mass",) if NUMBERS["mass"].fullmatch(path) else ("center",)
 
 
 def _can_have(machine: Machine, figure: Figure) -> bool:
@@ -101,9 +97,7 @@ class MassBatch:
         if not can_use(machine, paths, wanted):
             raise UsageError("these designs or figures need the way round the cycle")
         self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
-        links = {
-            m["link"] for p in paths for k in _kind_of_mass(p) if (m := NUMBERS[k].fullmatch(p))
-        }
+        links = {massive_link(path) for path in paths}
         self.links = [link for link in machine.links if link in links]
         self.scale = np.append(_scales(machine, len(self.links)), 1.0)
         self.still = True
@@ -132,7 +126,7 @@ class MassBatch:
                 row[:] = np.ravel(value)
             for k, square in enumerate(self.squares):
                 figures[:, k] = square.of(parameters)
-        reason[wrong(machine, self.base, len(values))] = NO_MACHINE
+        reason[wrong(machine, self.base, named)] = NO_MACHINE
 
     # -- made once ---------------------------------------------------------------------------------
 

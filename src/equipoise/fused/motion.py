@@ -64,13 +64,9 @@ class Written:
         """Identifier of the crank's ``speed`` or ``acceleration``."""
         return self.sheet.slot(key, lambda found: getattr(found.machine.drive, key), vector=False)
 
-    def smallest_number(self) -> str:
-        """Identifier of the smallest of the dyads' own numbers; 1 where there is none."""
-        names = [self.name(g.number) for g in self.linkage.groups if g.number is not None]
-        found = names[0] if names else "1.0"
-        for name in names[1:]:
-            found = f"smallest({found}, {name})"
-        return self.sheet.put("smallest number", found)
+    def numbers(self) -> list[str]:
+        """Identifiers of the dyads' own numbers, in the order in which they are solved."""
+        return [self.name(g.number) for g in self.linkage.groups if g.number is not None]
 
 
 def write_motion(writer: Written) -> None:
@@ -104,7 +100,7 @@ def write_step(writer: Written, step: Step, here: Find) -> None:
     if isinstance(step, RunningAngle):
         name = writer.name(f"phi({step.link})")
         sheet.put(f"phi({step.link})", f"running({writer.name(f'u({step.link})')}, before_{name})")
-        sheet.running.append(name)
+        sheet.running[step.link] = name
     elif isinstance(step, Rotation):
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot
+from functools import reduce
+from typing import Any
 
-from equipoise.mechanism.model import Machine, size_of
+import numpy as np
+
+from equipoise.mechanism.builder import size_of_bodies
+from equipoise.mechanism.model import Machine
 
 
-def sizes_of(machine: Machine, signals: Sequence[str]) -> dict[str, float]:
-    """Size of each signal, in its own unit."""
-    bodies = [machine.frame, *(link.points for link in machine.links.values())]
-    size = max(map(size_of, bodies)) or 1.0
-    speed = abs(machine.drive.speed) or 1.0
-    force = machine.mass * (size * speed**2 + hypot(*machine.gravity)) or 1.0
+def sizes_of(machine: Machine, signals: Sequence[str]) -> dict[str, Any]:
+    """Size of each signal, in its own unit; a column (P, 1) where numbers of the machine are."""
+    size, speed = size_of_bodies(machine), np.abs(machine.drive.speed)
+    masses = (0.0 if link.mass is None else link.mass for link in machine.links.values())
+    mass = reduce(np.add, masses)
+    force = mass * (size * speed**2 + np.hypot(*machine.gravity))
     rates = {"v": speed, "a": speed**2}
     found = {}
     for signal in signals:
@@ -22,10 +26,13 @@ def sizes_of(machine: Machine, signals: Sequence[str]) -> dict[str, float]:
             found[signal] = size * rates.get(last[0], 1.0)
         elif signal.startswith("links."):
             found[signal] = speed if last == "angular_velocity" else speed**2
+        elif last in ("shaking_moment", "frame_moment", "drive_torque", "moment"):
+            found[signal] = force * size
         else:
-            found[signal] = force * (
-                size
-                if last in ("shaking_moment", "frame_moment", "drive_torque", "moment")
-                else 1.0
-            )
+            found[signal] = force
     return found
+
+
+def has_steps(machine: Machine) -> bool:
+    """Whether loads begin or end at once, so that means come closer as 1 / N only."""
+    return any(load.start is not None for load in machine.loads)

@@ -40,7 +40,7 @@ PLACE = {"highest_at": ">", "lowest_at": "<"}
 """Beside its place an extreme is found by a branch, which costs the loop its speed."""
 RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
 RESERVED |= {*keyword.kwlist, "smallest", "greatest", "running", "rotation", "complex", "range"}
-RESERVED |= {"state", "loop", "table", "grid", "out", "number", "weakest", "strongest", "i", "k"}
+RESERVED |= {"state", "loop", "table", "grid", "out", "i", "k"}
 
 
 @dataclass(frozen=True)
@@ -66,14 +66,38 @@ class Source:
 
     slots : columns of its table, in order; a vector takes two.
     rows : rows of its grid; those of vectors take two.
+    dyads : how many have a number of their own.
     running : links whose angle is counted on from crank angle to crank angle.
     """
 
     text: str
     slots: tuple[Slot, ...]
     rows: tuple[Row, ...]
+    dyads: int
     running: tuple[str, ...]
     gathered: Gathered
+
+    @property
+    def width(self) -> int:
+        """Columns of what it fills: what is gathered, and those below."""
+        return len(self.gathered.columns) + 2 * self.dyads + len(self.running)
+
+    @property
+    def weakest(self) -> slice:
+        """Columns of the smallest number of each dyad, in the order in which they are solved."""
+        first = len(self.gathered.columns)
+        return slice(first, first + self.dyads)
+
+    @property
+    def strongest(self) -> slice:
+        """Columns of the largest number of each dyad."""
+        first = len(self.gathered.columns) + self.dyads
+        return slice(first, first + self.dyads)
+
+    @property
+    def windings(self) -> slice:
+        """Columns of the turns of the running links: whole but for rounding."""
+        return slice(len(self.gathered.columns) + 2 * self.dyads, self.width)
 
 
 class Sheet:
@@ -83,7 +107,7 @@ class Sheet:
         self.lines: list[str] = []
         self.slots: dict[str, Slot] = {}
         self.rows: dict[str, Row] = {}
-        self.running: list[str] = []
+        self.running: dict[str, str] = {}
         self._names: dict[str, str] = {}
 
     def name(self, value: str) -> str:
@@ -123,15 +147,17 @@ class Sheet:
         self.lines.append(f"{names}{comma} = {kernel}({', '.join(arguments)})")
 
 
-def written(sheet: Sheet, signals: Sequence[str], number: str, gathered: Gathered) -> Source:
+def written(
+    sheet: Sheet, signals: Sequence[str], numbers: Sequence[str], gathered: Gathered
+) -> Source:
     """Put ``state`` and ``loop`` around the lines.
 
-    signals : identifiers of the signals, in the order of `gathered`; number : of the smallest of
-        the dyads' own numbers.
+    signals : identifiers of the signals, in the order of `gathered`; numbers : of the dyads' own
+        numbers, in the order in which they are solved.
     """
-    before = [f"before_{link}" for link in sheet.running]
+    before = [f"before_{angle}" for angle in sheet.running.values()]
     arguments = [*sheet.rows, *sheet.slots, *before]
-    results = [*signals, number, *sheet.running]
+    results = [*signals, *numbers, *sheet.running.values()]
     text = "\n".join(
         [
             '"""Written out by equipoise.fused from the steps of a linkage."""',
@@ -142,7 +168,7 @@ def written(sheet: Sheet, signals: Sequence[str], number: str, gathered: Gathere
             f"    return {', '.join(results)},",
             "",
             "",
-            *_loop(sheet, gathered, arguments, before),
+            *_loop(sheet, gathered, len(numbers), arguments, before),
             "",
         ]
     )
@@ -150,14 +176,19 @@ def written(sheet: Sheet, signals: Sequence[str], number: str, gathered: Gathere
         text,
         tuple(sheet.slots.values()),
         tuple(sheet.rows.values()),
+        len(numbers),
         tuple(sheet.running),
         gathered,
     )
 
 
-def _loop(sheet: Sheet, gathered: Gathered, arguments: list[str], before: list[str]) -> list[str]:
+def _loop(
+    sheet: Sheet, gathered: Gathered, dyads: int, arguments: list[str], before: list[str]
+) -> list[str]:
     signals = {signal: f"x{k}" for k, signal in enumerate(gathered.signals)}
     names = [f"g{k}" for k in range(len(gathered.columns))]
+    numbers = [f"n{k}" for k in range(dyads)]
+    extremes = [f"{kind}_{number}" for kind in ("weakest", "strongest") for number in numbers]
     return [
         "def loop(table, grid, out):",
         "    for i in range(table.shape[0]):",
@@ -167,19 +198,19 @@ def _loop(sheet: Sheet, gathered: Gathered, arguments: list[str], before: list[s
             f"        {name} = {START[kind]}"
             for name, (_, kind) in zip(names, gathered.columns, strict=True)
         ),
-        "        weakest, strongest = 1e300, -1e300",
+        *(f"        {name} = {'1e300' if name[0] == 'w' else '-1e300'}" for name in extremes),
         "        for k in range(grid.shape[1]):",
         *(f"            {name} = grid[{k}, k]" for k, name in enumerate(sheet.rows)),
-        f"            {', '.join([*signals.values(), 'number', *before])}, = state("
+        f"            {', '.join([*signals.values(), *numbers, *before])}, = state("
         f"{', '.join(arguments)})",
         *(f"            {line}" for line in _gathering(gathered, signals, names)),
-        "            weakest = smallest(weakest, number)",
-        "            strongest = greatest(strongest, number)",
+        *(f"            weakest_{n} = smallest(weakest_{n}, {n})" for n in numbers),
+        *(f"            strongest_{n} = greatest(strongest_{n}, {n})" for n in numbers),
         *_first_angles(before),
         *(f"        out[i, {k}] = {name}" for k, name in enumerate(names)),
         *(
             f"        out[i, {len(names) + k}] = {name}"
-            for k, name in enumerate(["weakest", "strongest", *_windings(before)])
+            for k, name in enumerate([*extremes, *_windings(before)])
         ),
     ]
 

@@ -2,50 +2,55 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from equipoise.fused.sizes import sizes_of
 from equipoise.fused.source import Source
 from equipoise.mechanism.columns import linkage_of, with_columns, wrong
 from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.model import Machine
 
 Array = np.ndarray[Any, Any]
 
 
-def table_of(
-    source: Source, base: Linkage, paths: Sequence[str], values: Array
-) -> tuple[Array, Array]:
-    """Table (P, T) of designs (P, d), and which of them (P,) no machine can have.
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Some designs (P) of a machine.
 
-    Those have the numbers of the base.  paths : of the numbers that vary.
+    table : (P, T) numbers, as the source wants them.
+    refused : (P,) whether no machine can have them; those have the numbers of the base.
+    machine : the machine with their numbers as columns.
     """
+
+    source: Source
+    table: Array
+    refused: Array
+    machine: Machine
+
+    def sizes(self, some: Array) -> Mapping[str, Any]:
+        """Size of each signal of some of the designs, (K,) or one for all."""
+        found = sizes_of(self.machine, self.source.gathered.signals)
+        return {name: size[some, 0] if np.ndim(size) else size for name, size in found.items()}
+
+
+def table_of(source: Source, base: Linkage, paths: Sequence[str], values: Array) -> Designs:
+    """Designs of a base by the numbers (P, d) that vary, SI units, and their paths."""
     columns = {path: values[:, k, None] for k, path in enumerate(paths)}
     machine = with_columns(base.machine, columns)
-    refused = wrong(machine, base, len(values))
+    refused = np.zeros(len(values), dtype=bool) | wrong(machine, base, columns)
     found = linkage_of(machine, base)
     table = np.empty((len(values), sum(1 + slot.vector for slot in source.slots)))
     place = 0
-    with np.errstate(all="ignore"):
-        for slot in source.slots:
-            value = np.asarray(slot.read(found))
-            table[:, place] = _flat(value.real)
-            if slot.vector:
-                table[:, place + 1] = _flat(value.imag)
-            place += 1 + slot.vector
-    if refused.any():
-        own = np.array(
-            [[part for slot in source.slots for part in _parts(slot.read(base), slot.vector)]]
-        )
-        table[refused] = own
-    return table, refused
-
-
-def _flat(value: Array) -> Any:
-    return value[:, 0] if value.ndim == 2 else value
-
-
-def _parts(value: Any, vector: bool) -> list[float]:
-    number = complex(value)
-    return [number.real, number.imag] if vector else [number.real]
+    for slot in source.slots:
+        width = 1 + slot.vector
+        value, own = slot.read(found), slot.read(base)
+        parts = ("real", "imag")[:width]
+        for column, part in zip(table[:, place : place + width].T, parts, strict=True):
+            column[:] = np.ravel(np.real(getattr(value, part)))
+            column[refused] = getattr(own, part)
+        place += width
+    return Designs(source, table, refused, machine)

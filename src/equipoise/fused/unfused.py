@@ -31,7 +31,7 @@ SUPPORT = SimpleNamespace(
 
 def run(source: Source, state: Callable[..., Any], table: Array, grid: Array) -> Array:
     """What a loop would gather (P, R) of designs (P, T) over a grid (G, N)."""
-    out = np.empty((len(table), len(source.gathered.columns) + 2 + len(source.running)))
+    out = np.empty((len(table), source.width))
     step = max(1, AT_A_TIME // grid.shape[1])
     with np.errstate(all="ignore"):
         for begin in range(0, len(table), step):
@@ -47,11 +47,13 @@ def _fill(out: Array, source: Source, state: Callable[..., Any], table: Array, g
     signals = dict(zip(source.gathered.signals, values, strict=False))
     for k, (signal, kind) in enumerate(source.gathered.columns):
         out[:, k] = _GATHER[kind](signals[signal])
-    count = len(source.gathered.columns)
-    number = values[len(signals)]
-    out[:, count], out[:, count + 1] = number.min(axis=1), number.max(axis=1)
-    for k, angle in enumerate(values[len(signals) + 1 :], count + 2):
-        out[:, k] = (angle[:, -1] - angle[:, 0]) / (2 * np.pi)
+    numbers = values[len(signals) : len(signals) + source.dyads]
+    angles = values[len(signals) + source.dyads :]
+    for place, ways in ((source.weakest, np.min), (source.strongest, np.max)):
+        for column, number in zip(out[:, place].T, numbers, strict=True):
+            column[:] = ways(number, axis=1)
+    for column, angle in zip(out[:, source.windings].T, angles, strict=True):
+        column[:] = (angle[:, -1] - angle[:, 0]) / (2 * np.pi)
 
 
 def _unpacked(source: Source, table: Array) -> list[Array]:

@@ -134,9 +134,7 @@ class Builder:
 
     def size(self) -> Any:
         """Size of the largest body, m; 1 where all are points."""
-        bodies = [self.machine.frame, *(link.points for link in self.machine.links.values())]
-        size = reduce(np.maximum, map(_size, bodies))
-        return size + (size == 0)
+        return size_of_bodies(self.machine)
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -182,6 +180,13 @@ def planar(place: Vector) -> complex:
     """A vector as a complex number; of columns, a column of them."""
     x, y = place
     return x + 1j * y
+
+
+def size_of_bodies(machine: Machine) -> Any:
+    """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
+    bodies = [machine.frame, *(link.points for link in machine.links.values())]
+    size = reduce(np.maximum, map(_size, bodies))
+    return size + (size == 0)
 
 
 def _size(points: Mapping[str, Vector]) -> Any:

@@ -10,13 +10,15 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
+from itertools import combinations
+from math import pi
 from typing import Any, TypeVar
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.builder import planar
-from equipoise.mechanism.checks import HUGE
+from equipoise.mechanism.checks import HUGE, TINY
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 
@@ -25,19 +27,19 @@ Columns = Mapping[str, Array]
 """Path of a number -> its values (P, 1), SI units."""
 Value = TypeVar("Value")
 
-PAIR = r"\.(?P<part>x|y|distance|direction)"
-NUMBERS = {
-    "drive": re.compile(r"drive\.(?P<key>speed|acceleration)"),
-    "gravity": re.compile(rf"gravity{PAIR}"),
-    "frame": re.compile(rf"frame\.points\.(?P<point>.+){PAIR}"),
-    "point": re.compile(rf"links\.(?P<link>.+?)\.points\.(?P<point>.+){PAIR}"),
-    "center": re.compile(rf"links\.(?P<link>.+)\.center_of_mass{PAIR}"),
-    "mass": re.compile(r"links\.(?P<link>.+)\.(?P<key>mass|inertia)"),
-    "slider": re.compile(r"sliders\[(?P<number>\d+)\]\.(?P<key>direction|angle)"),
-    "gear": re.compile(r"gears\[(?P<number>\d+)\]\.(?P<key>start|pressure_angle)"),
-    "spring": re.compile(r"springs\[(?P<number>\d+)\]\.(?P<key>stiffness|free_length)"),
+PAIR = {"x", "y", "distance", "direction"}
+HOLDERS = {
+    "drive": (re.compile("drive"), {"speed", "acceleration"}),
+    "gravity": (re.compile("gravity"), PAIR),
+    "frame": (re.compile(r"frame\.points\.(?P<point>.+)"), PAIR),
+    "point": (re.compile(r"links\.(?P<link>.+?)\.points\.(?P<point>.+)"), PAIR),
+    "center": (re.compile(r"links\.(?P<link>.+)\.center_of_mass"), PAIR),
+    "link": (re.compile(r"links\.(?P<link>.+)"), {"mass", "inertia"}),
+    "slider": (re.compile(r"sliders\[(?P<number>\d+)\]"), {"direction", "angle"}),
+    "gear": (re.compile(r"gears\[(?P<number>\d+)\]"), {"start", "pressure_angle"}),
+    "spring": (re.compile(r"springs\[(?P<number>\d+)\]"), {"stiffness", "free_length"}),
 }
-"""Numbers that may be columns, by their path in the model file."""
+"""What has numbers that may be columns, by its path in the model file, and their keys."""
 
 
 def can_vary(machine: Machine, path: str) -> bool:
@@ -52,16 +54,19 @@ def can_vary(machine: Machine, path: str) -> bool:
 def with_columns(machine: Machine, columns: Columns) -> Machine:
     """A machine some of whose numbers are columns.
 
-    It passes no checks and serves `linkage_of` alone.  Polar parts of one point are put in before
-    x and y, so that each stands where it was given.
+    It passes no checks and serves `linkage_of` alone.
 
     Raises
     ------
     UsageError : there is no such number, or it cannot be a column.
     """
+    parts: dict[str, dict[str, Array]] = {}
+    for path, column in columns.items():
+        whole, _, part = path.rpartition(".")
+        parts.setdefault(whole, {})[part] = column
     result = machine
-    for path in sorted(columns, key=lambda path: path.endswith((".x", ".y"))):
-        result = _put(result, path, columns[path])
+    for whole, found in parts.items():
+        result = _put(result, whole, found)
     return result
 
 
@@ -72,11 +77,27 @@ def linkage_of(machine: Machine, base: Linkage) -> Linkage:
         return ordered(machine, joints)
 
 
-def wrong(machine: Machine, base: Linkage, count: int) -> Array:
+def massive_link(path: str) -> str | None:
+    """The link whose mass, centre of mass or moment of inertia a path leads to."""
+    whole, _, part = path.rpartition(".")
+    for kind in ("center", "link"):
+        pattern, keys = HOLDERS[kind]
+        found = pattern.fullmatch(whole)
+        if found is not None and part in keys:
+            return found["link"]
+    return None
+
+
+def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
     """Which of the designs (P,) no machine can have: the checks of `Machine`, on columns."""
+    count = max((len(column) for column in columns.values()), default=1)
     found = np.zeros((count, 1), dtype=bool)
-    for right in _demands(machine, base):
-        found |= np.logical_not(right)
+    with np.errstate(all="ignore"):
+        for column in columns.values():
+            size = np.abs(column)
+            found |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
+        for right in _demands(machine, base):
+            found |= np.logical_not(right)
     return found[:, 0]
 
 
@@ -85,105 +106,98 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
     for body in (FRAME, *machine.links):
         points = machine.points_of(body)
         places = [planar(points[point]) for point in points if point in base.joints.pins]
-        for k, place in enumerate(places):
-            yield abs(place) < HUGE
-            yield from (place != other for other in places[:k])
+        yield from (one != other for one, other in combinations(places, 2))
     for link in machine.links.values():
-        if link.mass is not None and link.center_of_mass is not None and link.inertia is not None:
-            yield (link.mass >= 0) & (link.mass < HUGE)
-            yield (link.inertia >= 0) & (link.inertia < HUGE)
+        if link.mass is not None and link.inertia is not None:
+            yield (link.mass >= 0) & (link.inertia >= 0)
             yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
-            yield abs(planar(link.center_of_mass)) < HUGE
+    for gear in machine.gears:
+        yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
     for spring in machine.springs:
-        yield (spring.stiffness > 0) & (spring.stiffness < HUGE)
-        yield (spring.free_length >= 0) & (np.asarray(spring.free_length) < HUGE)
-    numbers = [machine.drive.speed, machine.drive.acceleration, *machine.gravity]
-    numbers += [number for slider in machine.sliders for number in (slider.direction, slider.angle)]
-    numbers += [number for gear in machine.gears for number in (gear.start, gear.pressure_angle)]
-    yield from (np.abs(number) < HUGE for number in numbers)
+        yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)
 
 
-# -- putting a column in ---------------------------------------------------------------------------
+# -- putting columns in ----------------------------------------------------------------------------
 
 
-def _put(machine: Machine, path: str, column: Array) -> Machine:
-    for kind, pattern in NUMBERS.items():
-        found = pattern.fullmatch(path)
-        if found is not None:
+def _put(machine: Machine, whole: str, parts: Mapping[str, Array]) -> Machine:
+    for kind, (pattern, keys) in HOLDERS.items():
+        found = pattern.fullmatch(whole)
+        if found is not None and parts.keys() <= keys:
             try:
-                return _PUT[kind](machine, found, column)
-            except (KeyError, IndexError, TypeError):
+                return _PUT[kind](machine, found, parts)
+            except (KeyError, IndexError):
                 break
-    raise UsageError(f"got {path!r}; the machine has no such number that can be a column")
+    told = " and ".join(f"{whole}.{part}".lstrip(".") for part in parts)
+    raise UsageError(f"got {told}; the machine has no such number that can be a column")
 
 
-def _drive(machine: Machine, found: re.Match[str], column: Array) -> Machine:
-    return _with(machine, drive=_with(machine.drive, **{found["key"]: column}))
+def _drive(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    return _with(machine, drive=_with(machine.drive, **parts))
 
 
-def _gravity(machine: Machine, found: re.Match[str], column: Array) -> Machine:
-    return _with(machine, gravity=_pair(machine.gravity, found["part"], column))
+def _gravity(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    return _with(machine, gravity=_pair(machine.gravity, parts))
 
 
-def _frame(machine: Machine, found: re.Match[str], column: Array) -> Machine:
-    place = _pair(machine.frame[found["point"]], found["part"], column)
+def _frame(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    place = _pair(machine.frame[found["point"]], parts)
     return _with(machine, frame={**machine.frame, found["point"]: place})
 
 
-def _point(machine: Machine, found: re.Match[str], column: Array) -> Machine:
+def _point(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
     points = machine.links[found["link"]].points
-    place = _pair(points[found["point"]], found["part"], column)
+    place = _pair(points[found["point"]], parts)
     return _with_link(machine, found["link"], points={**points, found["point"]: place})
 
 
-def _center(machine: Machine, found: re.Match[str], column: Array) -> Machine:
+def _center(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
     center = machine.links[found["link"]].center_of_mass
     if center is None:
         raise KeyError(found["link"])
-    return _with_link(machine, found["link"], center_of_mass=_pair(center, found["part"], column))
+    return _with_link(machine, found["link"], center_of_mass=_pair(center, parts))
 
 
-def _mass(machine: Machine, found: re.Match[str], column: Array) -> Machine:
+def _link(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
     if machine.links[found["link"]].mass is None:
         raise KeyError(found["link"])
-    return _with_link(machine, found["link"], **{found["key"]: column})
+    return _with_link(machine, found["link"], **parts)
 
 
-def _listed(name: str) -> Callable[[Machine, re.Match[str], Array], Machine]:
-    def put(machine: Machine, found: re.Match[str], column: Array) -> Machine:
+def _listed(name: str) -> Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]:
+    def put(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
         values, place = list(getattr(machine, name)), int(found["number"]) - 1
         if place < 0:
             raise IndexError
-        values[place] = _with(values[place], **{found["key"]: column})
+        values[place] = _with(values[place], **parts)
         return _with(machine, **{name: tuple(values)})
 
     return put
 
 
-_PUT: dict[str, Callable[[Machine, re.Match[str], Array], Machine]] = {
+_PUT: dict[str, Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]] = {
     "drive": _drive,
     "gravity": _gravity,
     "frame": _frame,
     "point": _point,
     "center": _center,
-    "mass": _mass,
+    "link": _link,
     "slider": _listed("sliders"),
     "gear": _listed("gears"),
     "spring": _listed("springs"),
 }
 
 
-def _pair(place: Vector, part: str, column: Array) -> tuple[Any, Any]:
-    """A pair with one of its two coordinates, or polar coordinates, replaced."""
+def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
+    """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
+    x: Any
+    y: Any
     x, y = place
-    if part in "xy":
-        return (column, y) if part == "x" else (x, column)
-    distance, direction = np.hypot(x, y), np.arctan2(y, x)
-    if part == "distance":
-        distance = column
-    else:
-        direction = column
-    return distance * np.cos(direction), distance * np.sin(direction)
+    if parts.keys() & {"distance", "direction"}:
+        distance = parts.get("distance", np.hypot(x, y))
+        direction = parts.get("direction", np.arctan2(y, x))
+        x, y = distance * np.cos(direction), distance * np.sin(direction)
+    return parts.get("x", x), parts.get("y", y)
 
 
 def _with(value: Value, **changes: Any) -> Value:

@@ -55,7 +55,8 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
         (f"phi({body})", f"w({body})", f"a({body})") for body in (gear.driver, carrier, link)
     )
     bare = Call(kernels.gear, (*angles[0], *angles[1]), (ratio, 0.0), angles[2])
-    at_start = run([bare], dict(now))[f"phi({link})"]
+    with np.errstate(all="ignore"):  # a driver that cannot come to crank angle 0 is told of later
+        at_start = run([bare], dict(now))[f"phi({link})"]
     offset = gear.start - (at_start if at_start.ndim > 1 else float(at_start[0]))
     motion = (
         *before,

@@ -1,0 +1,164 @@
+"""Batches of designs under test: run by NumPy or compiled, and figures by the designs' own way."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cache
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import equipoise as eq
+from equipoise.fused import compiled
+from equipoise.fused.figures import Figure
+from equipoise.mechanism.model import Gear, Machine, Slider
+from equipoise.results import columns, outputs
+from equipoise.signals import Figures, figures
+from support.designs import Array, size_of
+from unit.mechanism.build import heavy, machine
+
+VALUES = ("mean", "rms", "peak", "max", "min", "peak_to_peak")
+PLACES = {"max_at": "max", "min_at": "min", "peak_at": "peak"}
+MOTIONS = ("x", "y", "vx", "vy", "ax", "ay", "angular_velocity", "angular_acceleration")
+RATES = {"vx": 1, "vy": 1, "angular_velocity": 1, "x": 0, "y": 0}
+MOMENTS = ("moment", "shaking_moment", "frame_moment", "drive_torque")
+FLOOR = 1e-3
+"""Part of its natural size below which a signal counts as vanishing."""
+
+
+@contextmanager
+def by_numpy(folder: Path) -> Iterator[None]:
+    """Run loops by NumPy, as where Numba is missing; sources go to the folder."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv(compiled.FOLDER, str(folder))
+        patch.setattr(compiled, "engine", lambda: "numpy")
+        patch.setattr(compiled, "_loop_of", cache(compiled._loop_of.__wrapped__))
+        yield
+
+
+def wanted_of(signals: Sequence[str], *names: str) -> list[Figure]:
+    """Figures of signals; all of them where no names are given."""
+    return [Figure(signal, name) for signal in signals for name in names or (*VALUES, *PLACES)]
+
+
+# -- what a design does, by its own machine --------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Known:
+    """A signal of one design: samples (N,), their figures, and the size such a signal has."""
+
+    samples: Array
+    figures: Figures
+    size: float
+
+    @property
+    def scale(self) -> float:
+        """What a difference of this signal is measured against."""
+        return max(self.figures.rms, FLOOR * self.size)
+
+
+def signals_of(design: Machine) -> list[str]:
+    """Names of all signals that a batch knows of a machine."""
+    analysis = eq.analyze(design, 8)
+    names = dict.fromkeys(analysis.summary)
+    for name, _ in columns(analysis):
+        kind, part = name.partition(".")[0], name.rpartition(".")[2]
+        moving = kind in ("points", "links") and part in MOTIONS
+        if moving or (kind in ("joints", "gears") and part in ("force_x", "force_y")):
+            names[name] = None
+    return [*names, "frame_force.x", "frame_force.y"]
+
+
+def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[str, Known]:
+    """Signals of a machine at so many crank angles in a turn."""
+    analysis = eq.analyze(design, angles)
+    arrays = {**dict(columns(analysis)), **outputs(analysis)}
+    summary = analysis.summary
+    sizes = _sizes(design, analysis)
+    found = {}
+    for name in signals:
+        samples = arrays[name]
+        told = summary[name] if name in summary else figures(analysis.crank_angle, samples)
+        found[name] = Known(samples, told, sizes(name))
+    return found
+
+
+def _sizes(design: Machine, analysis: Any) -> Any:
+    """Function of a signal's name: the size of what such signals are made of."""
+    size, speed = size_of(design), abs(design.drive.speed)
+    rates = (1.0, speed, speed**2 + abs(design.drive.acceleration))
+    summary = analysis.summary
+    force = max((f.peak for n, f in summary.items() if n.rpartition(".")[2] not in MOMENTS))
+
+    def size_of_signal(name: str) -> float:
+        kind, part = name.partition(".")[0], name.rpartition(".")[2]
+        if kind in ("points", "links"):
+            return rates[RATES.get(part, 2)] * (size if kind == "points" else 1.0)
+        return float(force) * (size if part in MOMENTS else 1.0)
+
+    return size_of_signal
+
+
+def same_figures(
+    got: Sequence[float], wanted: Sequence[Figure], known: Mapping[str, Known], angles: int,
+    tolerance: float,
+) -> None:  # fmt: skip
+    """Compare one design's row of figures; at the place of an extreme the extreme has to be."""
+    for value, figure in zip(got, wanted, strict=True):
+        signal, name = known[figure.signal], PLACES.get(figure.name, figure.name)
+        told, found = getattr(signal.figures, name), value
+        if figure.name in PLACES:
+            sample = signal.samples[round(value / (2 * pi / angles))]
+            found = abs(sample) if name == "peak" else sample
+        apart = abs(found - told) / signal.scale
+        assert apart <= tolerance, f"{figure} is {found:.9g}, {apart:.2g} off {told:.9g}"
+
+
+# -- machines --------------------------------------------------------------------------------------
+
+
+def every_dyad() -> Machine:
+    """One crank with a dyad of every sequence of joints and two gears, one of a swinging driver."""
+    turn = pi / 2
+    return machine(
+        {
+            "A": (0.0, 0.0), "D": (3.0, 0.3), "K": (-0.2, -1.0), "E": (0.4, 3.0),
+            "W": (6.0, -2.0), "V": (-5.0, 0.4), "H": (0.3, -0.2), "hook": (0.0, 40.0),
+        },
+        {
+            "crank": heavy(A=(0.0, 0.0), B=(1.0, 0.1)),
+            "coupler": heavy(B=(0.0, 0.0), C=(3.0, 0.0), P=(1.5, 0.7)),
+            "rocker": heavy(D=(0.0, 0.0), C=(2.5, 0.0), Q=(1.0, 1.0)),
+            "rod": heavy(B=(0.0, 0.0), S=(4.0, 0.2)),
+            "piston": heavy(S=(0.1, 0.05)),
+            "block": heavy(B=(0.05, 0.0)),
+            "arm": heavy(E=(0.0, 0.0), R=(5.0, 0.3)),
+            "shoe": heavy(B=(0.02, 0.01)),
+            "yoke": heavy(Y=(0.0, 0.0), T=(0.5, 0.4)),
+            "swinging": heavy(G=(0.0, 0.02)),
+            "standing": heavy(G=(0.01, 0.0)),
+            "weight": heavy(W=(0.0, 0.0), U=(0.3, 0.1)),
+            "wheel": heavy(V=(0.0, 0.0)),
+        },
+        assembly={"C": "left", "S": "backward", "B": "backward"},
+        sliders=(
+            Slider("piston", "S", "frame", "K", 0.1, 0.2),
+            Slider("block", "B", "arm", "E", 0.05, 0.1),
+            Slider("shoe", "B", "yoke", "T", turn - 0.1, 0.2),
+            Slider("yoke", "Y", "frame", "H", 0.4, 0.1),
+            Slider("swinging", "G", "rocker", "Q", 0.2, 0.3),
+            Slider("standing", "G", "frame", "H", 0.7, 0.1),
+        ),
+        gears=(
+            Gear("rocker", "weight", -1.5, start=0.3),
+            Gear("crank", "wheel", -0.5, start=0.1),
+        ),
+        springs=(eq.Spring("coupler", "P", "hook", 3.0, 30.0),),
+        loads=(eq.Load("rod", "S", force=(3.0, -2.0), start=1.0, stop=3.0),),
+        drive=eq.Drive("crank", 7.0, 20.0),
+    )  # fmt: skip
