@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
@@ -134,8 +134,12 @@ class Balanced:
         """Speeds (rad/s) at which the new machine shakes as the old one did, by figure."""
         return equivalent_speeds(self.before, self.after, self.original.drive.speed)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The machine-readable output, SI units and radians."""
+    def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
+        """The machine-readable output, SI units and radians.
+
+        wanted : keys that are needed of those that take time; None for all.
+        """
+        asked = wanted is None or "sensitivities" in wanted
         return {
             "title": self.original.title,
             "speed": self.original.drive.speed,
@@ -155,7 +159,7 @@ class Balanced:
             "after": self.after,
             "equivalent_speeds": self.equivalent_speeds,
             "planting_kept": self.planting_kept,
-            "sensitivities": self.sensitivities,
+            **({"sensitivities": self.sensitivities} if asked else {}),
             **({} if self.phasing is None else {"rows": self.phasing.to_dict()}),
             "notes": list(self.notes),
         }

@@ -20,6 +20,7 @@ from equipoise.errors import UsageError
 from equipoise.io.files import printable
 from equipoise.terminal.units import Units
 from equipoise.tools.model import Tool
+from equipoise.tools.usual import MODES, usual_answers, usual_speeds
 
 if TYPE_CHECKING:
     import numpy as np
@@ -28,9 +29,7 @@ if TYPE_CHECKING:
     from equipoise.tools.modes import ToolModes
 
 RANGE = '"2000 rpm : 9000 rpm"'
-MODES, MOST_MODES, MOST_SPEEDS = 6, 100, 5_000
-AROUND = (0.5, 1.25)
-"""Range about the working speed, as shares of it, where the file tells none."""
+MOST_MODES, MOST_SPEEDS = 100, 5_000
 
 
 @dataclass(frozen=True)
@@ -51,13 +50,7 @@ class Asked:
         """Answers that are asked for; where none is, those that the file has what is needed for."""
         if self.number is not None and chosen and not {"modes", "vary"} & {*chosen}:
             raise UsageError("--number belongs to --modes or --vary; give one of them too")
-        if chosen:
-            return chosen
-        tool = self.tool
-        if tool.operation is None or not tool.stations:
-            return ["modes"]
-        shaken = ["exposure"] if tool.excitations and tool.grips else []
-        return ["modes", "respond", *shaken]
+        return chosen or usual_answers(self.tool)
 
     def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
         """Results must have a place to go, before time is spent on them."""
@@ -82,15 +75,13 @@ class Asked:
         """Lowest and highest speed of the engine, rad/s."""
         if self.respond is not None:
             return _range("--respond", self.respond)
-        operation = self.tool.operation
-        if operation is None:
+        told = usual_speeds(self.tool)
+        if told is None:
             raise UsageError(
                 f"{printable(self.file)}: operation: missing, so that no speeds are told; add the "
                 f"table [operation], or give --respond {RANGE}"
             )
-        if operation.speeds:
-            return operation.speeds[0], operation.speeds[1]
-        return AROUND[0] * operation.speed, AROUND[1] * operation.speed
+        return told
 
     @cached_property
     def range(self) -> np.ndarray[Any, Any]:

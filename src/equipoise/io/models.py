@@ -13,7 +13,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.io.files import FileError, printable, write_text
-from equipoise.io.opening import Kind, bundled, content_of, kind_of, opened
+from equipoise.io.opening import FileKind, bundled, content_of, kind_of, opened
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
@@ -138,10 +138,10 @@ def _part_of_name(where: str) -> str:
     return f"load-{number[0]}" if number else where.split(".")[1]
 
 
-def examples(kind: Kind | None = None) -> dict[str, str]:
-    """Names of the bundled model files, each with its title.
+def examples(kind: FileKind | None = None) -> dict[str, str]:
+    """Names of the bundled files of linkages, tools and studies, each with its title.
 
-    kind : ``linkage`` or ``tool``, for those of one kind only.
+    kind : ``linkage``, ``tool`` or ``study``, for those of one kind only.
     """
     contents = {
         name: tomllib.loads(file.read_text(encoding="utf-8")) for name, file in bundled().items()

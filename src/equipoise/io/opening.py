@@ -1,4 +1,4 @@
-"""Finding a model file, of a linkage or a tool, and reading its TOML as far as the version."""
+"""Finding a file, of a linkage, a tool or a study, and reading its TOML as far as the version."""
 
 from __future__ import annotations
 
@@ -18,8 +18,19 @@ from equipoise.io.files import LARGEST, FileError, printable, read_text
 from equipoise.mechanism.checks import unknown
 
 Kind = Literal["linkage", "tool"]
-OF_TOOL, OF_LINKAGE = {"shaft"}, {"drive", "frame", "links"}
-"""Tables that tell what a file is of."""
+FileKind = Literal["linkage", "tool", "study"]
+TABLES: dict[FileKind, set[str]] = {
+    "linkage": {"drive", "frame", "links"},
+    "tool": {"shaft"},
+    "study": {"model", "outputs", "sampling"},
+}
+"""Tables and keys that tell what a file is of."""
+OTHERS: dict[FileKind, str] = {
+    "linkage": "the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
+    "tool": "the file of a tool, with a table [shaft]; use `equipoise tool FILE`",
+    "study": "a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`",
+}
+"""What is said of a file where one of another kind is wanted."""
 
 # tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
 # minute for forty thousand.  No key of a model file has more than five.
@@ -28,7 +39,7 @@ _ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50
 
 @dataclass(frozen=True)
 class Opened:
-    """The text of a model file, its name for errors, and the folder where its tables are."""
+    """The text of a file, its name for errors, and the folder where what it names is."""
 
     text: str
     source: str
@@ -36,7 +47,7 @@ class Opened:
 
 
 def opened(path_or_name: str | os.PathLike[str]) -> Opened:
-    """Open a model file, or a bundled example by its name.
+    """Open a file, or a bundled example by its name.
 
     Raises
     ------
@@ -85,20 +96,18 @@ def _known_examples(name: str) -> str:
 # -- what is in it ---------------------------------------------------------------------------------
 
 
-def kind_of(content: Mapping[str, Any]) -> Kind | None:
+def kind_of(content: Mapping[str, Any]) -> FileKind | None:
     """What a file is of, by its tables; None where they do not tell."""
-    tool, linkage = OF_TOOL & content.keys(), OF_LINKAGE & content.keys()
-    if bool(tool) == bool(linkage):
-        return None
-    return "tool" if tool else "linkage"
+    kinds = [kind for kind, tables in TABLES.items() if tables & content.keys()]
+    return kinds[0] if len(kinds) == 1 else None
 
 
-def is_tool(text: str) -> bool:
-    """Whether a text is the file of a tool; not where it is no TOML."""
+def kind_of_text(text: str) -> FileKind | None:
+    """The same of the text of a file; None where it is no TOML."""
     try:
-        return kind_of(_toml(text)) == "tool"
+        return kind_of(_toml(text))
     except ModelError:
-        return False
+        return None
 
 
 def content_of(text: str, wanted: Kind) -> dict[str, Any]:
@@ -106,19 +115,20 @@ def content_of(text: str, wanted: Kind) -> dict[str, Any]:
 
     Raises
     ------
-    ModelError : as `toml_content`, or it is of the other kind.
+    ModelError : as `toml_content`, or it is of another kind.
     """
     content = toml_content(text)
     found = kind_of(content)
-    if wanted == "linkage" and found == "tool":
-        raise ModelError(
-            "", "this is the file of a tool, with a table [shaft]; use `equipoise tool FILE`"
-        )
-    if wanted == "tool" and found == "linkage":
-        raise ModelError(
-            "",
-            "this is the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
-        )
+    if found not in {None, wanted}:
+        raise ModelError("", f"this is {OTHERS[found]}")
+    return content
+
+
+def model_content(text: str) -> dict[str, Any]:
+    """Content of a model file of either kind; errors as `content_of`."""
+    content = toml_content(text)
+    if kind_of(content) == "study":
+        raise ModelError("", "this is a study; name the file of a linkage or a tool")
     return content
 
 

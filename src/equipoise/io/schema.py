@@ -10,6 +10,7 @@ from pydantic_core import core_schema
 
 from equipoise.io.document import Document
 from equipoise.io.document_balance import Balance
+from equipoise.io.document_study import StudyDocument
 from equipoise.io.document_tool import ToolDocument
 
 
@@ -39,6 +40,11 @@ def json_schema() -> dict[str, Any]:
 def tool_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the file of a tool."""
     return _schema_of(ToolDocument, "Equipoise tool file")
+
+
+def study_schema() -> dict[str, Any]:
+    """JSON Schema (draft 2020-12) of the study file."""
+    return _schema_of(StudyDocument, "Equipoise study file")
 
 
 def _schema_of(document: type[BaseModel], title: str) -> dict[str, Any]:

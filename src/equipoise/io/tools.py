@@ -9,15 +9,18 @@ import os
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import ModelError
 from equipoise.io.beside import Beside, impedance_keys
 from equipoise.io.files import printable
 from equipoise.io.models import files_of, loads, save, write_beside
-from equipoise.io.opening import bundled, content_of, is_tool, opened, opened_example
+from equipoise.io.opening import bundled, content_of, kind_of_text, opened, opened_example
 from equipoise.mechanism.model import Machine
 from equipoise.tools.model import Impedance, Tool
+
+if TYPE_CHECKING:
+    from equipoise.studies.study import Study
 
 __all__ = ["dumps_tool", "load_any", "load_tool", "loads_tool", "save_tool", "tool_schema"]
 
@@ -60,10 +63,15 @@ def loads_tool(
         raise ModelError(printable(error.where), error.what, source) from error
 
 
-def load_any(path_or_name: str | os.PathLike[str]) -> Machine | Tool:
-    """Read a model file of either kind; what tells neither is read as that of a linkage."""
+def load_any(path_or_name: str | os.PathLike[str]) -> Machine | Tool | Study:
+    """Read a file of any kind; what tells none is read as that of a linkage."""
     file = opened(path_or_name)
-    read = loads_tool if is_tool(file.text) else loads
+    kind = kind_of_text(file.text)
+    if kind == "study":
+        from equipoise.io.studies import study_in
+
+        return study_in(file)
+    read = loads_tool if kind == "tool" else loads
     return read(file.text, file.source, file.folder)
 
 

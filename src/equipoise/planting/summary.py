@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from math import isfinite, pi
@@ -62,8 +62,11 @@ class PlantingFigures:
         """Forces in the soil and in the air; None where no soil or not every mass is given."""
         return soil_forces(self.machine)
 
-    def to_dict(self) -> dict[str, Any]:
-        """The machine-readable output, in SI units: nested dicts, lists and numbers."""
+    def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
+        """The machine-readable output, in SI units: nested dicts, lists and numbers.
+
+        wanted : keys that are needed of those that take time; None for all.
+        """
         result: dict[str, Any] = {
             "title": self.machine.title,
             "tip": self.planting.tip,
@@ -75,7 +78,7 @@ class PlantingFigures:
         result["loops"] = [asdict(loop) for loop in self.loops]
         result["cusps"] = list(self.cusps)
         result["tray_crossings"] = list(self.tray_crossings)
-        if self.forces is not None:
+        if (wanted is None or "forces" in wanted) and self.forces is not None:
             result["forces"] = {
                 name: {"in_air": _of(air), "in_soil": _of(soil)}
                 for name, (air, soil) in self.forces.compared().items()

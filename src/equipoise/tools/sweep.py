@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -104,17 +104,23 @@ class ToolSweep:
         """Mean power (S,), W, that goes into hand, harness, ground and absorber at a station."""
         return {part: np.sum(each, axis=0) for part, each in self.shaken.power(station).items()}
 
-    def to_dict(self) -> dict[str, Any]:
-        """As plain values in SI units."""
+    def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
+        """As plain values in SI units.
+
+        wanted : keys that are needed of those that take time; None for all.
+        """
         found: dict[str, Any] = {"speed": self.speed}
         if self.transmissions is not None:
             found |= self.transmissions.to_dict()
-        if self.response is not None:
-            found["orders"] = self.response.orders
+        if self.response is None:
+            return found
+        found["orders"] = self.response.orders
+        if wanted is None or "stations" in wanted:
             found["stations"] = self._stations()
+        if wanted is None or "largest_moment" in wanted:
             moment, place = self.largest_moment
             found["largest_moment"] = {"moment": moment, "place": place}
-            found["further"] = self._further()
+        found["further"] = self._further()
         return found
 
     def _stations(self) -> dict[str, Any]:

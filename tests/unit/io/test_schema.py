@@ -13,12 +13,18 @@ from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
 from equipoise.io import dumps, examples, json_schema, load, loads
+from equipoise.io.studies import load_study, study_schema
 from equipoise.io.tools import tool_schema
 from unit.io.samples import EVERYTHING, FOUR_BAR
 
 FOLDER = files("equipoise.io")
-SHIPPED = {"model.schema.json": json_schema, "tool.schema.json": tool_schema}
+SHIPPED = {
+    "model.schema.json": json_schema,
+    "study.schema.json": study_schema,
+    "tool.schema.json": tool_schema,
+}
 VALIDATOR = Draft202012Validator(json_schema())
+OF_STUDIES = Draft202012Validator(study_schema())
 GEAR = '[[gears]]\nbetween = ["crank", "rocker"]\n'
 
 
@@ -93,6 +99,86 @@ def test_both_refuse(old: str, new: str) -> None:
     with pytest.raises(ModelError):
         loads(text)
     assert not VALIDATOR.is_valid(tomllib.loads(text))
+
+
+# -- studies ---------------------------------------------------------------------------------------
+
+STUDY = """
+schema = 1
+model = "yamashita-1"
+[[vary]]
+path = "links.crank.mass"
+range = ["100 g", "0.2 kg"]
+[[vary]]
+path = "links.rocker.mass"
+normal = { deviation = "2 g", cut = 3 }
+[[vary]]
+path = "links.rocker.inertia"
+uniform = { half_width = "2 kg mm^2" }
+[[correlations]]
+between = ["links.rocker.mass", "links.rocker.inertia"]
+coefficient = 0.5
+[sampling]
+method = "sobol"
+designs = 8
+[[outputs]]
+value = "drive_torque.rms"
+at_most = "1 N m"
+make = "smallest"
+[accuracy]
+angles = 360
+"""
+
+
+@pytest.mark.parametrize("name", examples("study"))
+def test_studies(name: str) -> None:
+    OF_STUDIES.validate(tomllib.loads(load_study(name).file))
+
+
+def test_a_start_of_a_study(tmp_path: Path) -> None:
+    """As it stands, and with every hint in it taken."""
+    start = FOLDER.joinpath("start-study.toml").read_text(encoding="utf-8")
+    OF_STUDIES.validate(tomllib.loads(start))
+    hint = r"^# ?((\[\[?[a-z]+\]|path|normal|uniform|tolerance).*)"
+    hints = re.sub(hint, r"\1", start, flags=re.MULTILINE)
+    OF_STUDIES.validate(tomllib.loads(hints))
+    (tmp_path / "study.toml").write_text(hints, encoding="utf-8")
+    assert len(load_study(tmp_path / "study.toml").vary) == 5
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("schema = 1", "schema = 2"),
+        ('model = "yamashita-1"', ""),
+        ('path = "links.crank.mass"', ""),
+        ('range = ["100 g", "0.2 kg"]', ""),
+        ('range = ["100 g", "0.2 kg"]', 'range = ["100 g"]'),
+        ('range = ["100 g", "0.2 kg"]', 'range = ["100g", "200 g"]'),
+        ('range = ["100 g", "0.2 kg"]', 'range = ["100 g", "200 g"]\nlist = ["100 g"]'),
+        ('range = ["100 g", "0.2 kg"]', 'list = ["100 g"]\nsteps = 2'),
+        ('range = ["100 g", "0.2 kg"]', 'range = ["100 g", "200 g"]\nstep = 2'),
+        ('deviation = "2 g", ', ""),
+        ('"links.rocker.mass", ', ""),
+        ('"sobol"', '"soboll"'),
+        ('value = "drive_torque.rms"', ""),
+        ('"smallest"', '"small"'),
+        ('"1 N m"', '"1"'),
+        ("angles = 360", "angles = 360\ntolerance = 1e-4"),
+        ("[[outputs]]", '[[outputs]]\nof = "analyse"'),
+    ],
+)
+def test_both_refuse_a_study(old: str, new: str, tmp_path: Path) -> None:
+    assert old in STUDY
+    path = tmp_path / "study.toml"
+    path.write_text(STUDY, encoding="utf-8")
+    load_study(path)
+    OF_STUDIES.validate(tomllib.loads(STUDY))
+    text = STUDY.replace(old, new, 1)
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(ModelError):
+        load_study(path)
+    assert not OF_STUDIES.is_valid(tomllib.loads(text))
 
 
 if __name__ == "__main__":

@@ -92,7 +92,8 @@ def test_schema_accepts(text: str) -> None:
 
 def test_examples_of_tools() -> None:
     names = examples("tool")
-    assert set(names) | set(examples("linkage")) == set(examples())
+    others = {*examples("linkage"), *examples("study")}
+    assert set(names) | others == set(examples())
     for name, title in names.items():
         tool = load_tool(name)
         assert tool.title == title

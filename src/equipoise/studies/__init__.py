@@ -1,0 +1,1 @@
+"""Studies: many designs of one model, stored, chosen from, searched, and held to tolerances."""

@@ -1,0 +1,221 @@
+"""Who computes the chunks: threads of this process, processes of this machine, or a Dask cluster.
+
+All three are a `concurrent.futures.Executor` behind a `Pool`, and `computed` is all that a sweep
+sees of them.  What a chunk is does not depend on who computes it.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+import threading
+from abc import ABC, abstractmethod
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from time import monotonic
+from types import ModuleType
+
+from equipoise.errors import UsageError
+from equipoise.studies.store import Block
+
+TRIES = 3
+"""How often processes may die one after the other, with nothing finished in between."""
+TICK = 1.0
+"""Time between looks after the pool, s."""
+DEAD = (
+    f"processes that compute died {TRIES} times in a row, perhaps for want of memory; give fewer "
+    "workers"
+)
+MOST_PROCESSES = 61 if sys.platform == "win32" else 10_000
+
+
+@dataclass(frozen=True)
+class Task:
+    """What is to be computed of a chunk.
+
+    function : at the top level of a module, so that other processes find it; it is given `study`
+        and the numbers of the designs.
+    study : as the bytes that go to other processes.
+    """
+
+    function: Callable[[bytes, range], Block]
+    study: bytes
+
+
+class StoppedError(UsageError):
+    """Nobody can go on computing; `str(error)` says why, and what would help."""
+
+
+class Pool(ABC):
+    """Somebody who computes chunks.
+
+    room : how many chunks it is given at once.
+    """
+
+    room: int
+
+    @abstractmethod
+    def submit(self, designs: range) -> Future[Block]:
+        """Begin to compute designs."""
+
+    @abstractmethod
+    def close(self) -> None:
+        """Stop, and leave what is not finished."""
+
+    @abstractmethod
+    def look(self) -> None:
+        """See whether somebody is still at work; `StoppedError` if not."""
+
+    @abstractmethod
+    def explained(self, error: Exception) -> StoppedError | None:
+        """What ended the work on a chunk, if it is not the chunk itself."""
+
+
+def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block]]:
+    """Compute chunks, and give each with the numbers of its designs once it is finished.
+
+    They come in any order, and few are under way at a time.  What was lost because a process died
+    is begun again, which changes nothing in it.
+
+    Raises
+    ------
+    StoppedError : nobody can compute them.
+    """
+    left, under_way = deque(chunks), dict[Future[Block], range]()
+    deaths, looked = 0, monotonic()
+    while left or under_way:
+        while left and len(under_way) < pool.room:
+            chunk = left.popleft()
+            under_way[pool.submit(chunk)] = chunk
+        finished, _ = wait(under_way, TICK, FIRST_COMPLETED)
+        if monotonic() - looked > TICK:
+            pool.look()
+            looked = monotonic()
+        for future in finished:
+            chunk = under_way.pop(future)
+            try:
+                block = future.result()
+            except BrokenExecutor as error:  # whatever else is under way is lost, too
+                deaths += 1
+                if deaths == TRIES:
+                    raise StoppedError(DEAD) from error
+                left.extend((chunk, *under_way.values()))
+                under_way.clear()
+                break
+            except Exception as error:
+                explained = pool.explained(error)
+                if explained is None:
+                    raise
+                raise explained from error
+            else:
+                deaths = 0
+                yield chunk, block
+
+
+# -- on this machine -------------------------------------------------------------------------------
+
+
+class Local(Pool):
+    """On this machine nobody leaves without being noticed."""
+
+    def look(self) -> None:
+        """Nothing is to be seen."""
+
+    def explained(self, error: Exception) -> None:
+        """It is the chunk itself."""
+
+
+class Threads(Local):
+    """Threads of this process, for what computes without Python's lock."""
+
+    def __init__(self, task: Task, workers: int) -> None:
+        self.task, self.room = task, workers + 1
+        self.executor = ThreadPoolExecutor(workers)
+
+    def submit(self, designs: range) -> Future[Block]:
+        """Begin to compute designs."""
+        return self.executor.submit(self.task.function, self.task.study, designs)
+
+    def close(self) -> None:
+        """Wait for the chunks that are under way; they do not take long."""
+        self.executor.shutdown(cancel_futures=True)
+
+
+class Processes(Local):
+    """Processes that are started for it, and started again when one of them dies.
+
+    They end when the other end of a pipe closes: at once when the work is over or stopped, and also
+    when this process is killed.
+    """
+
+    def __init__(self, task: Task, workers: int) -> None:
+        self.task, self.workers = task, min(workers, MOST_PROCESSES)
+        self.room = 2 * self.workers
+        self._start()
+
+    def _start(self) -> None:
+        context = get_context("spawn")  # others have threads of libraries in them, half alive
+        self.watched, self.held = context.Pipe(duplex=False)
+        self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
+
+    def submit(self, designs: range) -> Future[Block]:
+        """Begin to compute designs."""
+        try:
+            return self._submitted(designs)
+        except BrokenExecutor:
+            self.close()
+            self._start()
+            return self._submitted(designs)
+
+    def _submitted(self, designs: range) -> Future[Block]:
+        with _apart():  # here is where processes are started
+            return self.executor.submit(self.task.function, self.task.study, designs)
+
+    def close(self) -> None:
+        """End the processes."""
+        self.held.close()
+        self.executor.shutdown(cancel_futures=True)
+        self.watched.close()
+
+
+@contextmanager
+def _apart() -> Iterator[None]:
+    """Start processes that neither run the user's script again nor ever hear Ctrl-C."""
+    script = sys.modules["__main__"]
+    sys.modules["__main__"] = ModuleType("__main__")
+    try:
+        if sys.platform == "win32":
+            yield
+        else:
+            before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+            try:
+                yield
+            finally:
+                signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    finally:
+        sys.modules["__main__"] = script
+
+
+def _begin(watched: Connection) -> None:
+    """In a new process: end with the one that started it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # where it could not be kept from hearing
+    threading.Thread(target=_end_with, args=(watched,), daemon=True).start()
+
+
+def _end_with(watched: Connection) -> None:
+    with suppress(EOFError, OSError):
+        watched.recv_bytes()
+    os._exit(1)

@@ -1,0 +1,216 @@
+"""A study from its first design to its last, into a store."""
+
+from __future__ import annotations
+
+import os
+import pickle
+from collections.abc import Callable, Mapping
+from contextlib import closing
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from equipoise.errors import UsageError
+from equipoise.studies.cluster import Cluster
+from equipoise.studies.evaluate import Evaluator, evaluator
+from equipoise.studies.executors import Pool, Processes, StoppedError, Task, Threads, computed
+from equipoise.studies.making import create, versions
+from equipoise.studies.progress import Progress, Tally
+from equipoise.studies.sampling import samples
+from equipoise.studies.store import NUMBERS, Block, Store, open_store, reason
+from equipoise.studies.study import SLOW_CHUNK
+
+if TYPE_CHECKING:
+    from equipoise.studies.study import Study
+
+Told = Callable[[Progress], None]
+"""Is called at the beginning, and with every chunk that is stored."""
+SHARED, SLOW_SHARED = 16, 64
+"""Chunks of a small study, so that every worker has some: of compiled, and of slow designs."""
+LEAST_CHUNK = 8192
+"""Compiled designs, fewer of which cost more time each."""
+
+
+def sweep(
+    study: Study,
+    path: str | os.PathLike[str],
+    *,
+    workers: int | None = None,
+    cluster: str | None = None,
+    progress: Told | None = None,
+) -> Store:
+    """Compute all designs of a study, and store them.
+
+    Parameters
+    ----------
+    path : of the new store.
+    workers : threads or processes on this machine; as many as it has processors if not given.
+    cluster : address of a Dask scheduler whose workers compute instead, such as
+        ``tcp://192.168.0.7:8786``.
+    progress : is told how far it is.
+
+    Raises
+    ------
+    ModelError : the outputs of the study cannot be computed.
+    UsageError : there is something at `path`, or an argument cannot be used; or the sweep had to
+        stop: then what is stored by then stays, and `resume` goes on.
+    """
+    route = Route.of(study)
+    with closing(route.pool(workers, cluster)) as pool:
+        store = create(path, study, route.chunk, route.engine)
+        _fill(store, study, pool, progress)
+    return store
+
+
+def resume(
+    path: str | os.PathLike[str],
+    restore: Callable[[Mapping[str, str]], Study],
+    *,
+    workers: int | None = None,
+    cluster: str | None = None,
+    progress: Told | None = None,
+) -> Store:
+    """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
+
+    Where nothing is missing, nothing is done but telling the progress.
+
+    Parameters
+    ----------
+    restore : makes the study of its texts; `equipoise.io.studies.restore`.
+    workers, cluster, progress : as in `sweep`.
+
+    Raises
+    ------
+    UsageError : there is no store, or other versions made it; or as in `sweep`.
+    """
+    store = open_store(path, write=True)
+    study = restore(store.texts)
+    if not store.missing():
+        if progress is not None:
+            progress(_counted(store, study).progress())
+        return store
+    route = Route.of(study)
+    _check_same(store, route.engine)
+    with closing(route.pool(workers, cluster)) as pool:
+        _fill(store, study, pool, progress)
+    return store
+
+
+def _fill(store: Store, study: Study, pool: Pool, progress: Told | None) -> None:
+    """Compute and store what is missing."""
+    with store.writing():
+        tally, missing = _counted(store, study), store.missing()
+        tell = progress or (lambda _: None)
+        tell(tally.progress())
+        chunks = computed(pool, map(store.designs, missing))
+        try:
+            for designs, block in chunks:
+                _store(store, designs, block)
+                tally.add(block, computed=True)
+                tell(tally.progress())
+        except StoppedError as error:
+            raise UsageError(
+                f"{store.path}: {error}; {tally.done} of {store.size} designs are stored, go on "
+                f"with the others by: equipoise resume {store.path}"
+            ) from error
+
+
+def _store(store: Store, designs: range, block: Block) -> None:
+    try:
+        store.write(designs, block)
+    except OSError as error:
+        if not os.path.lexists(store.path):
+            raise UsageError(
+                f"{store.path}: the folder has gone, and what was stored with it; sweep anew"
+            ) from error
+        raise StoppedError(
+            f"designs cannot be written ({reason(error)}); make room or mend that"
+        ) from error
+
+
+def _counted(store: Store, study: Study) -> Tally:
+    """The sums over what is stored already."""
+    tally = Tally(study.outputs, store.size)
+    missing = set(store.missing())
+    for chunk in range(store.chunks):
+        if chunk not in missing:
+            tally.add(store.read(store.designs(chunk)), computed=False)
+    return tally
+
+
+def _check_same(store: Store, engine: str) -> None:
+    here = {**versions(), "engine": engine}
+    for name, wanted in {**store.versions, "engine": store.engine}.items():
+        found = here.get(name, "none")
+        if found != wanted:
+            raise UsageError(
+                f"{store.path}: was begun with {name} {wanted}, and here is {name} {found}, with "
+                "which the last digits may differ; install what it was begun with, or sweep anew"
+            )
+
+
+# -- how a study is computed -----------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Route:
+    """How the designs of a study are computed; the same for the same study and versions.
+
+    compiled : whether they are computed without holding Python's lock, so that threads are enough.
+    engine : name of what computes them.
+    chunk : designs that are computed and stored together.
+    """
+
+    task: Task
+    compiled: bool
+    engine: str
+    chunk: int
+
+    @classmethod
+    def of(cls, study: Study) -> Route:
+        """The route of a study."""
+        packed = pickle.dumps(study)
+        _, evaluate = _loaded(packed)
+        compiled = getattr(evaluate, "compiled", False)
+        engine = getattr(evaluate, "engine", "general")
+        return cls(Task(compute, packed), compiled, engine, chunk_of(study, compiled))
+
+    def pool(self, workers: int | None, cluster: str | None) -> Pool:
+        """Whoever computes them."""
+        if cluster is not None:
+            if workers is not None:
+                raise UsageError("workers are those of this machine; leave them out with a cluster")
+            return Cluster(self.task, cluster)
+        count = processors() if workers is None else workers
+        if count < 1:
+            raise UsageError(f"got {count} workers; give 1 or more")
+        return Threads(self.task, count) if self.compiled else Processes(self.task, count)
+
+
+def chunk_of(study: Study, compiled: bool) -> int:
+    """Designs that are stored together: of slow ones as many as take some seconds."""
+    if compiled:
+        most = NUMBERS // len(study.paths + study.names)
+        return min(study.chunk, study.size, most, max(LEAST_CHUNK, -(-study.size // SHARED)))
+    return min(study.chunk, SLOW_CHUNK, -(-study.size // SLOW_SHARED))
+
+
+def processors() -> int:
+    """Number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+def compute(packed: bytes, designs: range) -> Block:
+    """Draw some designs of a study and compute them, in whatever process."""
+    study, evaluate = _loaded(packed)
+    values = samples(study, designs.start, len(designs))
+    return Block(values, evaluate(values))
+
+
+@lru_cache(maxsize=2)
+def _loaded(packed: bytes) -> tuple[Study, Evaluator]:
+    """A study and what computes it, made once in a process."""
+    study: Study = pickle.loads(packed)
+    return study, evaluator(study, threads=1)  # other threads have chunks of their own

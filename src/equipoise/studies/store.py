@@ -1,0 +1,238 @@
+"""A folder in which the designs of a study are stored, chunk by chunk: a Zarr group, version 3.
+
+One array for each varied number and for each output (float64, NaN where there is none), and
+`reason` (uint8, `UNKNOWN` where nothing is computed yet), all along one dimension, `design`.  A
+chunk of an array is a file, which is written beside its place and put there whole, so that it is
+there or not, at whatever moment the process ends.  A chunk of designs is done when the files of all
+arrays are there.  Nothing in the folder depends on time, or on the order in which chunks come.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import dataclass
+from json import loads
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.studies.evaluate import Outcome
+from equipoise.studies.extras import needed
+from equipoise.studies.lock import locked
+
+if TYPE_CHECKING:
+    import zarr
+
+Array = np.ndarray[Any, Any]
+
+LAYOUT = 1
+"""Of the folder; another number is another meaning of what is in it."""
+REASON, UNKNOWN = "reason", 255
+DAMAGED = "see whether the disk is there, or sweep anew"
+BLOCK, NUMBERS = 65_536, 2**22
+"""Designs that are read at once, or fewer where each has many numbers."""
+ZSTD = 1
+"""Level at which arrays are compressed, if they are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Some designs (P), one after the other: values (P, d) in SI units, and what came of them."""
+
+    values: Array
+    outcome: Outcome
+
+
+@dataclass(frozen=True, eq=False)
+class Store:
+    """A store that has been opened.
+
+    size : number of designs.  chunk : of those that are stored together; the last may be fewer.
+    numbers : paths of the varied numbers.  outputs : names of the outputs.
+    units : of numbers and outputs, by name, where they are known.
+    texts : of the study, from which `equipoise.io.studies.restore` makes it again.
+    engine : what computes the designs.  versions : that it was computed with, by name.
+    arrays : of numbers, of outputs, and of reasons, in this order, by name.
+    """
+
+    path: Path
+    size: int
+    chunk: int
+    numbers: tuple[str, ...]
+    outputs: tuple[str, ...]
+    units: Mapping[str, str]
+    texts: Mapping[str, str]
+    engine: str
+    versions: Mapping[str, str]
+    arrays: Mapping[str, zarr.Array[Any]]
+
+    @property
+    def chunks(self) -> int:
+        """Number of chunks."""
+        return -(-self.size // self.chunk)
+
+    def designs(self, chunk: int) -> range:
+        """Numbers of the designs in a chunk."""
+        return range(chunk * self.chunk, min((chunk + 1) * self.chunk, self.size))
+
+    def missing(self) -> list[int]:
+        """Chunks that are not stored, in order."""
+        with told(self.path, "cannot be read", DAMAGED):
+            done = set.intersection(*(_files(self._folder(name)) for name in self.arrays))
+        return [chunk for chunk in range(self.chunks) if chunk not in done]
+
+    def _folder(self, name: str) -> Path:
+        return self.path / name / "c"
+
+    # -- reading -----------------------------------------------------------------------------------
+
+    def read(self, designs: range) -> Block:
+        """Designs that follow each other; those not stored have NaN and the reason `UNKNOWN`."""
+        values = np.empty((len(designs), len(self.numbers)))
+        figures = np.empty((len(designs), len(self.outputs)))
+        part = slice(designs.start, designs.stop)
+        with told(self.path, "cannot be read", DAMAGED):
+            for table, names in ((values, self.numbers), (figures, self.outputs)):
+                for column, name in enumerate(names):
+                    table[:, column] = self.arrays[name][part]
+            reason = np.asarray(self.arrays[REASON][part])
+        return Block(values, Outcome(figures, reason))
+
+    def blocks(self) -> Iterator[tuple[int, Block]]:
+        """All designs, some ten thousand at a time, each time with the number of the first."""
+        most = min(BLOCK, NUMBERS // len(self.arrays))
+        step = self.chunk * max(1, most // self.chunk)
+        for start in range(0, self.size, step):
+            yield start, self.read(range(start, min(start + step, self.size)))
+
+    # -- writing -----------------------------------------------------------------------------------
+
+    @contextmanager
+    def writing(self) -> Iterator[None]:
+        """Keep other processes from writing, and clear away what one that was killed left over.
+
+        Raises
+        ------
+        UsageError : another process is writing, or nobody can.
+        """
+        with ExitStack() as held:
+            with told(self.path, "cannot be written", "make it writable"):
+                held.enter_context(locked(self.path))
+                for name in self.arrays:
+                    for left_over in self._folder(name).glob("*.partial"):
+                        left_over.unlink()
+            yield
+
+    def write(self, designs: range, block: Block) -> None:
+        """Store the designs of a chunk; they count for nothing until all of them are there.
+
+        Raises
+        ------
+        OSError : the disk is full, or the folder has gone.
+        """
+        columns = [*block.values.T, *block.outcome.figures.T, block.outcome.reason]
+        chunk = designs.start // self.chunk
+        for (name, array), column in zip(self.arrays.items(), columns, strict=True):
+            _put(self._folder(name) / str(chunk), _encoded(array, column))
+
+
+def _encoded(array: zarr.Array[Any], column: Array) -> bytes | memoryview:
+    """A chunk of an array as the bytes of its file; the last one is filled up.
+
+    Zarr's own way to there goes through an event loop in another thread, and takes four times as
+    long as all the rest.
+    """
+    whole = np.ascontiguousarray(column, array.dtype.newbyteorder("<"))
+    if len(whole) < array.chunks[0]:
+        whole = np.pad(whole, (0, array.chunks[0] - len(whole)), constant_values=array.fill_value)
+    if not array.compressors:
+        return whole.data
+    packed: bytes = needed("numcodecs", "a store").Zstd(level=ZSTD).encode(whole)
+    return packed
+
+
+def _put(path: Path, data: bytes | memoryview) -> None:
+    """Write a file beside its place, and put it there once it is whole."""
+    partial = path.with_name(f"{path.name}.partial")
+    try:
+        partial.write_bytes(data)
+        os.replace(partial, path)
+    except OSError:
+        with suppress(OSError):
+            partial.unlink()
+        raise
+
+
+def _files(folder: Path) -> set[int]:
+    """Chunks of an array that have a file; an empty one was cut off by a failure of the power."""
+    try:
+        with os.scandir(folder) as entries:
+            return {int(e.name) for e in entries if e.name.isdecimal() and e.stat().st_size}
+    except FileNotFoundError:
+        return set()
+
+
+def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
+    """Open a store; nothing but names and sizes is read.
+
+    write : whether chunks are going to be written.
+
+    Raises
+    ------
+    UsageError : there is none at `path`, or it is none that this version can read.
+    """
+    zarr = needed("zarr", "a store")
+    folder = Path(path)
+    if not os.path.lexists(folder):
+        raise UsageError(f"{folder}: there is no such store; make it by: equipoise sweep")
+    try:
+        group = zarr.open_group(folder, mode="r+" if write else "r", zarr_format=3)
+        layout = group.attrs["equipoise_store"]
+        if layout == LAYOUT:
+            return _opened(folder, group)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise UsageError(
+            f"{folder}: is no store of Equipoise ({reason(error)}); give the folder that "
+            "equipoise sweep has made"
+        ) from error
+    raise UsageError(
+        f"{folder}: was made by another version of Equipoise, with layout {layout}, and this one "
+        f"reads layout {LAYOUT}; install the version that made it, or sweep anew"
+    )
+
+
+def _opened(folder: Path, group: Any) -> Store:
+    about: Mapping[str, Any] = group.attrs
+    numbers, outputs = tuple(about["numbers"]), tuple(about["outputs"])
+    arrays = {name: group[name] for name in (*numbers, *outputs, REASON)}
+    return Store(
+        path=folder,
+        size=arrays[REASON].shape[0],
+        chunk=about["chunk"],
+        numbers=numbers,
+        outputs=outputs,
+        units={name: a.attrs["units"] for name, a in arrays.items() if "units" in a.attrs},
+        texts=loads(about["study"]),
+        engine=about["engine"],
+        versions=loads(about["versions"]),
+        arrays=arrays,
+    )
+
+
+@contextmanager
+def told(path: Path, what: str, advice: str) -> Iterator[None]:
+    """Make one sentence of what the system says."""
+    try:
+        yield
+    except (OSError, ValueError) as error:
+        raise UsageError(f"{path}: {what} ({reason(error)}); {advice}") from error
+
+
+def reason(error: Exception) -> str:
+    """Say briefly what went wrong."""
+    said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return said.splitlines()[0].rstrip(".").lower() if said else type(error).__name__

@@ -1,0 +1,165 @@
+"""Whose scatter is whose: shares of the variance of figures, by the numbers that cause it.
+
+A and B are two tables of designs that have nothing to do with each other.  A with the columns of
+one cause taken from B tells what that cause does: first order, what it does by itself; total, with
+all that it does together with others (Sobol 2001).  The estimates are (b) and (f) of Table 2 of
+Saltelli et al. 2010.  A once more, with the tolerance of one cause halved or gone, tells what is
+left without it; that is computed, not inferred.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.studies.sampling import BITS, values_at
+from equipoise.studies.spread import Normal, Uniform
+
+if TYPE_CHECKING:
+    from equipoise.studies.study import Study
+
+Array = np.ndarray[Any, Any]
+
+TWICE = 7
+"""Stream of random numbers of A and B, apart from those of designs; of what is drawn again, one on.
+"""
+DRAWN_AGAIN, BLOCKS = 400, 1024
+"""Bootstrap samples, and blocks of rows that are drawn."""
+LEAST_ROWS = 16
+"""Designs of A from which shares are told."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A number with its 95 % interval."""
+
+    value: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What one cause does to one figure.
+
+    first, total : share of the variance by itself, and with all that it does with others.
+    halved, removed : standard deviation that is left with half of the tolerance and without it,
+        over that with all of it.
+    """
+
+    first: Estimate
+    total: Estimate
+    halved: float
+    removed: float
+
+
+def causes_of(study: Study) -> tuple[tuple[int, ...], ...]:
+    """Columns that vary by themselves, or together because they are correlated."""
+    group = {path: k for k, path in enumerate(study.paths)}
+    for one in study.correlations:
+        old, new = group[one.second], group[one.first]
+        group = {path: new if k == old else k for path, k in group.items()}
+    columns = {path: k for k, path in enumerate(study.paths)}
+    return tuple(
+        tuple(columns[path] for path in study.paths if group[path] == k)
+        for k in dict.fromkeys(group.values())
+    )
+
+
+def tables(study: Study, rows: int) -> Iterator[Array]:
+    """A and B, then for each cause A with it from B, with it halved, and without it; (rows, d).
+
+    rows : a power of two.
+    """
+    from scipy.stats import qmc
+
+    width = len(study.vary)
+    sequence = np.random.SeedSequence(study.sampling.seed, spawn_key=(TWICE,))
+    scrambling = np.random.Generator(np.random.PCG64DXSM(sequence))
+    places = qmc.Sobol(2 * width, bits=BITS, seed=scrambling).random_base2(rows.bit_length() - 1)
+    places += 0.5 / 2**BITS  # the middle of a cell: 0 is the end of a normal spread
+    first, second = (values_at(study, half) for half in np.hsplit(places, 2))
+    centre = np.array([centre_of(one.spread) for one in study.vary])
+    yield from (first, second)
+    for cause in causes_of(study):
+        columns = list(cause)
+        for values in (second, 0.5 * (first + centre), np.broadcast_to(centre, first.shape)):
+            changed = first.copy()
+            changed[:, columns] = values[:, columns]
+            yield changed
+
+
+def centre_of(spread: Normal | Uniform | Any) -> float:
+    """Middle of a tolerance."""
+    return spread.mean if isinstance(spread, Normal) else float(spread.centre)
+
+
+def effects(figures: Sequence[Array], seed: int) -> list[Effect] | None:
+    """What each cause does to one figure, given it for each of `tables`, (n,); NaN where failed.
+
+    None where too few rows of all tables are there, or the figure does not vary.
+    """
+    table = np.array(figures)
+    whole = np.all(np.isfinite(table), axis=0)
+    if np.sum(whole) < LEAST_ROWS:
+        return None
+    table = table[:, whole]
+    base, other = table[0], table[1]
+    spread = float(np.std(base))
+    if spread <= 1e-12 * float(np.max(np.abs(base))):
+        return None
+    swapped, halved, removed = table[2::3], table[3::3], table[4::3]
+    estimates = _shares(base, other, swapped, seed)
+    return [
+        Effect(*shares, float(np.std(half)) / spread, float(np.std(none)) / spread)
+        for shares, half, none in zip(estimates, halved, removed, strict=True)
+    ]
+
+
+def _shares(
+    base: Array, other: Array, swapped: Array, seed: int
+) -> list[tuple[Estimate, Estimate]]:
+    """First-order and total share of each cause, with intervals by drawing rows again."""
+    middle = np.mean([base, other])  # the estimates are closer without what does not vary
+    base, other, swapped = base - middle, other - middle, swapped - middle
+    terms = np.vstack(
+        [
+            0.5 * (base + other),
+            0.5 * (base**2 + other**2),
+            other * (swapped - base),
+            0.5 * (base - swapped) ** 2,
+        ]
+    )
+    told = _ratios(np.mean(terms, axis=1)[None])
+    low, high = np.percentile(_ratios(_drawn_again(terms, seed)), [2.5, 97.5], axis=0)
+    count = len(swapped)
+    return [
+        (
+            Estimate(float(told[0, k]), float(low[k]), float(high[k])),
+            Estimate(float(told[0, t]), float(low[t]), float(high[t])),
+        )
+        for k, t in zip(range(count), range(count, 2 * count), strict=True)
+    ]
+
+
+def _ratios(means: Array) -> Array:
+    """Shares of the variance (R, 2 g) of means (R, 2 + 2 g)."""
+    variance = means[:, 1] - means[:, 0] ** 2
+    shares: Array = means[:, 2:] / variance[:, None]
+    return shares
+
+
+def _drawn_again(terms: Array, seed: int) -> Array:
+    """Means (R, T) of terms (T, n) over rows drawn anew each time, in blocks of random rows."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(TWICE + 1,))
+    generator = np.random.Generator(np.random.PCG64DXSM(sequence))
+    mixed = terms[:, generator.permutation(terms.shape[1])]
+    blocks = np.array_split(mixed, min(BLOCKS, terms.shape[1]), axis=1)
+    sums = np.array([block.sum(axis=1) for block in blocks])
+    sizes = np.array([block.shape[1] for block in blocks])
+    drawn = generator.multinomial(len(blocks), np.full(len(blocks), 1 / len(blocks)), DRAWN_AGAIN)
+    means: Array = (drawn @ sums) / (drawn @ sizes)[:, None]
+    return means

@@ -1,0 +1,217 @@
+"""The best designs of a store, against all of its designs looked at at once."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.fused.reasons import NO_ASSEMBLY, NO_FULL_TURN
+from equipoise.studies.best import best
+from equipoise.studies.evaluate import Outcome
+from equipoise.studies.front import front, spread
+from equipoise.studies.making import create
+from equipoise.studies.spread import Range
+from equipoise.studies.store import Block, Store
+from equipoise.studies.study import Make, Output
+from unit.studies.samples import LENGTH, MASS, study
+
+Array = np.ndarray[Any, Any]
+OUTPUTS = (
+    Output("force", value="a.b", dimension="force", at_most=0.8, make="smallest"),
+    Output("lift", value="a.c", dimension="length", at_least=0.2),
+    Output("torque", value="a.d"),
+)
+
+
+def random_designs(count: int, seed: int = 1) -> Block:
+    """Figures from 0 to 1, on few steps, so that many are equal; one in five fails."""
+    generator = np.random.default_rng(seed)
+    figures = np.round(generator.random((count, len(OUTPUTS))), 2)
+    reason = np.where(generator.random(count) < 0.2, NO_FULL_TURN, 0).astype(np.uint8)
+    figures[reason != 0] = np.nan
+    return Block(generator.random((count, 2)), Outcome(figures, reason))
+
+
+def stored(
+    folder: Path,
+    block: Block,
+    outputs: tuple[Output, ...] = OUTPUTS,
+    chunk: int = 16,
+    upto: int = -1,
+) -> Store:
+    """A store with these designs in it; only the first chunks where `upto` says so."""
+    count = len(block.values)
+    given = study(Range(0.1, 0.2), Range(0.05, 0.1), designs=count, outputs=outputs, chunk=chunk)
+    store = create(folder / f"store-{chunk}", given, chunk, "test")
+    for number in range(store.chunks if upto < 0 else upto):
+        part = store.designs(number)
+        some = slice(part.start, part.stop)
+        outcome = Outcome(block.outcome.figures[some], block.outcome.reason[some])
+        store.write(part, Block(block.values[some], outcome))
+    return store
+
+
+def good_ones(block: Block, force: float = 0.8, lift: float = 0.2) -> Array:
+    """Numbers of the designs that keep the limits."""
+    figures = block.outcome.figures
+    good = (figures[:, 0] <= force) & (figures[:, 1] >= lift) & (block.outcome.reason == 0)
+    return np.flatnonzero(good)
+
+
+def undominated(costs: Array) -> list[int]:
+    """By comparing each with each; the first of equal ones."""
+    found = []
+    for k, one in enumerate(costs):
+        better = np.all(costs <= one, axis=1) & np.any(costs < one, axis=1)
+        if not np.any(better) and not np.any(np.all(costs[:k] == one, axis=1)):
+            found.append(k)
+    return found
+
+
+# -- choosing --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("chunk", [7, 16, 1000])
+def test_by_one_figure(tmp_path: Path, chunk: int) -> None:
+    block = random_designs(300)
+    found = best(stored(tmp_path, block, chunk=chunk), 12)
+    good = good_ones(block)
+    order = good[np.argsort(block.outcome.figures[good, 0], kind="stable")][:12]
+    assert found.designs.tolist() == order.tolist()
+    assert np.array_equal(found.values, block.values[order])
+    assert np.array_equal(found.figures, block.outcome.figures[order])
+    assert (found.kept, found.stored) == (len(good), 300)
+    assert found.computed == np.sum(block.outcome.reason == 0)
+    assert found.by == {"force": "smallest"}
+
+
+@pytest.mark.parametrize(
+    "by",
+    [
+        {"force": "smallest", "lift": "largest"},
+        {"lift": "smallest", "torque": "smallest", "force": "largest"},
+        {"force": None, MASS: "largest", "torque": None, LENGTH: "smallest"},
+    ],
+)
+@pytest.mark.parametrize("chunk", [7, 64])
+def test_by_several(tmp_path: Path, by: Mapping[str, Make | None], chunk: int) -> None:
+    block = random_designs(300)
+    found = best(stored(tmp_path, block, chunk=chunk), 1000, by)
+    good = good_ones(block)
+    columns = dict(zip(("force", "lift", "torque"), block.outcome.figures.T, strict=True))
+    columns |= {MASS: block.values[:, 0], LENGTH: block.values[:, 1]}
+    costs = [(-1 if way == "largest" else 1) * columns[name][good] for name, way in by.items()]
+    wanted = good[undominated(np.stack(costs, axis=1))]
+    assert sorted(found.designs.tolist()) == wanted.tolist()
+    assert found.front == len(wanted) > 5
+    first = costs[0][np.searchsorted(good, found.designs)]
+    assert np.all(np.diff(first) >= 0)  # told in the order of the first figure
+
+
+def test_some_of_a_large_front_lie_far_apart(tmp_path: Path) -> None:
+    block = random_designs(400)
+    angle = np.linspace(0, np.pi / 2, 400)
+    figures = np.stack([1 - np.cos(angle), np.ones(400), 1 - np.sin(angle)], axis=1)
+    block = Block(block.values, Outcome(figures, np.zeros(400, np.uint8)))
+    outputs = (OUTPUTS[0], OUTPUTS[1], Output("torque", value="a.d", make="smallest"))
+    found = best(stored(tmp_path, block, outputs), 5)
+    kept = good_ones(block)
+    assert found.front == len(kept)
+    assert len(found.designs) == 5
+    assert {int(kept[0]), int(kept[-1])} <= {*found.designs.tolist()}
+    gaps = np.diff(found.designs)
+    assert np.min(gaps) > 0.5 * np.mean(gaps)
+
+
+def test_stores_that_are_not_finished(tmp_path: Path) -> None:
+    block = random_designs(300)
+    found = best(stored(tmp_path, block, upto=5), 3)
+    assert found.stored == 5 * 16
+    assert np.max(found.designs) < 5 * 16
+
+
+def test_as_plain_values(tmp_path: Path) -> None:
+    found = best(stored(tmp_path, random_designs(50)), 2)
+    values = found.to_dict()
+    assert values["by"] == {"force": "smallest"}
+    assert values["kept"] == found.kept
+    first = values["designs"][0]
+    assert first["design"] == found.designs[0]
+    assert first["values"] == dict(zip((MASS, LENGTH), found.values[0], strict=True))
+    assert first["figures"]["lift"] == found.figures[0, 1]
+
+
+# -- refused ---------------------------------------------------------------------------------------
+
+
+def refused(store: Store, *given: Any) -> str:
+    with pytest.raises(UsageError) as error:
+        best(store, *given)
+    return str(error.value)
+
+
+def test_nothing_to_go_by(tmp_path: Path) -> None:
+    outputs = tuple(Output(one.name, value=one.value) for one in OUTPUTS)
+    store = stored(tmp_path, random_designs(20), outputs)
+    assert re.match("no output of the study is to become small or large; name one", refused(store))
+    assert refused(store, 5, {"lfit": None}) == (
+        "no output or varied number is called 'lfit'; did you mean 'lift'?"
+    )
+    assert refused(store, 0) == "got 0 designs; give 1 or more"
+
+
+def test_no_design_keeps_the_limits(tmp_path: Path) -> None:
+    block = random_designs(100)
+    outputs = (
+        Output("force", value="a.b", dimension="force", at_most=0.1, make="smallest"),
+        Output("lift", value="a.c", dimension="length", at_least=2, at_most=3.0),
+        Output("torque", value="a.d"),
+    )
+    store = stored(tmp_path, block, outputs)
+    low = int(np.sum(block.outcome.figures[:, 0] <= 0.1))
+    computed = int(np.sum(block.outcome.reason == 0))
+    assert refused(store) == (
+        f"{store.path}: none of {computed} designs keeps every limit; kept is force <= 0.1 N by "
+        f"{low}, 2 <= lift <= 3 m by 0; loosen a limit, or let more vary"
+    )
+
+
+def test_every_design_failed(tmp_path: Path) -> None:
+    reason = np.array([NO_FULL_TURN, NO_ASSEMBLY, NO_FULL_TURN], np.uint8)
+    block = Block(np.ones((3, 2)), Outcome(np.full((3, 3), np.nan), reason))
+    store = stored(tmp_path, block)
+    assert refused(store) == (
+        f"{store.path}: no design has figures (does not assemble: 1, does not turn fully: 2); let "
+        "the numbers vary closer to those of the model"
+    )
+
+
+def test_nothing_is_stored(tmp_path: Path) -> None:
+    store = stored(tmp_path, random_designs(40), upto=0)
+    assert refused(store) == (
+        f"{store.path}: nothing is computed yet; go on with: equipoise resume {store.path}"
+    )
+
+
+# -- fronts ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kinds", [1, 2, 3, 5])
+@pytest.mark.parametrize("count", [0, 1, 2, 200])
+def test_fronts(kinds: int, count: int) -> None:
+    costs = np.random.default_rng(kinds).integers(0, 9, (count, kinds)).astype(float)
+    found = front(costs).tolist()
+    assert found == (undominated(costs)[:1] if kinds == 1 else undominated(costs))
+
+
+def test_places_far_apart() -> None:
+    costs = np.array([[0.0, 1e3], [0.01, 990.0], [0.5, 500.0], [0.52, 490.0], [1.0, 0.0]])
+    assert spread(costs, 3).tolist() == [0, 2, 4]
+    assert spread(costs, 5).tolist() == [0, 1, 2, 3, 4]
+    assert spread(costs[:, :1] * 0 + 1, 2).tolist() == [0, 1]

@@ -1,0 +1,267 @@
+"""Threads, processes and a cluster compute the same chunks, also when some of them are killed."""
+
+from __future__ import annotations
+
+import json
+import logging
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import psutil
+import pytest
+
+from equipoise.errors import UsageError
+from equipoise.studies import cluster, executors
+from equipoise.studies.cluster import Cluster
+from equipoise.studies.executors import Processes, StoppedError, Threads, computed
+from equipoise.studies.sampling import samples
+from equipoise.studies.store import Block
+from equipoise.studies.study import Sampling
+from support import studies
+from support.studies import Formulas, Orders, short_study
+
+STUDY = short_study(sampling=Sampling("monte-carlo", 200))  # in no need of slow imports
+CHUNKS = [range(start, start + 20) for start in range(0, 200, 20)]
+TESTS = Path(studies.__file__).parents[1]
+
+
+def check(found: list[tuple[range, Block]]) -> None:
+    """Every chunk once, and as it has to be."""
+    assert sorted(designs.start for designs, _ in found) == [chunk.start for chunk in CHUNKS]
+    for designs, block in found:
+        values = samples(STUDY, designs.start, len(designs))
+        np.testing.assert_array_equal(block.values, values)
+        np.testing.assert_array_equal(block.outcome.figures, Formulas()(values).figures)
+        np.testing.assert_array_equal(block.outcome.reason, Formulas()(values).reason)
+
+
+def gone(process: int, patience: float = 10.0) -> bool:
+    """Whether a process ends in time."""
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if not psutil.pid_exists(process) or psutil.Process(process).status() == "zombie":
+            return True
+        time.sleep(0.02)
+    return False
+
+
+# -- on this machine -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_threads_compute_every_chunk(tmp_path: Path, workers: int) -> None:
+    with closing(Threads(Orders(STUDY, tmp_path).task, workers)) as pool:
+        check(list(computed(pool, CHUNKS)))
+
+
+def test_few_chunks_are_under_way_at_a_time(tmp_path: Path) -> None:
+    with closing(Threads(Orders(STUDY, tmp_path).task, 2)) as pool:
+        for count, _ in enumerate(computed(pool, CHUNKS), 1):
+            time.sleep(0.01)
+            assert len(list(tmp_path.iterdir())) <= count + pool.room
+
+
+def test_processes_that_die_are_replaced_and_their_chunks_computed_again(tmp_path: Path) -> None:
+    orders = Orders(STUDY, tmp_path, deadly={40: 1, 160: 1})
+    with closing(Processes(orders.task, 2)) as pool:
+        check(list(computed(pool, CHUNKS)))
+    assert len(orders.processes()) > 2
+    assert all(map(gone, orders.processes()))
+
+
+def test_designs_at_which_processes_always_die_end_the_sweep(tmp_path: Path) -> None:
+    orders = Orders(STUDY, tmp_path, deadly={0: 99})
+    with (
+        closing(Processes(orders.task, 1)) as pool,
+        pytest.raises(
+            StoppedError, match=f"died {executors.TRIES} times in a row, .* give fewer w"
+        ),
+    ):
+        list(computed(pool, CHUNKS[:1]))
+    assert len(list(tmp_path.glob("0-*"))) == executors.TRIES
+
+
+def test_processes_stop_at_once_when_they_are_closed(tmp_path: Path) -> None:
+    orders = Orders(STUDY, tmp_path, pause=60.0)
+    pool = Processes(orders.task, 2)
+    pool.submit(CHUNKS[0])
+    while not orders.processes():
+        time.sleep(0.02)
+    start = time.monotonic()
+    pool.close()
+    assert time.monotonic() - start < 5
+    assert all(map(gone, orders.processes()))
+
+
+IN_A_PROCESS = """
+import sys
+from contextlib import closing
+from pathlib import Path
+from equipoise.studies.executors import Processes, computed
+from support.studies import Orders, short_study
+orders = Orders(short_study(200), Path(sys.argv[1]), pause=60.0)
+with closing(Processes(orders.task, 2)) as pool:  # not below a question for __main__
+    list(computed(pool, [range(20), range(20, 40)]))
+"""
+
+
+@pytest.mark.parametrize("begun", [0, 2])
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+def test_processes_end_with_the_one_that_started_them(
+    tmp_path: Path, number: int, begun: int
+) -> None:
+    (tmp_path / "script.py").write_text(IN_A_PROCESS)
+    orders = Orders(STUDY, tmp_path)
+    with subprocess.Popen(
+        [sys.executable, "script.py", "."],
+        cwd=tmp_path,
+        env=environment(),
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        started = psutil.Process(process.pid)
+        while len(started.children()) < 3 or len(orders.processes()) < begun:
+            time.sleep(0.001)  # two that compute, and what looks after resources for Python
+        children = [child.pid for child in started.children()]
+        if number == signal.SIGINT:  # the terminal sends it to all of them
+            os.killpg(process.pid, number)
+        else:
+            process.kill()
+        _, told = process.communicate(timeout=10)
+    assert all(map(gone, children))
+    if number == signal.SIGINT:
+        assert told.count("Traceback") == 1  # that of the script itself
+        assert told.endswith("KeyboardInterrupt\n")
+
+
+# -- a cluster -------------------------------------------------------------------------------------
+
+
+def environment(*folders: Path) -> dict[str, str]:
+    roots = [*map(str, folders), str(TESTS), *sys.path]
+    return {**os.environ, "PYTHONPATH": os.pathsep.join(roots)}
+
+
+@contextmanager
+def started(*words: str, folders: tuple[Path, ...] = ()) -> Iterator[subprocess.Popen[bytes]]:
+    """A process of Dask."""
+    with subprocess.Popen(
+        [sys.executable, "-m", "dask", *words],
+        env=environment(*folders),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    ) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+@contextmanager
+def scheduler(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    file = folder / "scheduler.json"
+    words = ["--host", "127.0.0.1", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)]
+    with started("scheduler", *words) as process:
+        while not file.exists() or not file.read_text():
+            time.sleep(0.02)
+        yield json.loads(file.read_text())["address"], process
+
+
+def worker(address: str, *folders: Path) -> Any:
+    words = ["--nthreads", "1", "--no-nanny", "--no-dashboard"]
+    return started("worker", address, *words, folders=folders)
+
+
+@pytest.fixture(scope="module")
+def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Of a scheduler with one worker."""
+    with scheduler(tmp_path_factory.mktemp("dask")) as (found, _), worker(found):
+        yield found
+
+
+def test_a_cluster_computes_every_chunk_also_if_a_worker_is_killed_at_work(
+    address: str, tmp_path: Path
+) -> None:
+    orders = Orders(STUDY, tmp_path, pause=0.2)
+    with worker(address) as second, closing(Cluster(orders.task, address)) as pool:
+        while pool.room < 4:
+            time.sleep(0.05)
+            pool.look()
+        found = []
+        for done in computed(pool, CHUNKS):
+            found.append(done)
+            if len(found) == 3:
+                assert second.pid in orders.processes()
+                second.kill()
+    check(found)
+    begun = [int(file.name.split("-")[0]) for file in tmp_path.iterdir()]
+    assert len(begun) > len(set(begun)) == len(CHUNKS)  # at least one was lost, and begun again
+
+
+def test_workers_with_other_versions_are_refused(
+    address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    here = cluster.versions()
+    monkeypatch.setattr(cluster, "versions", lambda: {**here, "numpy": "1.0"})
+    told = f"the worker on {socket.gethostname()} has numpy {here['numpy']}, and whoever .* has 1.0"
+    with (
+        closing(Cluster(Orders(STUDY, tmp_path).task, address)) as pool,
+        pytest.raises(StoppedError, match=told),
+    ):
+        list(computed(pool, CHUNKS))
+
+
+def test_what_the_study_itself_raises_passes_through(address: str, tmp_path: Path) -> None:
+    task = executors.Task(studies.refuse, b"")
+    for pool in (Threads(task, 1), Cluster(task, address)):
+        with closing(pool), pytest.raises(UsageError, match="no study at 0") as caught:
+            list(computed(pool, CHUNKS[:1]))
+        assert not isinstance(caught.value, StoppedError)
+
+
+def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "equipoise").mkdir()
+    (tmp_path / "equipoise" / "__init__.py").write_text(
+        'raise ModuleNotFoundError("No module named equipoise", name="equipoise")'
+    )
+    monkeypatch.setattr(cluster, "JOIN", 0.2)
+    task = Orders(STUDY, tmp_path).task
+    with scheduler(tmp_path) as (address, process):
+        with pytest.raises(StoppedError, match="has no workers; start some by: dask worker tcp"):
+            Cluster(task, address)
+        monkeypatch.setattr(cluster, "JOIN", 20)
+        with worker(address, tmp_path), closing(Cluster(task, address)) as pool:
+            with pytest.raises(StoppedError, match="a worker of the cluster has no equipoise; ins"):
+                list(computed(pool, CHUNKS))
+            process.kill()
+            with pytest.raises(StoppedError, match=f"the Dask scheduler at {address} has gone"):
+                list(computed(pool, CHUNKS))
+    assert capfd.readouterr() == ("", "")
+
+
+def test_no_scheduler_is_told_in_a_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(cluster, "ANSWER", 0.5)
+    task = Orders(STUDY, tmp_path).task
+    level = logging.getLogger("distributed").level
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        addresses = [f"tcp://127.0.0.1:{silent.getsockname()[1]}", "tcp://127.0.0.1:9", "here", ""]
+        for address in addresses:
+            told = f"^no Dask scheduler answers at {address} .*; see whether it runs"
+            with pytest.raises(StoppedError, match=told):
+                Cluster(task, address)
+    assert capfd.readouterr() == ("", "")
+    assert logging.getLogger("distributed").level == level

@@ -1,0 +1,467 @@
+"""The general route: figures by their path, as the commands print them, and why there are none."""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.fused.reasons import REASONS
+from equipoise.io.template import Template
+from equipoise.results import columns, unit_of
+from equipoise.studies.asking import check_outputs
+from equipoise.studies.dimensions import dimension_of
+from equipoise.studies.evaluate import Outcome
+from equipoise.studies.figures import read, resolve, scale
+from equipoise.studies.general import general
+from equipoise.studies.spread import Range
+from equipoise.studies.study import Command, Output, Sampling, Study, Vary
+from equipoise.studies.units import SI
+from surface.running import equipoise, example_text, succeeded
+from unit.studies.samples import template
+
+VALUES: dict[str, Any] = {
+    "title": "A machine",
+    "crank_angle": np.array([0.0, 1.0, 2.0, 3.0]),
+    "table": {"a.b": {"c": 1.0}, "a": {"b.c": 2.0, "d": 3}, "piston on frame": {"normal": 4.0}},
+    "wave": np.array([1.0, -3.0, 2.0, 0.0]),
+    "modes": [{"hertz": 5.0, "shape": [[0.1, 0.2], [0.3, 0.4]]}, {"hertz": 6.0}],
+    "by_order": {"orders": np.array([0.0, 0.5, 1.0]), "harmonics": np.array([7.0, 8.0, 9.0])},
+    "short": {"wave": {"rms": 10.0}, "name": "text"},
+    "none": None,
+    "truth": True,
+    "empty": [],
+}
+
+
+# -- paths -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "value"),
+    [
+        ("table.a.b.c", 1.0),
+        ('table.a."b.c"', 2.0),
+        ("table.a.d", 3.0),
+        ("table.piston on frame.normal", 4.0),
+        ('table."piston on frame".normal', 4.0),
+        ("modes[2].hertz", 6.0),
+        ("modes[1].shape[2][1]", 0.3),
+        ("wave[2]", -3.0),
+        ("wave.peak", 3.0),
+        ("wave.peak_at", 1.0),
+        ("wave.peak_to_peak", 5.0),
+        ("wave.mean", 0.0),
+        ("by_order.harmonics[order 0.5]", 8.0),
+        ("by_order.harmonics[ order 1 ]", 9.0),
+        ("by_order.harmonics[3]", 9.0),
+        ("by_order.harmonics[order 2.5]", 0.0),
+        ("truth", 1.0),
+        ("none", float("nan")),
+    ],
+)
+def test_paths(path: str, value: float) -> None:
+    assert read(VALUES, resolve(VALUES, path)) == pytest.approx(value, nan_ok=True)
+
+
+def test_the_short_form_goes_first() -> None:
+    assert resolve(VALUES, "wave.rms", "short") == ("short", "wave", "rms")
+    assert resolve(VALUES, "table.a.d", "short") == ("table", "a", "d")
+    assert resolve(VALUES, "wave.rms") != ("short", "wave", "rms")
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("tabel.a", "no figure is called 'tabel'; did you mean 'table'?"),
+        ("table.x.y", "no figure is called 'x'; there are 'a.b', 'a', 'piston on frame'"),
+        ('table."a.c".d', "no figure is called 'a.c'; did you mean 'a.b'?"),
+        ("table.a", "that is no number; below it there are b.c, d"),
+        ("", "that is no number; below it there are title, crank_angle, table"),
+        ("title", "that is the text 'A machine'; give the path of a number"),
+        ("table.a.d.e", "a single number stands there, without 'e' below it"),
+        ("modes[3].hertz", "[3] is not in that list of 2, which counts from 1"),
+        ("modes[0].hertz", "[0] is not in that list of 2"),
+        ("modes.hertz", "that is a list of 2; give one of it, such as [1]"),
+        ("modes.rms", "that is a list of 2; give one of it, such as [1]"),
+        ("wave", "that is a list of 4; give a figure of it, mean, rms, peak, max, min"),
+        ("wave.largest", "give a figure of it, mean, rms"),
+        ("empty.rms", "that is a list of 0; it is empty here"),
+        ("wave[order 2]", "that list does not go by orders; give [1] for its first"),
+        ("by_order.harmonics[order 0.7]", "there is no order 0.7; the orders are 0, 0.5, 1, 1.5"),
+        ("by_order.harmonics[order 2.7]", "there is no order 2.7"),
+    ],
+)
+def test_wrong_paths(path: str, told: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(told)) as refused:
+        resolve(VALUES, path)
+    assert str(refused.value).startswith(f"got {path!r}; ")
+
+
+def test_what_another_machine_lacks_is_no_number() -> None:
+    for path in ("table.a.d", "modes[2].hertz", "wave.rms", "by_order.harmonics[order 1]"):
+        steps = resolve(VALUES, path)
+        for lacking in ({}, {**VALUES, "table": {}, "modes": [], "wave": 1.0, "by_order": {}}):
+            assert np.isnan(read(lacking, steps))
+
+
+def test_errors_are_measured_by_the_signal() -> None:
+    rms = float(np.sqrt(np.mean(VALUES["wave"] ** 2)))
+    assert scale(VALUES, resolve(VALUES, "wave.min")) == pytest.approx(rms)
+    assert scale(VALUES, resolve(VALUES, "wave.min_at")) == pytest.approx(2 * np.pi)
+    assert scale(VALUES, resolve(VALUES, "table.a.d")) == 1.0
+
+
+# -- the commands ----------------------------------------------------------------------------------
+
+
+def study(model: Template | str, vary: str, *outputs: Output | str, **given: Any) -> Study:
+    """One number of a model varies by a tenth about its own value."""
+    made = template(model) if isinstance(model, str) else model
+    own, dimension = made.number(vary)
+    ends = sorted((0.9 * own, 1.1 * own))
+    return Study(
+        title="Study",
+        model=made,
+        vary=(Vary(vary, Range(*ends), dimension),),
+        outputs=tuple(Output(one) if isinstance(one, str) else one for one in outputs),
+        sampling=Sampling("sobol", 16),
+        **given,
+    )
+
+
+def asked(of: Command, *paths: str) -> list[Output]:
+    return [Output(path, of) for path in paths]
+
+
+def computed(given: Study, *values: float) -> Outcome:
+    """Designs of one varied number; those of the model where none is given."""
+    own = [given.model.number(path)[0] for path in given.paths]
+    return general(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
+
+
+def printed(values: Any, path: str) -> float:
+    """What a command has printed at a path whose names hold no dots but in quotes."""
+    for key in re.findall(r'"[^"]+"|[^.\[\]]+', path):
+        at = key.strip('"')
+        values = values[int(at) - 1] if isinstance(values, list) else values[at]
+    return float(values)
+
+
+@pytest.mark.parametrize(
+    ("model", "vary", "of", "paths"),
+    [
+        (
+            "yamashita-1",
+            "links.coupler.points.C.x",
+            "analyze",
+            ['summary."shaking_force.y".rms', 'summary."joints.B".peak_at', "crank_angle[7]",
+             "summary.four_bar.transmission_min", "summary.four_bar.condition_5", "turns",
+             "joints.C.force_x[90]"],
+        ),
+        (
+            "yamashita-rig",
+            "support.mass",
+            "respond",
+            ["gauges.gauge.peak_to_peak", "gauges.gauge.acceleration.rms",
+             "mounts.spring.transmissibility", "modes[1].hertz", "gauges.gauge.harmonics[2]"],
+        ),
+        (
+            "transplanter",
+            "planting.depth",
+            "plant",
+            ["soil.hole_length", "visits[1].depth", 'clearance.tray."tip P".value', "loops[1].area",
+             "tray_crossings[1]", "loops[1].in_soil"],
+        ),
+        (
+            "balance-crank",
+            "links.crank.mass",
+            "balance",
+            ['objectives."ripple of shaking_force.y".after', 'after."joints.A.rms"', "gap",
+             "changes[1].mass", 'equivalent_speeds."shaking_force.y.rms"'],
+        ),
+        (
+            "pole-saw",
+            "shaft.stations[1].mass",
+            "tool",
+            ["natural_frequencies[2]", "planes.lateral.damped[3].frequency"],
+        ),
+    ],
+)  # fmt: skip
+def test_figures_are_those_that_the_command_prints(
+    model: str, vary: str, of: Command, paths: list[str]
+) -> None:
+    given = study(model, vary, *asked(of, *paths), angles=360 if of == "analyze" else None)
+    found = computed(given)
+    values = json.loads(succeeded(equipoise(of, model, "--json")))
+    assert found.reason.tolist() == [0]
+    wanted = [printed(values, path) for path in paths]
+    assert found.figures[0] == pytest.approx(wanted, rel=1e-12, abs=0)
+
+
+def test_a_tool_of_named_speeds_needs_no_range() -> None:
+    """What is asked alone is what is there beside everything else."""
+    paths = ("a8", "named.working.rear-grip", "days.rear-grip.points")
+    few = study("brush-cutter", "shaft.stations[1].mass", *asked("tool", *paths))
+    many = study("brush-cutter", "shaft.stations[1].mass", *asked("tool", *paths, "a_hv.max"))
+    found = computed(many)
+    assert computed(few).figures[0] == pytest.approx(found.figures[0, :3], rel=1e-12)
+    assert found.figures[0, 3] == np.max(
+        json.loads(succeeded(equipoise("tool", "brush-cutter", "--json", "--exposure")))["a_hv"]
+    )
+
+
+def test_several_commands_share_a_design() -> None:
+    given = study(
+        "transplanter",
+        "drive.speed",
+        Output("rms", "analyze", "drive_torque.rms"),
+        Output("hole", "plant", "soil.hole_length"),
+        Output("peak", "analyze", "drive_torque.peak"),
+        angles=90,
+    )
+    speed = given.model.number("drive.speed")[0]
+    found = computed(given, speed, 1.1 * speed)
+    assert found.reason.tolist() == [0, 0]
+    for row, factor in zip(found.figures, (1.0, 1.1), strict=True):
+        machine = eq.load("transplanter").with_drive(speed=factor * speed)
+        torque = eq.analyze(machine, 90).summary["drive_torque"]
+        wanted = [torque.rms, eq.plant(machine)["soil.hole_length"], torque.peak]
+        assert row == pytest.approx(wanted, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", ["transplanter", "kim-chung-b"])
+def test_planting_figures_of_many_designs_are_those_of_each(name: str) -> None:
+    """All but the last are computed together."""
+    paths = ("curve.height", "soil.path_length_machine", "exit.ground_velocity.direction",
+             "max_acceleration.value", "forward_speed")  # fmt: skip
+    made, varied = template(name), "links.crank.points.B.x"
+    own = made.number(varied)[0]
+    some = study(made, varied, *asked("plant", *paths))
+    factors = np.array([0.7, 0.9, 1.15, 5.0])
+    found = computed(some, *(factors * own))
+    failed = 0
+    for factor, row, reason in zip(factors, found.figures, found.reason, strict=True):
+        machine = made.machine({varied: factor * own})
+        try:
+            figures = eq.plant(machine)  # type: ignore[arg-type]
+        except eq.EquipoiseError:
+            assert reason != 0
+            assert np.all(np.isnan(row))
+            failed += 1
+            continue
+        assert reason == 0
+        assert row == pytest.approx([figures[path] for path in paths], rel=1e-8)
+    assert 0 < failed < len(factors)
+
+
+# -- crank angles ----------------------------------------------------------------------------------
+
+
+def test_crank_angles_double_until_figures_stand_still() -> None:
+    paths = ("shaking_force.y.peak", "joints.B.rms", "points.P.y.max", "drive_torque.min",
+             "by_order.shaking_moment.harmonics[order 3]", "shaking_force.y.peak_at")  # fmt: skip
+    whole = eq.analyze(eq.load("yamashita-1"), 100_000)
+    summary, height = whole.summary, whole.motion.points["P"].y
+    exact = [summary["shaking_force.y"].peak, summary["joints.B"].rms, np.max(height),
+             summary["drive_torque"].min, whole.by_order["shaking_moment"].sizes[3],
+             summary["shaking_force.y"].peak_at]  # fmt: skip
+    sizes = [summary["shaking_force.y"].rms, exact[1], np.sqrt(np.mean(height**2)),
+             summary["drive_torque"].rms, summary["shaking_moment"].rms]  # fmt: skip
+    found = computed(study("yamashita-1", "drive.speed", *paths, tolerance=1e-4))
+    errors = np.abs(found.figures[0] - exact)
+    assert np.all(errors[:-1] < 1e-4 * np.array(sizes))
+    assert errors[-1] <= np.pi / 720  # a place is that of the nearest crank angle
+
+
+def test_the_tolerance_decides_how_many_crank_angles() -> None:
+    """The pressure of this engine bends sharply at its top."""
+    exact = eq.analyze(eq.load("slider-crank-engine"), 100_000).summary["frame_force"]
+    errors = []
+    for tolerance in (1e-2, 1e-3):
+        given = study(
+            "slider-crank-engine", "links.rod.mass", "frame_force.peak", tolerance=tolerance
+        )
+        errors.append(abs(computed(given).figures[0, 0] - exact.peak) / exact.rms)
+        assert errors[-1] < tolerance
+    assert errors[0] > 3 * errors[1]
+
+
+def test_a_fixed_number_of_crank_angles() -> None:
+    found = computed(study("yamashita-1", "drive.speed", "shaking_force.y.peak", angles=90))
+    wanted = eq.analyze(eq.load("yamashita-1"), 90).summary["shaking_force.y"].peak
+    assert found.figures[0, 0] == wanted
+
+
+def test_rounding_stands_still() -> None:
+    """Signals that are zero but for rounding are not asked for more."""
+    paths = ("joints.piston on frame.moment.max", "points.C.x.peak_to_peak", "shaking_force.x.mean")
+    found = computed(study("slider-crank-engine", "links.rod.mass", *paths))
+    assert found.reason.tolist() == [0]
+    assert np.all(np.abs(found.figures) < 1e-9)
+
+
+# -- why there are no figures ----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "reason"),
+    [
+        ("links.rocker.points.C.x", 0.08, "computed"),
+        ("links.rocker.points.C.x", 0.5, "does not assemble"),
+        ("links.rocker.points.C.x", 0.03, "does not turn fully"),
+        ("links.rocker.points.C.x", 0.05, "change point"),  # 88 + 33.5 = 71.5 + 50
+        ("links.rocker.points.C.x", 0.0, "not a machine"),
+        ("links.rocker.mass", -0.1, "not a machine"),
+    ],
+)
+def test_reasons_of_an_analysis(path: str, value: float, reason: str) -> None:
+    found = computed(study("yamashita-1", path, "drive_torque.rms", angles=90), value)
+    assert REASONS[int(found.reason[0])] == reason
+    assert np.isnan(found.figures[0, 0]) == (reason != "computed")
+
+
+def test_the_tip_never_reaches_the_soil() -> None:
+    given = study("transplanter", "planting.depth", *asked("plant", "soil.depth"), "turns")
+    found = computed(given, 0.05, -0.01, 0.6)
+    assert [REASONS[k] for k in found.reason.tolist()] == [
+        "computed", "not a machine", "no such figure",
+    ]  # fmt: skip
+    assert found.figures[2, 1] == 1  # what can be told is told
+
+
+def test_a_figure_that_some_machines_lack() -> None:
+    given = study("transplanter", "planting.tray[2].y", *asked("plant", "pick_up.velocity.size"))
+    own = given.model.number(given.paths[0])[0]
+    found = computed(given, own, own + 10.0)
+    assert [REASONS[k] for k in found.reason.tolist()] == ["computed", "no such figure"]
+
+
+def test_figures_that_do_not_stand_still() -> None:
+    given = study("slider-crank-engine", "links.rod.mass", "frame_force.peak", tolerance=1e-9)
+    assert REASONS[int(computed(given).reason[0])] == "figures do not stand still"
+
+
+def test_what_cannot_be_computed() -> None:
+    given = study("yamashita-rig", "drive.speed", *asked("respond", "gauges.gauge.rms"))
+    found = computed(given, 20.0, 0.0)  # a crank that stands still shakes nothing
+    assert [REASONS[k] for k in found.reason.tolist()] == ["computed", "cannot be computed"]
+
+
+# -- before anything is run ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("shaking_force.z.rms", "no figure is called 'z'; there are 'x', 'y'"),
+        ("four_bar.type", "that is the text 'crank-rocker'"),
+        ("shaking_force.y", "that is a list of 360; give a figure of it, mean, rms"),
+        ("shaking_force.y[1]", "one of a list that runs over crank angles, whose number is not"),
+    ],
+)
+def test_outputs_that_lead_nowhere(path: str, told: str) -> None:
+    given = study("yamashita-1", "drive.speed", "drive_torque.rms", path)
+    with pytest.raises(ModelError, match=re.escape(told)) as refused:
+        check_outputs(given)
+    assert str(refused.value).startswith(f"outputs[2].value: got {path!r}")
+
+
+def test_without_masses() -> None:
+    text = re.sub(r"(?m)^(mass|center_of_mass|inertia) = .*$", "", example_text("yamashita-1"))
+    given = study(Template(text), "drive.speed", "turns", "drive_torque.rms")
+    sentence = "outputs[2].value: got 'drive_torque.rms'; there are no forces, "
+    with pytest.raises(ModelError, match=f"^{re.escape(sentence)}.*mass"):
+        check_outputs(given)
+
+
+def test_a_model_that_cannot_be_computed() -> None:
+    given = study("yamashita-1", "drive.speed", "turns", *asked("balance", "gap"))
+    sentence = "outputs[2].of: equipoise balance cannot compute the model: nothing is free to"
+    with pytest.raises(ModelError, match=f"^{re.escape(sentence)}"):
+        check_outputs(given)
+
+
+def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:
+    text = example_text("transplanter")
+    depth = Template(text).number("planting.depth")[0]
+    broken = Template(re.sub(r"(?m)^depth = .*$", 'depth = "2 m"', text))
+    with pytest.raises(ModelError):
+        eq.plant(broken.base())  # type: ignore[arg-type]
+    given = study(broken, "planting.depth", *asked("plant", "soil.depth"))
+    given = replace(given, vary=(Vary("planting.depth", Range(0.5 * depth, depth), "length"),))
+    assert computed(given, depth).figures[0, 0] == pytest.approx(depth, rel=1e-9)
+
+
+# -- dimensions ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "slider-crank-engine", "quick-return"])
+def test_dimensions_of_an_analysis(name: str) -> None:
+    """The units of the CSV file and of the summary are those of the dimensions."""
+    analysis = eq.analyze(eq.load(name), 90)
+    for column, _ in columns(analysis):
+        if column not in ("shaking_force.x", "shaking_force.y"):  # those of the summary go first
+            dimension = dimension_of(analysis.machine, "analyze", f"{column}.rms")
+            assert dimension is not None
+            assert SI[dimension] == unit_of(column).replace("^2", "^2"), column
+    for signal in analysis.summary:
+        dimension = dimension_of(analysis.machine, "analyze", f"summary.{signal}.peak")
+        torque = signal.endswith(("moment", "torque"))
+        assert dimension == ("torque" if torque else "force"), signal
+        assert dimension_of(analysis.machine, "analyze", f"{signal}.max_at") == "angle"
+
+
+@pytest.mark.parametrize(
+    ("model", "of", "path", "dimension"),
+    [
+        ("yamashita-1", "analyze", "four_bar.transmission_min", "angle"),
+        ("yamashita-1", "analyze", "four_bar.a", "length"),
+        ("yamashita-1", "analyze", "four_bar.time_ratio", None),
+        ("yamashita-1", "analyze", "turns", None),
+        ("yamashita-1", "analyze", "by_order.mass_center.ax.harmonics[order 1]", "acceleration"),
+        ("yamashita-1", "analyze", "by_order.shaking_moment.phases[2]", "angle"),
+        ("yamashita-1", "analyze", "by_order.shaking_force.x.harmonics[order 1]", "force"),
+        ("yamashita-1", "analyze", "by_link.shaking_force.crank.x.rms", "force"),
+        ("yamashita-1", "analyze", "by_cause.drive_torque.weight.rms", "torque"),
+        ("transplanter", "plant", "soil.hole_length", "length"),
+        ("transplanter", "plant", "entry.velocity.size", "speed"),
+        ("transplanter", "plant", "visits[1].depth", "length"),
+        ("transplanter", "plant", "visits[1].entry", "angle"),
+        ("transplanter", "plant", "loops[1].area", None),
+        ("transplanter", "plant", "forces.drive_torque.in_air.rms", "torque"),
+        ("transplanter", "plant", "forces.joints.A.in_soil.peak", "force"),
+        ("transplanter", "plant", "forces.joints.A.in_soil.peak_at", "angle"),
+        ("yamashita-rig", "respond", "gauges.gauge.peak_to_peak", "length"),
+        ("yamashita-rig", "respond", "gauges.gauge.acceleration.rms", "acceleration"),
+        ("yamashita-rig", "respond", "gauges.gauge.harmonics[order 1]", "length"),
+        ("yamashita-rig", "respond", "mounts.spring.rms", "force"),
+        ("yamashita-rig", "respond", "mounts.spring.transmissibility", None),
+        ("yamashita-rig", "respond", "modes[1].hertz", "frequency"),
+        ("yamashita-rig", "respond", "modes[1].natural_frequency", "angular speed"),
+        ("yamashita-rig", "respond", "drive.torque.rms", "torque"),
+        ("balance-crank", "balance", "added_mass", "mass"),
+        ("balance-crank", "balance", "after.shaking_force.y.rms", "force"),
+        ("balance-crank", "balance", "after.shaking_moment.area", None),
+        ("balance-crank", "balance", "equivalent_speeds.shaking_force.rms", "angular speed"),
+        ("balance-crank", "balance", "gap", None),
+        ("brush-cutter", "tool", "a8", "acceleration"),
+        ("brush-cutter", "tool", "natural_frequencies[1]", "frequency"),
+        ("brush-cutter", "tool", "stations.belt.forces.harness.max", "force"),
+        ("brush-cutter", "tool", "stations.belt.power.harness.max", "power"),
+        ("brush-cutter", "tool", "stations.head.displacement.max", "length"),
+        ("brush-cutter", "tool", "stations.head.displacement.max_at", "angular speed"),
+        ("brush-cutter", "tool", "largest_moment.moment.max", "torque"),
+        ("brush-cutter", "tool", "named.working.rear-grip", "acceleration"),
+        ("brush-cutter", "tool", "days.rear-grip.points", None),
+        ("brush-cutter", "tool", "transmission.belt.ratio.max", None),
+    ],
+)
+def test_dimensions(model: str, of: str, path: str, dimension: str | None) -> None:
+    assert dimension_of(template(model).base(), of, path) == dimension

@@ -1,0 +1,281 @@
+"""The search: on formulas whose best is known, and on a four-bar against all of its designs."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.fused.reasons import NO_ASSEMBLY, NO_MACHINE
+from equipoise.mechanism.model import Machine
+from equipoise.studies.best import kept
+from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
+from equipoise.studies.front import front
+from equipoise.studies.search import search_designs
+from equipoise.studies.spread import Choices, Normal, Range
+from equipoise.studies.study import Correlation, Make, Output, Study, Vary
+from unit.studies.samples import LENGTH, MASS, PATHS, study
+
+Array = np.ndarray[Any, Any]
+
+
+UNIT = (Range(0.0, 1.0),) * 3
+
+
+def of(*outputs: Output, spreads: tuple[Any, ...] = UNIT, **changes: Any) -> Study:
+    vary = tuple(Vary(path, spread) for path, spread in zip(PATHS, spreads, strict=False))
+    return replace(study(), vary=vary, outputs=outputs, **changes)
+
+
+def made(*names: str, make: Make = "smallest") -> tuple[Output, ...]:
+    return tuple(Output(name, value="a.b", make=make) for name in names)
+
+
+def formula(function: Any, failing: Any = None) -> Evaluator:
+    """Figures of designs (P, d), from a function that gives them by their columns."""
+
+    def compute(values: Array) -> Outcome:
+        figures = np.stack(function(*values.T), axis=1)
+        reason = np.zeros(len(values), np.uint8)
+        if failing is not None:
+            reason[failing(*values.T)] = NO_ASSEMBLY
+        figures[reason != 0] = np.nan
+        return Outcome(figures, reason)
+
+    return compute
+
+
+def bowl(x: Array, y: Array, z: Array) -> list[Array]:
+    return [(x - 0.3) ** 2 + (y - 0.6) ** 2 + (z - 0.9) ** 2]
+
+
+def two_bowls(x: Array, y: Array, z: Array) -> list[Array]:
+    """Between their lowest points, (0.2, 0.5, 0.5) and (0.8, 0.5, 0.5), nothing is better."""
+    away = (y - 0.5) ** 2 + (z - 0.5) ** 2
+    return [(x - 0.2) ** 2 + away, (x - 0.8) ** 2 + away]
+
+
+# -- one objective ---------------------------------------------------------------------------------
+
+
+def test_one_objective() -> None:
+    found = search_designs(of(*made("f")), compute=formula(bowl), population=30, generations=100)
+    assert found.values[0] == pytest.approx([0.3, 0.6, 0.9], abs=2e-3)
+    assert len(found.values) == found.front == 1
+    assert np.all(np.diff(found.volumes) <= 0)
+    assert found.volumes[-1] == found.figures[0, 0]
+
+
+def test_the_largest() -> None:
+    found = search_designs(
+        of(*made("f", make="largest")),
+        compute=formula(lambda *at: [5 - one for one in bowl(*at)]),
+        population=30,
+    )
+    assert found.figures[0, 0] == pytest.approx(5, abs=1e-4)
+    assert found.volumes[-1] == found.figures[0, 0]
+    assert found.stood_still
+    assert found.generations < 200
+
+
+def test_limits_and_failures() -> None:
+    """The best lies in the corner of a limit and of a region where nothing can be computed."""
+    outputs = (*made("f"), Output("x", value="a.c", at_least=0.5), Output("free", value="a.d"))
+    found = search_designs(
+        of(*outputs),
+        compute=formula(lambda x, y, z: [*bowl(x, y, z), x, z], lambda x, y, z: y > 0.5),
+        population=30,
+    )
+    assert found.values[0] == pytest.approx([0.5, 0.5, 0.9], abs=2e-3)
+    assert found.values[0, 0] >= 0.5
+    assert 0 < found.failures["does not assemble"] < found.computed
+
+
+def test_lists_and_whole_numbers() -> None:
+    spreads = (Choices((0.9, 0.1, 0.35)), Range(-3, 12, whole=True), Range(0.0, 1.0))
+    found = search_designs(
+        of(*made("f"), spreads=spreads),
+        compute=formula(lambda x, y, z: bowl(x, y / 10, z)),
+        population=20,
+        generations=60,
+    )
+    assert found.values[0, :2].tolist() == [0.35, 6.0]
+    assert found.values[0, 2] == pytest.approx(0.9, abs=0.01)
+
+
+# -- several ---------------------------------------------------------------------------------------
+
+
+def test_a_front_that_is_known() -> None:
+    found = search_designs(of(*made("f", "g")), compute=formula(two_bowls), population=60)
+    x, y, z = found.values.T
+    assert np.all((x > 0.19) & (x < 0.81))
+    assert max(np.max(abs(y - 0.5)), np.max(abs(z - 0.5))) < 0.03
+    assert np.all(np.diff(found.figures[:, 0]) > 0)  # in the order of the first
+    assert np.all(np.diff(found.figures[:, 1]) < 0)
+    assert np.max(np.diff(np.sort(x))) < 0.05  # along all of it
+    assert found.front >= len(found.values) == 60
+    assert found.objectives == {"f": "smallest", "g": "smallest"}
+
+
+def test_one_down_and_one_up() -> None:
+    """Largest x for smallest x squared, where y only harms: the front is y = 0."""
+    outputs = (*made("low"), *made("high", make="largest"))
+    found = search_designs(
+        of(*outputs),
+        compute=formula(lambda x, y, z: [x**2 + y, x - y - (z - 0.5) ** 2]),
+        population=40,
+    )
+    assert found.figures[:, 1] == pytest.approx(np.sqrt(found.figures[:, 0]), abs=0.02)
+    assert np.ptp(found.figures[:, 1]) > 0.9
+
+
+def test_many_objectives() -> None:
+    """Distances from the corners of a simplex: what lies in it is the front."""
+    corners = np.eye(4)[:, :3]
+
+    def distances(x: Array, y: Array, z: Array) -> list[Array]:
+        return [(x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2 for a, b, c in corners]
+
+    found = search_designs(
+        of(*made("a", "b", "c", "d")), compute=formula(distances), population=84, generations=40
+    )
+    assert np.mean(np.sum(found.values, axis=1) < 1.1) > 0.85
+    assert len(found.values) == 84
+    assert np.all(np.min(found.figures, axis=0) < 0.03)
+
+
+def test_the_volume_grows_until_it_stands_still() -> None:
+    found = search_designs(of(*made("f", "g")), compute=formula(two_bowls), population=40)
+    assert np.all(np.diff(found.volumes) >= -1e-12)
+    assert found.stood_still
+    assert found.generations == len(found.volumes) < 200
+    few = search_designs(
+        of(*made("f", "g")), compute=formula(two_bowls), population=40, generations=3
+    )
+    assert (few.generations, few.stood_still) == (3, False)
+
+
+def test_the_same_seed_gives_the_same() -> None:
+    told: list[tuple[int, ...]] = []
+    some = of(*made("f", "g"))
+
+    def run(seed: int | None = None, **given: Any) -> Array:
+        compute = formula(two_bowls)
+        return search_designs(
+            some, compute=compute, population=20, generations=12, seed=seed, **given
+        ).values
+
+    first = run(progress=lambda *at: told.append(at))
+    assert np.array_equal(run(1), first)
+    assert not np.array_equal(run(2), first)
+    assert [one[:2] for one in told] == [(k, 12) for k in range(1, 13)]
+    assert [one[2] for one in told] == sorted(one[2] for one in told)
+
+
+def test_nothing_is_computed_twice(capfd: pytest.CaptureFixture[str]) -> None:
+    """Nor does the library say anything."""
+    seen: list[tuple[float, ...]] = []
+
+    def compute(values: Array) -> Outcome:
+        seen.extend(map(tuple, values.tolist()))
+        return formula(two_bowls)(values)
+
+    spreads = (Choices(tuple(np.linspace(0, 1, 4).tolist())),) * 3
+    found = search_designs(of(*made("f", "g"), spreads=spreads), compute=compute, population=12)
+    assert len(seen) == len(set(seen)) == found.computed <= 4**3
+    assert capfd.readouterr() == ("", "")
+
+
+# -- refused ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("some", "told"),
+    [
+        (of(*made("f"), spreads=(Range(0.0, 1.0), Normal(0.07, 0.001))),
+         f"vary[2]: {LENGTH} has a tolerance, which cannot be chosen"),
+        (of(*made("f"), correlations=(Correlation(MASS, LENGTH, 0.5),)),
+         "correlations: have no place in a search; leave them out"),
+        (of(Output("f", value="a.b", at_most=1.0)),
+         "outputs: none is to become small or large"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_searched(some: Study, told: str) -> None:
+    with pytest.raises(ModelError, match=f"^{re.escape(told)}"):
+        search_designs(some, compute=formula(bowl))
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"population": 4}, "got a population of 4; give 8 to 100000"),
+        ({"generations": 0}, "got 0 generations; give 1 to 100000"),
+    ],
+)
+def test_sizes(given: dict[str, int], told: str) -> None:
+    with pytest.raises(UsageError, match=re.escape(told)):
+        search_designs(of(*made("f")), compute=formula(bowl), **given)
+
+
+def test_nothing_keeps_the_limits() -> None:
+    outputs = (*made("f"), Output("x", value="a.c", at_least=2.0))
+    with pytest.raises(UsageError, match=r"^none of \d+ designs keeps every limit; kept is 2 <= x"):
+        search_designs(
+            of(*outputs),
+            compute=formula(lambda x, y, z: [x, y]),
+            population=8,
+            generations=3,
+        )
+
+
+def test_nothing_can_be_computed() -> None:
+    def failing(values: Array) -> Outcome:
+        count = len(values)
+        return Outcome(np.full((count, 1), np.nan), np.full(count, NO_MACHINE, np.uint8))
+
+    with pytest.raises(UsageError, match=r"^no design has figures \(not a machine: \d+\)"):
+        search_designs(of(*made("f")), compute=failing, population=8, generations=3)
+
+
+# -- a machine -------------------------------------------------------------------------------------
+
+
+def test_a_four_bar_against_every_design() -> None:
+    """Of a grid of designs the search finds the whole front; between them it finds better ones."""
+    rocker = "links.rocker.points.C.x"
+    lengths = tuple(np.linspace(0.05, 0.1, 10).tolist())
+    outputs = (
+        Output("shaking_force.y.rms", make="smallest"),
+        Output("four_bar.swing", make="largest"),
+        Output("four_bar.transmission_min", at_least=0.6),
+    )
+    vary = (Vary(LENGTH, Choices(lengths)), Vary(rocker, Choices(lengths)))
+    some = replace(study(), vary=vary, outputs=outputs, angles=90)
+    compute = evaluator(some)
+    every = np.stack(np.meshgrid(lengths, lengths, indexing="ij"), axis=-1).reshape(-1, 2)
+    outcome = compute(every)
+    good = np.flatnonzero(np.all(kept(outputs, outcome.figures), axis=1) & (outcome.reason == 0))
+    wanted = good[front(outcome.figures[good, :2] * (1, -1))]
+    assert 3 < len(wanted) < len(good) < len(every)
+
+    found = search_designs(some, compute=compute, population=20)
+    assert {*map(tuple, found.values)} == {*map(tuple, every[wanted])}
+    assert found.stood_still  # there was nothing else to compute
+    machine = found.machine(0)
+    assert isinstance(machine, Machine)
+    assert machine.links["rocker"].points["C"][0] == found.values[0, 1]
+
+    ranges = (Vary(LENGTH, Range(0.05, 0.1)), Vary(rocker, Range(0.05, 0.1)))
+    between = search_designs(
+        replace(some, vary=ranges), compute=compute, population=24, generations=12
+    )
+    best_of_grid = np.min(outcome.figures[wanted, 0])
+    assert np.min(between.figures[:, 0]) < best_of_grid
+    for number in (0, len(between.values) - 1):
+        own = np.array([between.values[number]])
+        assert np.array_equal(compute(own).figures[0], between.figures[number])

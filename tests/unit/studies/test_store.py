@@ -1,0 +1,253 @@
+"""The store: what is in it, what it refuses, and the lock."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray
+import zarr
+
+from equipoise.errors import UsageError
+from equipoise.fused.reasons import REASONS
+from equipoise.io.unit_lists import KINDS
+from equipoise.studies.making import create, versions
+from equipoise.studies.sampling import samples
+from equipoise.studies.spread import Range
+from equipoise.studies.store import UNKNOWN, Block, Store, open_store
+from equipoise.studies.study import Output, Sampling, Vary
+from equipoise.studies.units import SI
+from support.studies import LENGTH, MASS, SPEED, Formulas, contents, restore, short_study
+
+STUDY = short_study(250)
+
+
+def block_of(store: Store, chunk: int) -> Block:
+    designs = store.designs(chunk)
+    values = samples(STUDY, designs.start, len(designs))
+    return Block(values, Formulas()(values))
+
+
+def filled(path: Path, *chunks: int) -> Store:
+    store = create(path, STUDY, STUDY.chunk, "compiled")
+    for chunk in chunks:
+        store.write(store.designs(chunk), block_of(store, chunk))
+    return store
+
+
+def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_path: Path) -> None:
+    filled(tmp_path / "s", 2, 0)
+    store = open_store(tmp_path / "s")
+    assert store.missing() == [1]
+    assert store.numbers == STUDY.paths
+    assert store.outputs == STUDY.names
+    (start, found), *more = store.blocks()
+    assert start == 0
+    assert not more
+    values = samples(STUDY, 0, 250)
+    values[100:200] = np.nan
+    np.testing.assert_array_equal(found.values, values)
+    np.testing.assert_array_equal(found.outcome.figures[200:], Formulas()(values[200:]).figures)
+    assert set(found.outcome.reason[100:200]) == {UNKNOWN}
+    assert set(found.outcome.reason[:100]) == {0, 1, 2}
+
+
+def test_many_designs_are_read_some_chunks_at_a_time(tmp_path: Path) -> None:
+    study = short_study(140_000, 30_000)
+    store = create(tmp_path / "s", study, 30_000, "compiled")
+    assert [(start, len(block.values)) for start, block in store.blocks()] == [
+        (0, 60_000),
+        (60_000, 60_000),
+        (120_000, 20_000),
+    ]
+
+
+def test_it_opens_in_xarray_and_says_what_is_in_it(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0, 1, 2)
+    data = xarray.open_zarr(store.path)
+    assert data[LENGTH].dims == ("design",)
+    assert data[LENGTH].chunks == ((100, 100, 50),)
+    np.testing.assert_array_equal(data[MASS], samples(STUDY, 0, 250)[:, 1])
+    units = {name: array.attrs.get("units") for name, array in data.items()}
+    assert units == {
+        LENGTH: "m",
+        MASS: "kg",
+        SPEED: "rad/s",
+        "area": None,
+        "momentum": "N",
+        "energy": "J",
+        "reason": None,
+    }
+    meanings = data["reason"].attrs["flag_meanings"].split()
+    flags = dict(zip(data["reason"].attrs["flag_values"], meanings, strict=True))
+    assert flags[1] == REASONS[1].replace(" ", "_")
+    assert flags[UNKNOWN] == "not_computed_yet"
+    assert data.attrs["seed"] == 7
+    assert json.loads(data.attrs["versions"]) == versions() == store.versions
+    assert restore(json.loads(data.attrs["study"])) == STUDY
+
+
+def test_zarr_reads_each_array_as_it_is_described(tmp_path: Path) -> None:
+    """Chunks are written without Zarr; what it would write itself is the same to every reader."""
+    store = filled(tmp_path / "s", 0, 1, 2)
+    again = zarr.open_group(tmp_path / "again", mode="w")
+    for name, array in store.arrays.items():
+        again.create_array(name, data=array[:], chunks=array.chunks, compressors=array.compressors)
+        np.testing.assert_array_equal(again[name][:], array[:])
+        mine, theirs = ((folder / name / "c" / "0") for folder in (store.path, tmp_path / "again"))
+        assert mine.read_bytes() == theirs.read_bytes()
+
+
+def test_only_what_repeats_is_compressed(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0)
+    sizes = {name: (store.path / name / "c" / "0").stat().st_size for name in store.arrays}
+    assert sizes[LENGTH] == sizes["area"] == 800
+    assert sizes[MASS] < 100
+    grid = short_study(
+        sampling=Sampling("grid"),
+        vary=(Vary(LENGTH, Range(0.06, 0.08, 3)), Vary(MASS, Range(0.1, 0.2, 40))),
+    )
+    arrays = create(tmp_path / "grid", grid, 100, "compiled").arrays
+    assert [bool(array.compressors) for array in arrays.values()] == [1, 1, 0, 0, 0, 1]
+
+
+def test_names_of_outputs_may_have_any_signs(tmp_path: Path) -> None:
+    names = ['joint_forces."A, b".rms', "Länge [1]", "__x", "a: b*?", "c"]
+    study = short_study(50, outputs=tuple(Output(name) for name in names))
+    create(tmp_path / "s", study, 50, "compiled")
+    assert open_store(tmp_path / "s").outputs == tuple(names)
+    assert set(names) < set(xarray.open_zarr(tmp_path / "s"))
+
+
+def test_each_dimension_has_the_si_unit_of_the_door() -> None:
+    assert {kind: known.units[0] for kind, known in KINDS.items()} == SI
+
+
+# -- chunks that are not whole ---------------------------------------------------------------------
+
+
+def test_a_chunk_counts_once_all_its_files_are_there_and_have_something_in_them(
+    tmp_path: Path,
+) -> None:
+    store = filled(tmp_path / "s", 0, 1, 2)
+    assert store.missing() == []
+    (store.path / "momentum" / "c" / "1").unlink()
+    (store.path / LENGTH / "c" / "2").write_bytes(b"")  # as a failure of the power leaves it
+    assert store.missing() == [1, 2]
+
+
+def test_what_a_killed_process_left_half_written_is_cleared_away(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0)
+    before = contents(store.path)
+    (store.path / MASS / "c" / "1.partial").write_bytes(b"half")
+    assert store.missing() == [1, 2]
+    with store.writing():
+        pass
+    assert contents(store.path) == {**before, ".lock": b""}
+
+
+# -- refused ---------------------------------------------------------------------------------------
+
+
+def test_nothing_is_overwritten(tmp_path: Path) -> None:
+    (tmp_path / "s").mkdir()
+    with pytest.raises(UsageError, match=r"is there already; .* equipoise resume "):
+        create(tmp_path / "s", STUDY, 100, "compiled")
+    assert contents(tmp_path) == {}
+
+
+def test_a_store_that_cannot_be_made_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    with pytest.raises(UsageError, match=r"the store cannot be made \((not a directory|file ex)"):
+        create(tmp_path / "file" / "s", STUDY, 100, "compiled")
+    with pytest.raises(UsageError, match=r"the store cannot be made \(file name too long\)"):
+        create(tmp_path / "s", short_study(outputs=(Output("ä" * 150),)), 100, "compiled")
+    assert [path.name for path in tmp_path.iterdir()] == ["file"]
+
+
+def other_group(path: Path) -> None:
+    zarr.create_group(path, attributes={"title": "not ours"})
+
+
+def newer(path: Path) -> None:
+    zarr.create_group(path, attributes={"equipoise_store": 7})
+
+
+def torn(path: Path) -> None:
+    filled(path)
+    (path / "zarr.json").write_text("{")
+
+
+def incomplete(path: Path) -> None:
+    zarr.create_group(path, attributes={"equipoise_store": 1, "numbers": 3, "outputs": ["a"]})
+
+
+@pytest.mark.parametrize(
+    ("make", "told"),
+    [
+        (lambda path: None, "there is no such store; make it by: equipoise sweep"),
+        (Path.touch, "is no store of Equipoise"),
+        (Path.mkdir, "is no store of Equipoise"),
+        (other_group, "is no store of Equipoise"),
+        (torn, "is no store of Equipoise"),
+        (incomplete, "is no store of Equipoise"),
+        (newer, "with layout 7, and this one reads layout 1; install"),
+    ],
+)
+def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make, told: str) -> None:
+    make(tmp_path / "s")
+    with pytest.raises(UsageError, match=told) as caught:
+        open_store(tmp_path / "s")
+    assert str(caught.value).startswith(f"{tmp_path / 's'}: ")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0, 1, 2)
+    (store.path / "area" / "c" / "1").write_bytes(b"too short")
+    with pytest.raises(UsageError, match="cannot be read"):
+        list(store.blocks())
+
+
+def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0)
+    (store.path / ".lock").mkdir()
+    told = r"cannot be written \((is a directory|permission denied)\); make it writable"
+    with pytest.raises(UsageError, match=told), store.writing():
+        pass
+
+
+# -- the lock --------------------------------------------------------------------------------------
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from equipoise.studies.lock import locked
+with locked(Path(sys.argv[1])):
+    print("held", flush=True)
+    time.sleep(60)
+"""
+
+
+def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", 0)
+    command = [sys.executable, "-c", HOLD, str(store.path)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
+        assert holder.stdout is not None
+        assert holder.stdout.readline() == "held\n"
+        who = f"process {holder.pid} on {socket.gethostname()} is writing into this store"
+        with pytest.raises(UsageError, match=who), store.writing():
+            pass
+        assert open_store(store.path).missing() == [1, 2]  # whoever reads may
+        holder.kill()
+        holder.wait()
+    with store.writing():  # what the killed one wrote of itself is still there, and is longer
+        told = (store.path / ".lock").read_text()
+        assert told == f"process {os.getpid()} on {socket.gethostname()}"
+    assert (store.path / ".lock").read_bytes() == b""
