@@ -24,6 +24,7 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise respond yamashita-rig            how it shakes what it stands on"
 	@echo "  $(BIN)/equipoise balance balance-crank            what to change so that it shakes less"
 	@echo "  $(BIN)/equipoise tool brush-cutter                what a brush cutter does to the hands"
+	@echo "  $(BIN)/equipoise check study-of-lengths           what a study of many designs computes; docs/studies.md has more"
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test

@@ -21,8 +21,11 @@ _HOMES = {
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
+    "Best": "studies.best",
     "CenterMove": "mechanism.balance",
+    "Choices": "studies.spread",
     "Conditions": "balancing.conditions",
+    "Correlation": "studies.study",
     "Decay": "measured.decay",
     "DesignLimit": "tools.wishes",
     "DesignPlan": "tools.wishes",
@@ -54,18 +57,23 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
+    "Normal": "studies.spread",
     "Objective": "mechanism.balance",
     "Operation": "tools.model",
+    "Output": "studies.study",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
     "Phasing": "balancing.phases",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
+    "Range": "studies.spread",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
     "Response": "structures.response",
     "Row": "mechanism.support",
+    "Sampling": "studies.study",
+    "Searched": "studies.search",
     "Section": "tools.sections",
     "Segment": "tools.sections",
     "Shaft": "tools.sections",
@@ -75,9 +83,13 @@ _HOMES = {
     "Spring": "mechanism.spring",
     "SpringChoice": "mechanism.balance",
     "Station": "tools.model",
+    "Store": "studies.store",
+    "Study": "studies.study",
     "Support": "mechanism.support",
     "Sweep": "structures.sweep",
     "Task": "exposure.daily",
+    "Template": "io.template",
+    "Tolerances": "studies.tolerance",
     "Tool": "tools.model",
     "ToolDesign": "tools.design",
     "ToolExposure": "tools.exposed",
@@ -87,6 +99,8 @@ _HOMES = {
     "Transient": "structures.transient",
     "Transmissions": "tools.transmission",
     "Tube": "tools.sections",
+    "Uniform": "studies.spread",
+    "Vary": "studies.study",
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighted",
     "Work": "tools.model",
@@ -95,6 +109,7 @@ _HOMES = {
     "assemble": "mechanism.linkage",
     "balance": "balancing.balance",
     "base_parameters": "mechanism.parameters",
+    "best": "studies.best",
     "choose_phases": "balancing.phases",
     "conditions": "balancing.conditions",
     "daily_exposure": "exposure.daily",
@@ -102,6 +117,7 @@ _HOMES = {
     "dumps": "io.models",
     "dumps_tool": "io.tools",
     "examples": "io.models",
+    "export": "studies.export",
     "expose_tool": "tools.exposed",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
@@ -112,22 +128,29 @@ _HOMES = {
     "json_schema": "io.models",
     "least_moments": "balancing.least",
     "load": "io.models",
+    "load_study": "io.studies",
     "load_tool": "io.tools",
     "loads": "io.models",
     "loads_tool": "io.tools",
+    "machine_of": "io.stored",
     "move": "mechanism.motion",
+    "open_store": "studies.store",
     "plant": "planting.summary",
     "read_accelerations": "io.accelerations",
     "read_record": "io.records",
     "regressor": "mechanism.parameters",
     "respond": "structures.forced",
     "respond_tool": "tools.response",
+    "resume": "io.stored",
     "save": "io.models",
     "save_tool": "io.tools",
+    "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
+    "sweep": "studies.run",
     "sweep_speed": "structures.sweep",
     "sweep_tool": "tools.sweep",
+    "tolerance": "studies.tolerance",
     "tool_sensitivities": "tools.felt",
     "trade_off": "balancing.front",
     "transmit": "tools.transmission",
@@ -172,6 +195,10 @@ if TYPE_CHECKING:
     from equipoise.io.models import loads as loads
     from equipoise.io.models import save as save
     from equipoise.io.records import read_record as read_record
+    from equipoise.io.stored import machine_of as machine_of
+    from equipoise.io.stored import resume as resume
+    from equipoise.io.studies import load_study as load_study
+    from equipoise.io.template import Template as Template
     from equipoise.io.tools import dumps_tool as dumps_tool
     from equipoise.io.tools import load_tool as load_tool
     from equipoise.io.tools import loads_tool as loads_tool
@@ -262,6 +289,25 @@ if TYPE_CHECKING:
     from equipoise.structures.sweep import sweep_speed as sweep_speed
     from equipoise.structures.transient import Transient as Transient
     from equipoise.structures.transient import from_rest as from_rest
+    from equipoise.studies.best import Best as Best
+    from equipoise.studies.best import best as best
+    from equipoise.studies.export import export as export
+    from equipoise.studies.run import sweep as sweep
+    from equipoise.studies.search import Searched as Searched
+    from equipoise.studies.search import search_designs as search_designs
+    from equipoise.studies.spread import Choices as Choices
+    from equipoise.studies.spread import Normal as Normal
+    from equipoise.studies.spread import Range as Range
+    from equipoise.studies.spread import Uniform as Uniform
+    from equipoise.studies.store import Store as Store
+    from equipoise.studies.store import open_store as open_store
+    from equipoise.studies.study import Correlation as Correlation
+    from equipoise.studies.study import Output as Output
+    from equipoise.studies.study import Sampling as Sampling
+    from equipoise.studies.study import Study as Study
+    from equipoise.studies.study import Vary as Vary
+    from equipoise.studies.tolerance import Tolerances as Tolerances
+    from equipoise.studies.tolerance import tolerance as tolerance
     from equipoise.tools.design import ToolDesign as ToolDesign
     from equipoise.tools.design import design_tool as design_tool
     from equipoise.tools.exposed import ToolExposure as ToolExposure

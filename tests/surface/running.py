@@ -51,7 +51,8 @@ EXAMPLES = (
     "yamashita-rig-counterweight",
 )
 TOOLS = ("brush-cutter", "nagamine-irie", "pole-saw")
-"""Bundled files of tools; those above are of linkages."""
+STUDIES = ("study-of-balance", "study-of-lengths", "study-of-tolerances")
+"""Bundled files of tools and studies; those above are of linkages."""
 
 READY = "ready to be analysed"
 """Last line of `equipoise check`."""

@@ -407,10 +407,12 @@ def test_bad_arguments(folder: Path, words: list[str], said: str) -> None:
     ("words", "said"),
     [
         (["analyse", FOUR_BAR], 'Unknown command "analyse". Did you mean "analyze"?'),
-        (["qqq"], "Available commands: analyze, balance, decay, exposure, examples"),
+        (["qqq"], "Available commands: analyze, balance, best, export, decay, exposure"),
         (["--qqq"], "--qqq"),
         (["analyze"], "FILE requires an argument"),
         (["check"], "FILE requires an argument"),
+        (["sweep"], "STUDY requires an argument"),
+        (["best"], "STORE requires an argument"),
         (["check", FOUR_BAR, "--json=1"], "--json"),
         (["examples", "more"], "more"),
         (["schema", "more"], "more"),

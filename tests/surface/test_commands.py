@@ -18,6 +18,7 @@ import equipoise as package
 from surface.running import (
     EXAMPLES,
     READY,
+    STUDIES,
     TOOLS,
     command,
     equipoise,
@@ -30,8 +31,8 @@ from surface.running import (
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
-    *["analyze", "balance", "check", "decay", "examples", "exposure", "modes", "new", "plant"],
-    *["respond", "schema", "tool"],
+    *["analyze", "balance", "best", "check", "decay", "examples", "export", "exposure", "modes"],
+    *["new", "plant", "respond", "resume", "schema", "search", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -85,17 +86,19 @@ OPTIONS = {
         *["--front", "--points", "--conditions", "--sensitivities", "--crank-zero"],
         *["--arrangements", "--spacing", "--out", "--json", "--csv", "--plot", "--format"],
     ],
+    "best": (["STORE", "--by", "--largest", "--count", "--out", "--design", "--json", "--csv"]),
     "check": ["FILE"],
     "decay": (
         ["--stiffness", "--arm", "--spring-arm", "--confidence", "--json", "--plot", "--format"]
     ),
     "examples": [],
+    "export": ["STORE", "--out", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
         *["--periodic", "--json", "--plot", "--format"],
     ],
     "modes": ["FILE", "--model", "--json", "--plot", "--format"],
-    "new": ["FILE", "--tool"],
+    "new": ["FILE", "--tool", "--study"],
     "plant": [
         *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
         *["--plot", "--format", "--fit", "--out", "--seed"],
@@ -104,7 +107,14 @@ OPTIONS = {
         *["FILE", "--model", "--speed", "--speeds", "--drive", "--transient", "--units"],
         *["--json", "--csv", "--plot", "--format"],
     ],
-    "schema": ["--tool"],
+    "resume": ["STORE", "--workers", "--cluster", "--json"],
+    "schema": ["--tool", "--study"],
+    "search": [
+        *["STUDY", "--population", "--generations", "--seed", "--out", "--design", "--json"],
+        "--csv",
+    ],
+    "sweep": ["STUDY", "--out", "--workers", "--cluster", "--json"],
+    "tolerance": ["STUDY", "--designs", "--json"],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
         *["--duration", "--vary", "--sensitivities", "--design", "--out", "--units", "--json"],
@@ -117,7 +127,7 @@ OPTIONS = {
 def test_help_of_a_command_tells_each_option(name: str) -> None:
     text = succeeded(equipoise(name, "--help"))
     assert text.startswith(f"Usage: equipoise {name}")
-    shown = re.findall(r"^[│|] \*? *(FILE|INPUT|--[a-z-]+)", text, re.MULTILINE)
+    shown = re.findall(r"^[│|] \*? *(FILE|INPUT|STUDY|STORE|--[a-z-]+)", text, re.MULTILINE)
     assert shown == OPTIONS[name]
 
 
@@ -138,7 +148,7 @@ def test_readme_shows_no_command_that_does_not_exist() -> None:
 def test_examples_are_listed_with_their_titles() -> None:
     lines = succeeded(equipoise("examples")).splitlines()
     listed = dict(line.split(maxsplit=1) for line in lines)
-    assert listed == {name: example(name)["title"] for name in (*EXAMPLES, *TOOLS)}
+    assert listed == {name: example(name)["title"] for name in (*EXAMPLES, *TOOLS, *STUDIES)}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -407,6 +417,13 @@ def test_schema_is_the_shipped_file(schema: dict[str, Any]) -> None:
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
+@pytest.mark.parametrize("kind", ["tool", "study"])
+def test_schemas_of_other_files_are_the_shipped_ones(kind: str) -> None:
+    shipped = Path(package.__file__).with_name("io") / f"{kind}.schema.json"
+    found = json.loads(succeeded(equipoise("schema", f"--{kind}")))
+    assert found == json.loads(shipped.read_text(encoding="utf-8"))
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_schema_fits_the_example(name: str, schema: dict[str, Any]) -> None:
     jsonschema.Draft202012Validator(schema).validate(example(name))
@@ -450,6 +467,20 @@ def test_new_writes_a_file_that_can_be_analyzed(
     assert [path.name for path in tmp_path.iterdir()] == ["machine.toml"]
     assert analyzed("machine.toml", "--angles", "2")["joints"]
     assert succeeded(equipoise("check", "machine.toml")).endswith(f"{READY}\n")
+
+
+def test_new_writes_a_study_that_can_be_computed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    result = equipoise("new", "--study")
+    assert result.err == "wrote study.toml; next: equipoise sweep study.toml -o designs.zarr\n"
+    shown = succeeded(equipoise("check", "study.toml"))
+    assert "computed many at once" in shown
+    assert "ready for: equipoise search study.toml" in shown
+    said = refused(equipoise("new", "other.toml", "--study", "--tool"))
+    assert said == "--tool and --study are two kinds of files; give one of them"
+    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
 def test_every_hint_in_the_new_file_is_valid(tmp_path: Path) -> None:

@@ -13,13 +13,28 @@ from collections.abc import Sequence
 
 from cyclopts import CycloptsError
 
-from equipoise.cli import analyze, balance, decay, exposure, models, modes, plant, respond, tool
+from equipoise.cli import (
+    analyze,
+    balance,
+    best,
+    decay,
+    exposure,
+    models,
+    modes,
+    plant,
+    respond,
+    search,
+    sweep,
+    tolerance,
+    tool,
+)
 from equipoise.cli.app import app
 from equipoise.errors import EquipoiseError
 
 __all__ = [
     "analyze",
     "balance",
+    "best",
     "decay",
     "exposure",
     "main",
@@ -28,6 +43,9 @@ __all__ = [
     "plant",
     "respond",
     "run",
+    "search",
+    "sweep",
+    "tolerance",
     "tool",
 ]
 
@@ -46,8 +64,9 @@ def run(arguments: Sequence[str] | None = None) -> int:
     except (EquipoiseError, CycloptsError) as error:
         print(f"equipoise: {_one_line(str(error))}", file=sys.stderr)
         return 2
-    except KeyboardInterrupt:
-        print("equipoise: interrupted", file=sys.stderr)
+    except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
+        words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))
+        print(f"equipoise: {words}", file=sys.stderr)
         return 130
     except BrokenPipeError:  # the reader, such as `head`, has seen enough
         _drop_output()

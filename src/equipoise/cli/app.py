@@ -7,8 +7,11 @@ from cyclopts import App, Parameter
 import equipoise
 
 FILE = Parameter(name="FILE", negative="")
+STUDY = Parameter(name="STUDY", negative="")
+STORE = Parameter(name="STORE", negative="")
 OPTION = Parameter(negative="")
 OUT = Parameter(name=["--out", "-o"], negative="")
+MANY = Parameter(negative="", consume_multiple=False)
 SIGNED = Parameter(negative="", allow_leading_hyphen=True)
 
 app = App(

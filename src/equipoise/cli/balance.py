@@ -6,9 +6,7 @@ import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from cyclopts import Parameter
-
-from equipoise.cli.app import FILE, OUT, SIGNED, app
+from equipoise.cli.app import FILE, MANY, OUT, SIGNED, app
 from equipoise.cli.options import check_belonging, check_new, naming, quantity, whole
 from equipoise.cli.results import Kind, Wanted
 from equipoise.errors import UsageError
@@ -24,7 +22,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
 MOST_POINTS = 500
-MANY = Parameter(negative="", consume_multiple=False)
 Shape = Literal["any", "point", "disc", "ring", "sector"]
 
 

@@ -29,6 +29,11 @@ def angle(radians: float) -> str:
     return f"{degrees(radians):.1f}"
 
 
+def percent(share: float, digits: int) -> str:
+    """A share as per cent without the sign, and without the minus of what rounds to 0."""
+    return f"{round(100 * share, digits) + 0.0:.{digits}f}"
+
+
 def span(values: Array, scale: float = 0.0) -> str:
     """Smallest to largest value."""
     low, high = float(np.min(values)), float(np.max(values))

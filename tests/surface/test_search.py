@@ -1,0 +1,187 @@
+"""`equipoise search` as a user runs it, and how searches and sweeps tell how far they are."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.cli import progress_studies
+from equipoise.cli.progress_studies import left_told, rate_told, swept, time_told
+from equipoise.io.study_units import Unit
+from equipoise.studies.progress import Progress
+from surface.running import equipoise, succeeded
+from surface.studies import LENGTHS, TOLERANCES, written
+
+FRONT = LENGTHS.replace('list = ["199 g", "0.4 kg"]', 'range = ["199 g", "0.4 kg"]').replace(
+    "drive_torque.peak", 'drive_torque.peak"\nmake = "largest'
+)
+QUICK = ("--population", "12", "--generations", "8")
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_json_is_what_python_has() -> None:
+    study = written(FRONT)
+    result = equipoise("search", study, *QUICK, "--seed", "5", "--json")
+    assert result.out.count("\n") == 1
+    found = json.loads(succeeded(result))
+    own = eq.search_designs(eq.load_study(study), population=12, generations=8, seed=5)
+    expected = own.to_dict()
+    assert found == expected
+    line = result.err.splitlines()[-1]
+    assert re.match(r"\d+ designs computed in .*; best vertical .* mN, torque", line)
+
+
+def test_generations_before_there_is_a_front() -> None:
+    """JSON knows no NaN."""
+    study = written(FRONT, "13000 mN", "11700 mN")
+    found = json.loads(succeeded(equipoise("search", study, *QUICK, "--json")))
+    assert found["volumes"][0] is None
+    assert found["volumes"][-1] > 0
+
+
+def test_the_front_as_a_table() -> None:
+    """Beside the model itself, in the units of the files."""
+    study = eq.load_study(written(FRONT))
+    shown = succeeded(equipoise("search", "study.toml", *QUICK))
+    own = eq.search_designs(study, population=12, generations=8)
+    assert shown.startswith(f"Lengths of type I\n{own.computed} designs in 8 generations, seed 1")
+    assert "limits: vertical at most 13000 mN" in shown
+    assert f"{own.front} designs that no other beats; vertical smallest, torque largest" in shown
+    rows = [line.split() for line in shown.splitlines() if re.match(r" +(model|\d+)  +\d", line)]
+    assert rows[0][0] == "model"
+    assert float(rows[0][3]) == 71.5
+    found = np.array(rows[1:], float)
+    assert found[:, 0].tolist() == list(range(len(own.values)))
+    assert found[:, 1] == pytest.approx(1e3 * own.figures[:, 0], rel=1e-3)
+    assert found[:, 3:] == pytest.approx(1e3 * own.values, rel=1e-3)
+    assert "note: it may get better yet; give more --generations" in shown
+
+
+def test_one_aim() -> None:
+    shown = succeeded(equipoise("search", written(LENGTHS), *QUICK))
+    assert "The best design; vertical smallest" in shown
+    rows = [line for line in shown.splitlines() if re.match(r" +(model|\d+)  +\d", line)]
+    assert len(rows) == 2
+
+
+def test_files() -> None:
+    study = written(FRONT)
+    words = ("--csv", "front.csv", "-o", "new.toml", "--design", "1")
+    result = equipoise("search", study, *QUICK, *words)
+    assert "design" in succeeded(result)
+    assert result.err.splitlines()[-2:] == ["wrote front.csv", "wrote new.toml"]
+    with Path("front.csv").open(newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert head[:2] == ["design", "links.coupler.points.C.x [m]"]
+    own = eq.search_designs(eq.load_study(study), population=12, generations=8)
+    assert np.array(rows, float)[:, 1:3].tolist() == own.values.tolist()
+    made = eq.load("new.toml")
+    assert made.links == own.machine(1).links
+    assert 'Design 1 of a search of the study "Lengths of type I", seed 1.' in made.description
+
+
+def test_a_bundled_study() -> None:
+    shown = succeeded(equipoise("search", "study-of-balance", *QUICK))
+    assert "designs that no other beats; forward smallest, upward smallest" in shown
+
+
+REFUSED = {
+    # text, words after the file, what is said
+    "tolerances": (TOLERANCES, [], "study.toml: vary[1]: links.coupler.mass has a tolerance, whic"),
+    "no aim": (
+        LENGTHS.replace('make = "smallest"', ""),
+        [],
+        "study.toml: outputs: none is to become small or large; give one of them make = ",
+    ),
+    "impossible": (
+        LENGTHS.replace("13000 mN", "1 N"),
+        [*QUICK],
+        "none of ",
+    ),
+    "population": (LENGTHS, ["--population", "4"], "--population: got '4'; give a whole number f"),
+    "generations": (LENGTHS, ["--generations", "0"], "--generations: got '0'; give a whole number"),
+    "seed": (LENGTHS, ["--seed", "-1"], "--seed: got '-1'; give a whole number from 0 to 4294967"),
+    "design alone": (LENGTHS, ["--design", "1"], "--design belongs to --out; give both"),
+    "no such design": (
+        LENGTHS,
+        [*QUICK, "-o", "x.toml", "--design", "7"],
+        "--design: got 7; give a whole number from 0 to 0",
+    ),
+    "there": (LENGTHS, ["-o", "study.toml"], "study.toml: is there already; choose another name"),
+    "csv": (LENGTHS, ["--csv", "study.toml"], "--csv: study.toml is what is to be analysed; give"),
+}
+
+
+@pytest.mark.parametrize(("text", "words", "said"), REFUSED.values(), ids=REFUSED)
+def test_refused(text: str, words: list[str], said: str) -> None:
+    result = equipoise("search", written(text), *words)
+    assert (result.status, result.out) == (2, "")
+    assert result.err.splitlines()[-1].startswith(f"equipoise: {said}")
+    assert [path.name for path in Path().iterdir()] == ["study.toml"]
+
+
+# -- progress --------------------------------------------------------------------------------------
+
+
+def progress(done: int, seconds: float, total: int = 10_000) -> Progress:
+    rate = done / seconds if done else None
+    failures = {"does not turn fully": done // 10} if done else {}
+    return Progress(total, done, done, seconds, rate, failures, {"height": 0.25} if done else {})
+
+
+def test_lines_in_a_log_grow_fewer(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    now = [0.0]
+    monkeypatch.setattr(progress_studies, "monotonic", lambda: now[0])
+    told = []
+    with swept({"height": Unit.of("mm")}) as tell:
+        for second in range(1000):
+            now[0] = float(second)
+            tell(progress(10 * second, float(second), 10_000))
+            if line := capsys.readouterr().err:
+                told.append((second, line))
+    seconds = [second for second, _ in told]
+    assert seconds[:4] == [5, 10, 15, 23]
+    assert len(seconds) < 20
+    assert np.all(np.diff(seconds) >= 5)
+    assert told[0][1] == (
+        "0 %, 50 of 10000 designs, 10 designs/s; best height 250.0 mm; does not turn fully 5\n"
+    )
+    assert "40 %, 4050 of 10000 designs, 10 designs/s, 9 min 55 s left; best" in told[-3][1]
+    closing = capsys.readouterr().err
+    assert closing.startswith("9990 designs computed in 16 min 39 s, 10 designs/s; best height 250")
+    assert closing.count("\n") == 1
+
+
+def test_nothing_is_said_of_what_nothing_is_known_of() -> None:
+    assert left_told(progress(0, 1.0)) == ""
+    assert left_told(progress(100, 1.0)) == ""
+    assert left_told(progress(5000, 50.0), ago=10.0) == "40.0 s left"
+    assert rate_told(None) == ""
+
+
+@pytest.mark.parametrize(
+    ("seconds", "said"),
+    [
+        (0.04, "0.0 s"),
+        (59.9, "59.9 s"),
+        (61, "1 min 1 s"),
+        (3599.6, "1 h 0 min"),
+        (9000, "2 h 30 min"),
+    ],
+)
+def test_times(seconds: float, said: str) -> None:
+    assert time_told(seconds) == said

@@ -1,0 +1,430 @@
+"""`equipoise sweep`, `resume`, `best` and `export` as a user runs them."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.io.stored import study_of
+from surface.running import command, equipoise, process, refused, succeeded
+from surface.studies import LENGTHS, TOLERANCES, written
+
+STORE = "lengths.zarr"
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A store, and what was printed when it was made."""
+    folder = tmp_path_factory.mktemp("made")
+    (folder / "study.toml").write_text(LENGTHS, encoding="utf-8")
+    result = equipoise("sweep", folder / "study.toml", "-o", folder / STORE)
+    (folder / "out").write_text(succeeded(result))
+    (folder / "err").write_text(result.err)
+    return folder
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: Path) -> Path:
+    """Every test runs in a folder of its own, with a copy of the store."""
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(made / STORE, STORE)
+    return tmp_path
+
+
+def best(*words: str | Path) -> dict[str, Any]:
+    """What `equipoise best ... --json` prints, and that it prints only that."""
+    result = equipoise("best", STORE, *words, "--json")
+    assert result.out.count("\n") == 1
+    content: dict[str, Any] = json.loads(succeeded(result))
+    return content
+
+
+# -- sweep and resume ------------------------------------------------------------------------------
+
+
+def test_what_is_printed(made: Path) -> None:
+    shown = (made / "out").read_text()
+    assert shown.startswith(f"Lengths of type I\n{made / STORE}: 200 designs of 2 numbers, ")
+    counts = dict(re.findall(r"^(computed|keep every limit) +(\d+) ", shown, re.MULTILINE))
+    store = eq.open_store(STORE)
+    figures = store.read(range(200)).outcome.figures
+    assert counts["computed"] == str(np.isfinite(figures[:, 0]).sum())
+    assert counts["keep every limit"] == str(np.sum(figures[:, 0] <= 13))
+    assert "The best designs; vertical smallest" in shown
+    assert f"equipoise best {made / STORE}" in shown
+    line = (made / "err").read_text().splitlines()[-1]
+    assert re.match(r"200 designs computed in \d.* s, .* designs/s; best vertical .* mN", line)
+
+
+def test_units_are_those_of_the_files(made: Path) -> None:
+    """The limit is in mN, lengths and masses of the model are in mm and g."""
+    shown = (made / "out").read_text()
+    first = eq.best(eq.open_store(STORE), 1)
+    row = next(line for line in shown.splitlines() if line.startswith(f"{first.designs[0]:>8}"))
+    _, vertical, torque, length, mass = map(float, row.split())
+    assert vertical == pytest.approx(1e3 * first.figures[0, 0], rel=1e-3)
+    assert torque == pytest.approx(first.figures[0, 1], rel=1e-3)
+    assert (length, mass) == pytest.approx(1e3 * first.values[0], rel=1e-3)
+    heads = "".join(shown[shown.index("vertical smallest") : shown.index("--------  ")].split())
+    assert heads.endswith("mNNmmmg") or all(f" {unit}" in shown for unit in ("mN", "N m", "mm"))
+
+
+def test_json(folder: Path) -> None:
+    study = written(LENGTHS, "designs = 200", "designs = 50")
+    result = equipoise("sweep", study, "-o", "new.zarr", "--json")
+    content = json.loads(succeeded(result))
+    assert result.out.count("\n") == 1
+    assert {key: content[key] for key in ("title", "store", "designs", "note")} == {
+        "title": "Lengths of type I",
+        "store": "new.zarr",
+        "designs": 50,
+        "note": None,
+    }
+    found = eq.best(eq.open_store("new.zarr"), 3)
+    assert content["kept"] == found.kept
+    assert content["best"] == found.to_dict()
+    assert content["computed_now"] == 50
+    assert content["seconds"] > 0
+
+
+def test_resuming_computes_what_is_missing_and_nothing_else(folder: Path) -> None:
+    def chunks() -> dict[str, bytes]:
+        return {str(file): file.read_bytes() for file in Path(STORE).glob("*/c/*")}
+
+    before = chunks()
+    shown = succeeded(equipoise("resume", STORE))
+    assert "200 designs of 2 numbers, nothing was missing" in shown
+    for file in Path(STORE).glob("vertical/c/*"):
+        file.unlink()
+    assert eq.resume(STORE, workers=2).missing() == []
+    assert chunks() == before
+    for file in Path(STORE).glob("vertical/c/*"):
+        file.unlink()
+    result = equipoise("resume", STORE, "--json", "--workers", "1")
+    assert json.loads(succeeded(result))["computed_now"] == 200
+    assert chunks() == before
+
+
+def test_one_process_at_a_time(folder: Path) -> None:
+    for file in Path(STORE).glob("vertical/c/*"):
+        file.unlink()
+    with eq.open_store(STORE, write=True).writing():
+        said = refused(equipoise("resume", STORE))
+    assert said.startswith(f"{STORE}: process {os.getpid()} on ")
+    assert "is writing into this store; wait until it is done, or stop it" in said
+
+
+def test_a_study_without_an_aim(folder: Path) -> None:
+    study = written(LENGTHS, 'at_most = "13000 mN"\nmake = "smallest"\n')
+    shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
+    assert "The best" not in shown
+    assert "keep every limit" not in shown
+    assert "equipoise best new.zarr --by vertical" in shown
+    said = refused(equipoise("best", "new.zarr"))
+    assert "no output of the study is to become small or large; name one to go by" in said
+
+
+def test_no_design_keeps_the_limits(folder: Path) -> None:
+    study = written(LENGTHS, "13000 mN", "1 N")
+    shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
+    assert re.search(r"^keep every limit +0 +0.00$", shown, re.MULTILINE)
+    assert re.search(r"^note: none of \d+ designs keeps every limit; kept is vert", shown, re.M)
+    assert "equipoise best" not in shown
+    said = refused(equipoise("best", "new.zarr"))
+    assert said.startswith("new.zarr: none of ")
+
+
+def test_a_bundled_study_and_the_examples(folder: Path) -> None:
+    names = {line.split()[0] for line in succeeded(equipoise("examples")).splitlines()}
+    assert set(eq.examples("study")) <= names
+    for name in eq.examples("study"):
+        shown = succeeded(equipoise("check", name))
+        assert shown.startswith(eq.load_study(name).title)
+        assert f"ready for: equipoise sweep {name} -o designs.zarr" in shown
+
+
+def test_processes(folder: Path) -> None:
+    """Figures of `plant` are computed one by one, in processes of their own."""
+    study = written(
+        LENGTHS.replace("yamashita-1", "kim-chung-a").replace("designs = 200", "designs = 6"),
+        '[[outputs]]\nname = "torque"\nvalue = "drive_torque.peak"\n',
+        '[[outputs]]\nof = "plant"\nvalue = "curve.height"\nmake = "largest"\n',
+    )
+    result = process("sweep", study, "-o", "new.zarr", "--workers", "2")
+    shown = succeeded(result)
+    assert "Designs that no other beats" in shown or "note: " in shown
+    assert result.err.splitlines()[-1].startswith("6 designs computed in ")
+
+
+def test_an_interrupted_sweep_goes_on(folder: Path) -> None:
+    study = written(LENGTHS, "designs = 200", "designs = 100_000_000")
+    words = command("sweep", study, "-o", "long.zarr")
+    running = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    for _ in range(600):
+        if len([*Path("long.zarr").glob("reason/c/*")]) > 1:
+            break
+        time.sleep(0.05)
+    running.send_signal(signal.SIGINT)
+    out, err = running.communicate(timeout=60)
+    assert (running.returncode, out) == (130, "")
+    assert err.splitlines()[-1] == (
+        "equipoise: interrupted; what is stored stays; go on by: equipoise resume long.zarr"
+    )
+    assert "Traceback" not in err
+    store = eq.open_store("long.zarr")
+    assert 0 < len(store.missing()) < store.chunks
+
+
+REFUSED = {
+    # words, what is said
+    "no store": (["sweep", "study.toml"], "--out: missing; say where the store is to be, such as"),
+    "empty store": (["sweep", "study.toml", "-o", ""], "--out: missing; say where the store is"),
+    "there already": (["sweep", "study.toml", "-o", STORE], "lengths.zarr: is there already; choo"),
+    "workers": (
+        ["sweep", "study.toml", "-o", "x", "--workers", "0"],
+        "--workers: got '0'; give a whole number from 1 to 1000",
+    ),
+    "both": (
+        ["sweep", "study.toml", "-o", "x", "--workers", "2", "--cluster", "tcp://127.0.0.1:9"],
+        "--workers belongs to this machine, and --cluster computes elsewhere; give one of them",
+    ),
+    "no cluster": (
+        ["sweep", "study.toml", "-o", "x", "--cluster", "nowhere"],
+        "no Dask scheduler answers at nowhere",
+    ),
+    "no study": (["sweep", "none.toml", "-o", "x"], "none.toml: there is no such file; give a p"),
+    "nearly a study": (
+        ["sweep", "study-of-length", "-o", "x"],
+        "study-of-length: there is no such file; did you mean 'study-of-lengths'?",
+    ),
+    "a linkage": (
+        ["sweep", "yamashita-1", "-o", "x"],
+        "yamashita-1.toml: this is a model file; give a study file, which names it by a key model",
+    ),
+    "a tool": (["sweep", "pole-saw", "-o", "x"], "pole-saw.toml: this is a model file; give a st"),
+    "a wrong output": (
+        ["sweep", "wrong.toml", "-o", "x"],
+        "wrong.toml: outputs[2].value: got 'drive_torque.pek'; ",
+    ),
+    "resume nothing": (["resume", "x"], "x: there is no such store; make it by: equipoise sweep"),
+    "resume a file": (["resume", "study.toml"], "study.toml: is no store of Equipoise ("),
+    "by": (["best", STORE, "--by", "vertcal"], "no output or varied number is called 'vertcal'; "),
+    "count": (["best", STORE, "--count", "0"], "--count: got '0'; give a whole number from 1 to"),
+    "design alone": (["best", STORE, "--design", "3"], "--design belongs to --out; give both"),
+    "no such design": (
+        ["best", STORE, "-o", "x.toml", "--design", "200"],
+        "--design: got '200'; give a whole number from 0 to 199",
+    ),
+    "model there": (["best", STORE, "-o", "study.toml"], "study.toml: is there already; choose an"),
+    "no folder": (["best", STORE, "-o", "no/x.toml"], "no/x.toml: there is no such folder; make i"),
+    "csv": (["best", STORE, "--csv", STORE], "--csv: lengths.zarr is a directory; give the name"),
+    "one for both": (
+        ["best", STORE, "-o", "x.toml", "--csv", "x.toml"],
+        "--csv: x.toml has another part in this command; give another name",
+    ),
+    "export to nowhere": (["export", STORE], "--out: missing; give the name of a file that ends i"),
+    "export to text": (["export", STORE, "-o", "x.txt"], "--out: got 'x.txt'; give the name of a"),
+    "export to no folder": (["export", STORE, "-o", "no/x.csv"], "--out: no/x.csv: there is no su"),
+    "export nothing": (["export", "x", "-o", "x.csv"], "x: there is no such store; make it by: eq"),
+}
+
+
+@pytest.mark.parametrize(("words", "said"), REFUSED.values(), ids=REFUSED)
+def test_refused(words: list[str], said: str) -> None:
+    written(LENGTHS)
+    written(LENGTHS, "drive_torque.peak", "drive_torque.pek", "wrong.toml")
+    assert said in refused(equipoise(*words))
+    assert {path.name for path in Path().iterdir()} == {STORE, "study.toml", "wrong.toml"}
+
+
+@pytest.mark.parametrize(
+    ("library", "words", "extra"),
+    [
+        ("zarr", ["sweep", "study.toml", "-o", "x"], "studies"),
+        ("distributed", ["sweep", "study.toml", "-o", "x", "--cluster", "tcp://a:1"], "cluster"),
+        ("pyarrow", ["export", STORE, "-o", "x.csv"], "studies"),
+        ("pymoo", ["search", "study.toml"], "studies"),
+    ],
+)
+def test_a_library_that_is_not_installed(
+    monkeypatch: pytest.MonkeyPatch, library: str, words: list[str], extra: str
+) -> None:
+    written(LENGTHS)
+    for name in [name for name in sys.modules if name.split(".")[0] == library]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, library, None)
+    said = refused(equipoise(*words))
+    assert f"needs {library}, which is not installed; " in said
+    assert said.endswith(f'install it with: pip install "equipoise[{extra}]"')
+    assert {path.name for path in Path().iterdir()} == {STORE, "study.toml"}
+
+
+@pytest.mark.parametrize("name", ["analyze", "plant", "respond", "balance", "modes", "tool"])
+def test_commands_for_models_refuse_a_study(name: str) -> None:
+    line = refused(equipoise(name, written(LENGTHS)))
+    assert line == (
+        "study.toml: this is a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep "
+        "FILE`"
+    )
+
+
+def test_a_study_of_a_study() -> None:
+    written(TOLERANCES, name="other.toml")
+    said = refused(equipoise("check", written(LENGTHS, "yamashita-1", "other.toml")))
+    assert said.endswith("other.toml: this is a study; name the file of a linkage or a tool")
+
+
+# -- best ------------------------------------------------------------------------------------------
+
+
+def test_the_best_as_json() -> None:
+    found = best("--count", "4")
+    assert found == {
+        "title": "Lengths of type I",
+        **eq.best(eq.open_store(STORE), 4).to_dict(),
+    }
+    figures = [one["figures"]["vertical"] for one in found["designs"]]
+    assert figures == sorted(figures)
+
+
+def test_what_to_go_by() -> None:
+    found = best("--by", "torque", "--largest", "links.crank.mass")
+    assert found["by"] == {"torque": "smallest", "links.crank.mass": "largest"}
+    shown = succeeded(equipoise("best", STORE, "--by", "torque", "--largest", "links.crank.mass"))
+    assert "Designs that no other beats; torque smallest, links.crank.mass largest" in shown
+    assert "limits: vertical at most 13000 mN" in shown
+
+
+def test_designs_as_csv() -> None:
+    result = equipoise("best", STORE, "--count", "3", "--csv", "best.csv")
+    assert succeeded(result)
+    assert result.err == "wrote best.csv\n"
+    with Path("best.csv").open(newline="", encoding="utf-8") as file:
+        head, *rows = csv.reader(file)
+    assert head == [
+        "design",
+        "links.coupler.points.C.x [m]",
+        "links.crank.mass [kg]",
+        "vertical [N]",
+        "torque [N m]",
+    ]
+    found = eq.best(eq.open_store(STORE), 3)
+    assert [int(row[0]) for row in rows] == found.designs.tolist()
+    assert np.array([row[1:3] for row in rows], float).tolist() == found.values.tolist()
+
+
+def test_the_best_as_a_model_file() -> None:
+    """Analysed anew it has exactly the figures that stand in the store."""
+    result = equipoise("best", STORE, "--out", "best.toml")
+    assert succeeded(result)
+    assert result.err == "wrote best.toml\n"
+    found = eq.best(eq.open_store(STORE), 1)
+    machine = eq.load("best.toml")
+    assert machine.links["coupler"].points["C"][0] == found.values[0, 0]
+    assert machine.title.endswith(f", design {found.designs[0]}")
+    assert machine.description.startswith(
+        f'Design {found.designs[0]} of the study "Lengths of type I". Started from: '
+    )
+    rms = eq.analyze(machine).summary["shaking_force.y"].rms
+    assert rms == pytest.approx(found.figures[0, 0], rel=1e-4)
+    succeeded(equipoise("check", "best.toml"))
+
+
+def test_another_design_as_a_model_file() -> None:
+    store = eq.open_store(STORE)
+    reason = store.read(range(200)).outcome.reason
+    good, bad = (int(np.flatnonzero(found)[0]) for found in (reason == 0, reason != 0))
+    succeeded(equipoise("best", STORE, "-o", "other.toml", "--design", good))
+    values = dict(zip(store.numbers, store.read(range(good, good + 1)).values[0], strict=True))
+    assert eq.machine_of(store, good) == study_of(store).model.machine(values)
+    assert eq.load("other.toml").links == eq.machine_of(store, good).links
+    said = refused(equipoise("best", STORE, "-o", "bad.toml", "--design", bad))
+    assert said == f"design {bad} has no figures (does not turn fully); choose another"
+    assert not Path("bad.toml").exists()
+
+
+def test_a_tool() -> None:
+    """Written with what lies beside it; its studies are computed one by one."""
+    study = written(
+        'schema = 1\nmodel = "nagamine-irie"\n[[vary]]\npath = "shaft.stations[3].position"\n'
+        'list = ["700 mm", "750 mm"]\n[sampling]\nmethod = "grid"\n'
+        '[[outputs]]\nvalue = "natural_frequencies[1]"\nmake = "largest"\n'
+    )
+    result = process("sweep", study, "-o", "tool.zarr", "--workers", "1")
+    shown = succeeded(result)
+    assert re.search(r"natural", shown)
+    succeeded(equipoise("best", "tool.zarr", "--out", "saw.toml"))
+    assert eq.load_tool("saw.toml").title.startswith("Brush cutter of Nagamine and Irie, design ")
+
+
+def test_a_store_whose_study_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its figures can still be told, in SI units; a model file cannot be written."""
+    file = Path(STORE, "zarr.json")
+    file.write_text(file.read_text().replace("[links.crank]", "[links.cranc]"))
+    shown = succeeded(equipoise("best", STORE))
+    assert " kg" in shown
+    said = refused(equipoise("best", STORE, "--out", "x.toml"))
+    assert said.startswith("lengths.zarr: what is kept of the study cannot be read (")
+    said = refused(equipoise("resume", STORE))
+    assert said.startswith("lengths.zarr: what is kept of the study cannot be read (")
+
+
+# -- export ----------------------------------------------------------------------------------------
+
+
+def test_all_designs_as_one_table() -> None:
+    import pandas
+
+    result = equipoise("export", STORE, "-o", "all.parquet")
+    assert (succeeded(result), result.err) == ("", "wrote 200 designs to all.parquet\n")
+    table = pandas.read_parquet("all.parquet")
+    assert len(table) == 200
+    result = equipoise("export", STORE, "-o", "kept.csv", "--kept")
+    kept = int(best("--count", "1")["kept"])
+    assert result.err == f"wrote {kept} designs to kept.csv\n"
+    rows = pandas.read_csv("kept.csv")
+    assert rows["design"].tolist() == table.index[table["vertical"] <= 13].tolist()
+    assert set(rows["reason"]) == {"computed"}
+
+
+# -- progress --------------------------------------------------------------------------------------
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a terminal is made by posix means")
+def test_a_bar_in_a_terminal(folder: Path) -> None:
+    """With rate, time left, best so far and failures; gone in the end."""
+    import pty
+
+    study = written(LENGTHS, "designs = 200", "designs = 300_000")
+    ours, theirs = pty.openpty()
+    words = command("sweep", study, "-o", "new.zarr")
+    environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
+    done = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=theirs, env=environment)
+    os.close(theirs)
+    seen = b""
+    try:
+        while part := os.read(ours, 65536):
+            seen += part
+    except OSError:  # the other end is closed
+        pass
+    out, _ = done.communicate()
+    text = seen.decode()
+    assert done.returncode == 0
+    assert b"300000 designs of 2 numbers" in out
+    assert re.search(r"\d+ %, \d+ of 300000 designs", text)
+    assert re.search(r"designs/s, \d.* left", text)
+    assert "best so far: vertical" in text
+    assert "failed: does not turn fully" in text

@@ -1,0 +1,125 @@
+"""`equipoise tolerance` as a user runs it."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+import equipoise as eq
+from surface.running import equipoise, refused, succeeded
+from surface.studies import LENGTHS, TOLERANCES, written
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """What is printed of the study."""
+    path = tmp_path_factory.mktemp("shown") / "study.toml"
+    path.write_text(TOLERANCES, encoding="utf-8")
+    result = equipoise("tolerance", path)
+    assert re.fullmatch(r"\d+ designs computed in .* s, .* designs/s", result.err.splitlines()[-1])
+    return succeeded(result)
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Every test runs in a folder of its own."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def test_json_is_what_python_has() -> None:
+    study = written(TOLERANCES)
+    result = equipoise("tolerance", study, "--json")
+    assert result.out.count("\n") == 1
+    found = json.loads(succeeded(result))
+    own = eq.tolerance(eq.load_study(study)).to_dict()
+    assert found["within"] == own["within"]
+    assert found["tighten"] == own["tighten"]
+    assert found["outputs"]["vertical"]["percentiles"] == pytest.approx(
+        own["outputs"]["vertical"]["percentiles"]
+    )
+
+
+def test_figures_in_the_units_of_the_files(shown: str) -> None:
+    own = eq.tolerance(eq.load_study(written(TOLERANCES)))
+    one = own.scatters["vertical"]
+    row = next(line for line in shown.splitlines() if re.match(r"vertical +N +\d", line))
+    model, mean, deviation = map(float, row.split()[2:5])
+    assert (model, mean) == pytest.approx((one.base, one.mean), rel=1e-3)
+    assert deviation == pytest.approx(one.deviation, rel=1e-3)
+    assert own.within is not None
+    assert f"every limit is kept by {100 * own.within.value:.2f} % (" in shown
+    assert re.search(r"^links.coupler.mass +deviation 15.00 g, cut at 3 ", shown, re.MULTILINE)
+    assert re.search(r"^links.coupler.center_of_mass.x +\+- 2.000 mm ", shown, re.MULTILINE)
+
+
+def test_what_to_tighten_first(shown: str) -> None:
+    """Mass and inertia go together, so that they are one cause."""
+    own = eq.tolerance(eq.load_study(written(TOLERANCES)))
+    first = own.causes[0]
+    (sentence,) = re.findall(r"^Tighten first: .*$", shown, re.MULTILINE)
+    assert sentence.startswith(f"Tighten first: {' and '.join(first.numbers)}")
+    assert f"takes {100 * first.gain:.0f} % off the variance of vertical" in sentence
+    rows = [line.split()[0] for line in shown.splitlines() if line.startswith("links.")]
+    ranked = [path for cause in own.causes for path in cause.numbers]
+    assert rows == [*ranked, *ranked]
+    assert ("links.coupler.mass", "links.coupler.inertia") in [one.numbers for one in own.causes]
+
+
+def test_without_limits() -> None:
+    shown = succeeded(equipoise("tolerance", written(TOLERANCES, 'at_most = "23.5 N"')))
+    assert "Limits" not in shown
+    assert "every limit" not in shown
+    assert re.search(r"^Tighten first: .* off the variance of vertical\.$", shown, re.MULTILINE)
+
+
+def test_a_limit_that_the_model_does_not_keep() -> None:
+    shown = succeeded(equipoise("tolerance", written(TOLERANCES, "23.5 N", "20 N")))
+    assert "every limit is kept by 0.00 % (" in shown
+    assert "hardly more machines keep every limit then" in shown
+    assert (
+        "note: the model itself does not keep the limits of vertical; change its numbers first"
+    ) in shown
+
+
+def test_fewer_machines() -> None:
+    study = written(TOLERANCES)
+    shown = succeeded(equipoise("tolerance", study, "--designs", "512"))
+    assert "\n512 machines drawn, seed 1\n" in shown
+
+
+def test_a_bundled_study() -> None:
+    shown = succeeded(equipoise("tolerance", "study-of-tolerances", "--designs", "1024"))
+    assert "Tighten first: " in shown
+    assert not re.search(r"\b(nan|inf)\b|-0\.0 ", shown)
+
+
+REFUSED = {
+    # text, words after the file, what is said
+    "ranges": (
+        LENGTHS,
+        [],
+        "study.toml: vary[1]: links.coupler.points.C.x has a range or a list, which is no tol",
+    ),
+    "too few": (TOLERANCES, ["--designs", "10"], "--designs: got 10; to tell 3 tolerances apart"),
+    "no number": (TOLERANCES, ["--designs", "x"], "--designs: got 'x'; give a whole number from"),
+    "too few in the file": (
+        TOLERANCES.replace("2048", "10"),
+        [],
+        "study.toml: sampling.designs: got 10; to tell 3 tolerances apart give ",
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "words", "said"), REFUSED.values(), ids=REFUSED)
+def test_refused(text: str, words: list[str], said: str) -> None:
+    assert refused(equipoise("tolerance", written(text), *words)).startswith(said)
+
+
+def test_files_that_are_no_studies() -> None:
+    said = refused(equipoise("tolerance", "yamashita-1"))
+    assert said.startswith("yamashita-1.toml: this is a model file; give a study file")
+    assert "none.toml: there is no such file" in refused(equipoise("tolerance", "none.toml"))
