@@ -51,6 +51,8 @@ by chance come as close to the top as before."""
 STEP = 4
 """Crank angles, over the tolerance, that loads take which begin or end at once: means over them
 come closer as 1 / N, and may by chance stand still before."""
+FAR = -0.5
+"""Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 ROUNDING = 1e-12
 """Of the size of a signal: what moves by less than this stands still."""
 
@@ -94,7 +96,6 @@ class Batch:
         self.least = STEP / tolerance if has_steps(machine) else FIRST
         self.source = emit(self.base, self.gathered)
         windings = self.base.cycle.windings if machine.gears else {}
-        self.windings = [windings[link] for link in self.source.running]
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         self.slope = SLOPE * max(1.0, fastest)
 
@@ -153,11 +154,13 @@ class Batch:
 
     def _doubled(self, table: Array, found: Array, count: int) -> Array:
         """What is gathered at twice as many angles, of which only the new ones are computed."""
-        if self.source.running:  # their angles are counted on from crank angle 0
-            return self._at(table, all_angles(2 * count, self.turns))
         more = self._at(table, between(count, self.turns))
         both = self.gathered.joined(found, more)
-        for place, ways in ((self.source.weakest, np.minimum), (self.source.strongest, np.maximum)):
+        for place, ways in (
+            (self.source.weakest, np.minimum),
+            (self.source.strongest, np.maximum),
+            (self.source.nearest, np.minimum),
+        ):
             both[:, place] = ways(found[:, place], more[:, place])
         return both
 
@@ -189,12 +192,12 @@ class Batch:
         Of several dyads that fail it is the first that tells, as those behind it have no place.
         """
         reason = np.zeros(len(found), dtype=np.uint8)
-        turns = np.rint(found[:, self.source.windings])
-        reason[np.any(turns != self.windings, axis=1)] = NOT_COMPUTED
+        reason[np.any(found[:, self.source.nearest] < FAR, axis=1)] = NOT_COMPUTED
         weakest = found[:, self.source.weakest].copy()
         strongest = found[:, self.source.strongest].copy()
         self._look_closer(table, weakest, strongest, count)
-        for low, high in zip(weakest.T[::-1], strongest.T[::-1], strict=True):
+        own = slice(None, len(set(self.source.watched)))
+        for low, high in zip(weakest.T[own][::-1], strongest.T[own][::-1], strict=True):
             reason[low < cycle.CHANGE_POINT] = CHANGE_POINT
             reason[low < -cycle.CHANGE_POINT] = NO_FULL_TURN
             reason[high <= 0] = NO_ASSEMBLY
@@ -213,11 +216,10 @@ class Batch:
             found = self._run(table[some], grid_of(self.source, all_angles(count, self.turns)))
             weakest[some] = found[:, self.source.weakest]
             strongest[some] = found[:, self.source.strongest]
-        if not self.source.running:  # their angles are counted on from crank angle 0
-            for k in some:
-                for dyad in np.flatnonzero(near[k]).tolist():
-                    weakest[k, dyad] = self._extreme(table[k : k + 1], dyad, 1)
-                    strongest[k, dyad] = -self._extreme(table[k : k + 1], dyad, -1)
+        for k in some:
+            for dyad in {self.source.watched[column] for column in np.flatnonzero(near[k])}:
+                weakest[k, dyad] = self._extreme(table[k : k + 1], dyad, 1)
+                strongest[k, dyad] = -self._extreme(table[k : k + 1], dyad, -1)
 
     def _extreme(self, row: Array, dyad: int, sign: int) -> float:
         """Smallest value, times `sign`, of one dyad's number in one design, closed in on."""

@@ -10,20 +10,21 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.fused.figures import Figure
 from equipoise.fused.reasons import MOST_ANGLES, NO_MACHINE, NOT_STILL
+from equipoise.mechanism import checks
 from equipoise.mechanism.columns import massive_link, with_columns, wrong
 from equipoise.mechanism.dynamics import Forces, SliderForce, forces
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.parameters import (
-    QUANTITIES,
     Regressor,
     parameter_names,
     parameter_values,
@@ -73,14 +74,30 @@ class Square:
     constants: Array
     mean: bool
 
-    def of(self, parameters: Array) -> Array:
-        """The figure (P,) of varied parameters (V, P)."""
-        found = self.factors @ parameters + self.constants
+    def of(self, found: Array) -> Array:
+        """The figure (P,), from rows (R, P): factors times parameters, and constants."""
         if self.mean:
             mean: Array = found[0]
             return mean
         root: Array = np.sqrt(np.einsum("ij,ij->j", found, found))
         return root
+
+
+class Room(NamedTuple):
+    """Where some designs (N) at a time are computed; to have it anew each time takes as long again.
+
+    columns : (d, N) their numbers.  parameters : (V + 1, N), ones below.  found : (R, N).
+    """
+
+    columns: Array
+    parameters: Array
+    found: Array
+
+    @classmethod
+    def of(cls, numbers: int, matrix: Array, count: int) -> Room:
+        """Room for so many designs of so many numbers; matrix : (R, V + 1)."""
+        rows, parameters = matrix.shape
+        return cls(*(np.ones((height, count)) for height in (numbers, parameters, rows)))
 
 
 class MassBatch:
@@ -102,6 +119,11 @@ class MassBatch:
         self.scale = np.append(_scales(machine, len(self.links)), 1.0)
         self.still = True
         self.squares = self._squares(angles, tolerance)
+        rows = [np.column_stack([one.factors, one.constants]) for one in self.squares]
+        self.rows = np.concatenate(rows)
+        self.ends = np.cumsum([0, *map(len, rows)])
+        self.polar = any(path.endswith((".distance", ".direction")) for path in paths)
+        self.not_negative = [k for k, p in enumerate(paths) if p.endswith((".mass", ".inertia"))]
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
@@ -109,24 +131,37 @@ class MassBatch:
         reason = np.zeros(len(values), dtype=np.uint8)
         if not self.still:
             reason[:] = NOT_STILL
+        room = Room.of(len(self.paths), self.rows, min(AT_ONCE, len(values)))
+        named = dict(zip(self.paths, room.columns[:, :, None], strict=True))
         for begin in range(0, len(values), AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
-            self._fill(figures[some], reason[some], values[some])
+            room.columns[:, : len(values[some])] = values[some].T
+            if begin == 0 or self.polar:
+                machine = with_columns(self.base.machine, named)
+            self._fill(figures[some], reason[some], machine, room)
         figures[reason != 0] = np.nan
         return figures, reason
 
-    def _fill(self, figures: Array, reason: Array, values: Array) -> None:
-        columns = np.ascontiguousarray(values.T)
-        named = {path: column[:, None] for path, column in zip(self.paths, columns, strict=True)}
-        machine = with_columns(self.base.machine, named)
-        parameters = np.empty((len(QUANTITIES) * len(self.links), len(values)))
+    def _fill(self, figures: Array, reason: Array, machine: Machine, room: Room) -> None:
+        count = len(reason)
+        columns, parameters, found = room
         rows = (value for link in self.links for value in parameters_of(machine.links[link]))
         with np.errstate(all="ignore"):
-            for row, value in zip(parameters, rows, strict=True):
+            for row, value in zip(parameters[:-1], rows, strict=True):
                 row[:] = np.ravel(value)
-            for k, square in enumerate(self.squares):
-                figures[:, k] = square.of(parameters)
-        reason[wrong(machine, self.base, named)] = NO_MACHINE
+            np.matmul(self.rows, parameters, out=found)
+            for k, (square, ends) in enumerate(zip(self.squares, pairwise(self.ends), strict=True)):
+                figures[:, k] = square.of(found[slice(*ends), :count])
+        if not self._all_usual(columns[:, :count]):
+            named = dict(zip(self.paths, columns[:, :, None], strict=True))
+            reason[wrong(machine, self.base, named)[:count]] = NO_MACHINE
+
+    def _all_usual(self, columns: Array) -> bool:
+        """Whether a glance at numbers (d, P) tells that all of these designs are machines."""
+        low, high = columns.min(axis=1), columns.max(axis=1)
+        usual = (low >= -checks.HUGE) & (high <= checks.HUGE)
+        usual &= (low >= checks.TINY) | (high <= -checks.TINY)
+        return bool(usual.all() and np.all(low[self.not_negative] > 0))
 
     # -- made once ---------------------------------------------------------------------------------
 

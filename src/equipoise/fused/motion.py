@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.fused.source import Sheet
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import planar
+from equipoise.mechanism.builder import planar, size_of_bodies
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.steps import Call, Rotation, RunningAngle, Step, p, u
@@ -25,6 +25,9 @@ class Written:
         gear follows a link that a dyad moves.
     orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
     points : those that are known.
+    apart : number of a dyad with a block -> identifier of how far, over the size of the machine and
+        squared, the block is from its guide's pivot.  Near there the number drops too fast to tell
+        between the crank angles.
     """
 
     def __init__(self, linkage: Linkage) -> None:
@@ -32,6 +35,7 @@ class Written:
         self.counted = any(isinstance(step, RunningAngle) for step in linkage.motion)
         self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
         self.points = set(self.machine.frame)
+        self.apart: dict[str, str] = {}
 
     def name(self, value: str) -> str:
         return self.sheet.name(value)
@@ -64,9 +68,13 @@ class Written:
         """Identifier of the crank's ``speed`` or ``acceleration``."""
         return self.sheet.slot(key, lambda found: getattr(found.machine.drive, key), vector=False)
 
-    def numbers(self) -> list[str]:
-        """Identifiers of the dyads' own numbers, in the order in which they are solved."""
-        return [self.name(g.number) for g in self.linkage.groups if g.number is not None]
+    def numbers(self) -> dict[str, int]:
+        """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
+        dyad that it tells of, by its place in the order in which they are solved.
+        """
+        own = [g.number for g in self.linkage.groups if g.number is not None]
+        found = {self.name(number): k for k, number in enumerate(own)}
+        return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
 
 
 def write_motion(writer: Written) -> None:
@@ -98,9 +106,7 @@ def write_step(writer: Written, step: Step, here: Find) -> None:
     """Write a step; `here` finds it in the linkage of other designs."""
     sheet = writer.sheet
     if isinstance(step, RunningAngle):
-        name = writer.name(f"phi({step.link})")
-        sheet.put(f"phi({step.link})", f"running({writer.name(f'u({step.link})')}, before_{name})")
-        sheet.running[step.link] = name
+        _write_running_angle(writer, step.link)
     elif isinstance(step, Rotation):
         if writer.counted:
             sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
@@ -109,6 +115,21 @@ def write_step(writer: Written, step: Step, here: Find) -> None:
             _write_uniform_gear(writer, step)
         else:
             _write_call(writer, step, here)
+
+
+def _write_running_angle(writer: Written, link: str) -> None:
+    """The angle of a link that a dyad moves: that of the base, and what lies between them.
+
+    Nothing is counted on from crank angle to crank angle, which would keep the loop from handling
+    several at once.
+    """
+    sheet, cycle = writer.sheet, writer.linkage.cycle
+    base = sheet.row(f"angle({link} of base)", lambda theta: cycle.reference(link, theta))
+    cos = sheet.row(f"cos({link} of base)", lambda theta: np.cos(cycle.reference(link, theta)))
+    sin = sheet.row(f"sin({link} of base)", lambda theta: np.sin(cycle.reference(link, theta)))
+    between = sheet.put(f"between({link})", f"{writer.name(f'u({link})')} * ({cos} - 1j * {sin})")
+    sheet.put(f"phi({link})", f"{base} + angle_of({between})")
+    sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
 
 
 def _write_call(writer: Written, step: Call, here: Find) -> None:
@@ -120,6 +141,11 @@ def _write_call(writer: Written, step: Call, here: Find) -> None:
         vector = isinstance(value, complex | np.complexfloating)
         arguments.append(writer.sheet.slot(what, _parameter(here, place), vector))
     writer.sheet.call(kernel, arguments, step.outputs)
+    if step.kernel is kernels.rpr:
+        size = writer.sheet.slot("size", lambda found: size_of_bodies(found.machine), vector=False)
+        way = f"({arguments[0]} - {arguments[3]}) * (1 / {size})"
+        number = step.outputs[-1]
+        writer.apart[number] = writer.sheet.put(f"apart {number}", f"dot({way}, {way})")
     writer.points.update(name[2:-1] for name in step.outputs if name.startswith("p("))
 
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import keyword
 import re
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,7 +39,7 @@ ADD = {
 PLACE = {"highest_at": ">", "lowest_at": "<"}
 """Beside its place an extreme is found by a branch, which costs the loop its speed."""
 RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
-RESERVED |= {*keyword.kwlist, "smallest", "greatest", "running", "rotation", "complex", "range"}
+RESERVED |= {*keyword.kwlist, "smallest", "greatest", "angle_of", "rotation", "complex", "range"}
 RESERVED |= {"state", "loop", "table", "grid", "out", "i", "k"}
 
 
@@ -66,38 +66,38 @@ class Source:
 
     slots : columns of its table, in order; a vector takes two.
     rows : rows of its grid; those of vectors take two.
-    dyads : how many have a number of their own.
-    running : links whose angle is counted on from crank angle to crank angle.
+    watched : dyads that numbers tell of; the first time it is the dyad's own number.
+    running : links whose angle is taken from that of the base.
     """
 
     text: str
     slots: tuple[Slot, ...]
     rows: tuple[Row, ...]
-    dyads: int
+    watched: tuple[int, ...]
     running: tuple[str, ...]
     gathered: Gathered
 
     @property
     def width(self) -> int:
         """Columns of what it fills: what is gathered, and those below."""
-        return len(self.gathered.columns) + 2 * self.dyads + len(self.running)
+        return len(self.gathered.columns) + 2 * len(self.watched) + len(self.running)
 
     @property
     def weakest(self) -> slice:
-        """Columns of the smallest number of each dyad, in the order in which they are solved."""
+        """Columns of the smallest value of each number that is watched."""
         first = len(self.gathered.columns)
-        return slice(first, first + self.dyads)
+        return slice(first, first + len(self.watched))
 
     @property
     def strongest(self) -> slice:
-        """Columns of the largest number of each dyad."""
-        first = len(self.gathered.columns) + self.dyads
-        return slice(first, first + self.dyads)
+        """Columns of the largest value of each of them."""
+        first = len(self.gathered.columns) + len(self.watched)
+        return slice(first, first + len(self.watched))
 
     @property
-    def windings(self) -> slice:
-        """Columns of the turns of the running links: whole but for rounding."""
-        return slice(len(self.gathered.columns) + 2 * self.dyads, self.width)
+    def nearest(self) -> slice:
+        """Columns of how near the running links stay to the base's: smallest cosine between."""
+        return slice(len(self.gathered.columns) + 2 * len(self.watched), self.width)
 
 
 class Sheet:
@@ -148,15 +148,14 @@ class Sheet:
 
 
 def written(
-    sheet: Sheet, signals: Sequence[str], numbers: Sequence[str], gathered: Gathered
+    sheet: Sheet, signals: Sequence[str], numbers: Mapping[str, int], gathered: Gathered
 ) -> Source:
     """Put ``state`` and ``loop`` around the lines.
 
     signals : identifiers of the signals, in the order of `gathered`; numbers : of the dyads' own
-        numbers, in the order in which they are solved.
+        numbers and what else is watched, each with the dyad that it tells of.
     """
-    before = [f"before_{angle}" for angle in sheet.running.values()]
-    arguments = [*sheet.rows, *sheet.slots, *before]
+    arguments = [*sheet.rows, *sheet.slots]
     results = [*signals, *numbers, *sheet.running.values()]
     text = "\n".join(
         [
@@ -168,7 +167,7 @@ def written(
             f"    return {', '.join(results)},",
             "",
             "",
-            *_loop(sheet, gathered, len(numbers), arguments, before),
+            *_loop(sheet, gathered, len(numbers), arguments),
             "",
         ]
     )
@@ -176,42 +175,38 @@ def written(
         text,
         tuple(sheet.slots.values()),
         tuple(sheet.rows.values()),
-        len(numbers),
+        tuple(numbers.values()),
         tuple(sheet.running),
         gathered,
     )
 
 
-def _loop(
-    sheet: Sheet, gathered: Gathered, dyads: int, arguments: list[str], before: list[str]
-) -> list[str]:
+def _loop(sheet: Sheet, gathered: Gathered, dyads: int, arguments: list[str]) -> list[str]:
     signals = {signal: f"x{k}" for k, signal in enumerate(gathered.signals)}
     names = [f"g{k}" for k in range(len(gathered.columns))]
     numbers = [f"n{k}" for k in range(dyads)]
+    cosines = [f"c{k}" for k in range(len(sheet.running))]
     extremes = [f"{kind}_{number}" for kind in ("weakest", "strongest") for number in numbers]
+    extremes += [f"nearest_{cosine}" for cosine in cosines]
     return [
         "def loop(table, grid, out):",
         "    for i in range(table.shape[0]):",
         *(f"        {line}" for line in _unpacked(sheet)),
-        *(f"        {name} = 0.0" for name in before),
         *(
             f"        {name} = {START[kind]}"
             for name, (_, kind) in zip(names, gathered.columns, strict=True)
         ),
-        *(f"        {name} = {'1e300' if name[0] == 'w' else '-1e300'}" for name in extremes),
+        *(f"        {name} = {'-1e300' if name[0] == 's' else '1e300'}" for name in extremes),
         "        for k in range(grid.shape[1]):",
         *(f"            {name} = grid[{k}, k]" for k, name in enumerate(sheet.rows)),
-        f"            {', '.join([*signals.values(), *numbers, *before])}, = state("
+        f"            {', '.join([*signals.values(), *numbers, *cosines])}, = state("
         f"{', '.join(arguments)})",
         *(f"            {line}" for line in _gathering(gathered, signals, names)),
         *(f"            weakest_{n} = smallest(weakest_{n}, {n})" for n in numbers),
         *(f"            strongest_{n} = greatest(strongest_{n}, {n})" for n in numbers),
-        *_first_angles(before),
+        *(f"            nearest_{c} = smallest(nearest_{c}, {c})" for c in cosines),
         *(f"        out[i, {k}] = {name}" for k, name in enumerate(names)),
-        *(
-            f"        out[i, {len(names) + k}] = {name}"
-            for k, name in enumerate([*extremes, *_windings(before)])
-        ),
+        *(f"        out[i, {len(names) + k}] = {name}" for k, name in enumerate(extremes)),
     ]
 
 
@@ -239,14 +234,3 @@ def _gathering(gathered: Gathered, signals: dict[str, str], names: list[str]) ->
             yield f"if {x} {PLACE[f'{kind}_at']} {name}:"
             yield f"    {name} = {x}"
             yield f"    {place} = k"
-
-
-def _first_angles(before: list[str]) -> Iterable[str]:
-    if before:
-        yield "            if k == 0:"
-        yield from (f"                first_{name} = {name}" for name in before)
-
-
-def _windings(before: list[str]) -> list[str]:
-    """Whole turns of the links whose angle is counted on: `rint` of this, once round."""
-    return [f"({name} - first_{name}) * {1 / (2 * np.pi)!r}" for name in before]

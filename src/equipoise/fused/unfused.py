@@ -15,17 +15,13 @@ AT_A_TIME = 16_384
 """Designs times crank angles, so that the values of a state stay in the processor's cache."""
 
 
-def _running(u: Array, before: float) -> Array:
-    return np.unwrap(np.angle(u), axis=-1)
-
-
 def _rotation(angle: Array) -> Array:
     turned: Array = np.exp(1j * angle)
     return turned
 
 
 SUPPORT = SimpleNamespace(
-    smallest=np.minimum, greatest=np.maximum, running=_running, rotation=_rotation
+    smallest=np.minimum, greatest=np.maximum, angle_of=np.angle, rotation=_rotation
 )
 
 
@@ -41,19 +37,18 @@ def run(source: Source, state: Callable[..., Any], table: Array, grid: Array) ->
 
 
 def _fill(out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array) -> None:
-    arguments = [*grid, *_unpacked(source, table), *(0.0 for _ in source.running)]
+    arguments = [*grid, *_unpacked(source, table)]
     shape = (len(table), grid.shape[1])
     values = [np.broadcast_to(value, shape) for value in state(*arguments)]
     signals = dict(zip(source.gathered.signals, values, strict=False))
     for k, (signal, kind) in enumerate(source.gathered.columns):
         out[:, k] = _GATHER[kind](signals[signal])
-    numbers = values[len(signals) : len(signals) + source.dyads]
-    angles = values[len(signals) + source.dyads :]
-    for place, ways in ((source.weakest, np.min), (source.strongest, np.max)):
-        for column, number in zip(out[:, place].T, numbers, strict=True):
+    numbers = values[len(signals) : len(signals) + len(source.watched)]
+    cosines = values[len(signals) + len(source.watched) :]
+    places = (source.weakest, np.min, numbers), (source.strongest, np.max, numbers)
+    for place, ways, found in (*places, (source.nearest, np.min, cosines)):
+        for column, number in zip(out[:, place].T, found, strict=True):
             column[:] = ways(number, axis=1)
-    for column, angle in zip(out[:, source.windings].T, angles, strict=True):
-        column[:] = (angle[:, -1] - angle[:, 0]) / (2 * np.pi)
 
 
 def _unpacked(source: Source, table: Array) -> list[Array]:

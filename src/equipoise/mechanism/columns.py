@@ -73,8 +73,10 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
 def linkage_of(machine: Machine, base: Linkage) -> Linkage:
     """The linkage of a machine with columns, in the order in which its base is solved."""
     joints = replace(base.joints, sliders=machine.sliders, gears=machine.gears)
+    needed = base.needed_references
+    start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
     with np.errstate(all="ignore"):
-        return ordered(machine, joints)
+        return ordered(machine, joints, start)
 
 
 def massive_link(path: str) -> str | None:

@@ -123,11 +123,15 @@ def _assemble(machine: Machine) -> Linkage:
     return linkage
 
 
-def ordered(machine: Machine, joints: Structure) -> Linkage:
-    """Order the links into steps, whose numbers are columns where those of the machine are."""
+def ordered(machine: Machine, joints: Structure, start: State | None = None) -> Linkage:
+    """Order the links into steps, whose numbers are columns where those of the machine are.
+
+    start : references at crank angle 0, so that running angles begin in the same turn as those.
+    """
     drive = machine.drive.link
     pivot = drive_pivot(joints, drive)
     builder = Builder(machine, points=set(machine.frame), running={FRAME, drive})
+    builder.now.update(start or {})
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
     groups = []

@@ -17,7 +17,7 @@ from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.fused.batch import Batch
 from equipoise.fused.figures import GATHERED, PLACES, Figure, figure_of
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Gear, Load, Machine
+from equipoise.mechanism.model import Gear, Load, Machine, Slider
 from support.batches import by_numpy, known_of, wanted_of
 from support.designs import (
     Array,
@@ -103,21 +103,22 @@ def test_four_bars_about_the_border(power: int, numpy_engine: None) -> None:
     rng = np.random.default_rng(-power)
     offs = rng.choice([-1, 1], 24) * 10.0 ** rng.uniform(power, power + 2, 24)
     values = np.array([at_the_border(rng, off) for off in offs])
-    assert {0, 2} <= set(same_reasons(FOUR, named(FOUR, *LENGTHS), values))
+    counts = COUNTS if power > -8 else COUNTS[:2]
+    assert {0, 2} <= set(same_reasons(FOUR, named(FOUR, *LENGTHS), values, counts))
 
 
 def test_four_bars_at_a_change_point(numpy_engine: None) -> None:
     """In whatever direction the crank lies there, be it between the crank angles or not."""
     rng = np.random.default_rng(3)
     values = np.array([at_the_border(rng, 0.0) for _ in range(12)])
-    assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values, (60, 128))) == {3}
+    assert set(same_reasons(FOUR, named(FOUR, *LENGTHS), values, (128,))) == {3}
 
 
 def test_guides_that_come_to_lie_parallel(numpy_engine: None) -> None:
     """The number of two guides is a square: it touches zero there and is above it all around."""
     base = make("crossed_guides", 1).machine
     numbers = geometry_of(base, 0.3)
-    values = drawn(numbers, 20, 1)
+    values = drawn(numbers, 12, 1)
     assert {0, 3} <= set(same_reasons(base, numbers, values, (128,)))
 
 
@@ -181,6 +182,27 @@ def test_designs_about_the_border(kind: str, numpy_engine: None) -> None:
     assert {0, 2} <= set(same_reasons(base, numbers, values, (60, 128)))
 
 
+def test_block_that_passes_near_the_pivot_of_its_guide(numpy_engine: None) -> None:
+    """The pivot may lie closer to the block than the guide's offset for a moment only."""
+    base = machine(
+        {"A": (0.0, 0.0), "D": (2.0, 0.0)},
+        {
+            "crank": heavy(A=(0.0, 0.0), B=(1.0, 0.0)),
+            "block": heavy(B=(0.0, 0.0)),
+            "rocker": heavy(D=(0.0, 0.0), H=(0.5, 0.1)),
+        },
+        assembly={"B": "forward"},
+        sliders=(Slider("block", "B", "rocker", "H", 0.0, 0.0),),
+    )
+    rng = np.random.default_rng(0)
+    values = []
+    for offset in 10 ** rng.uniform(-3, -1, 40):
+        gap = offset * rng.uniform(0.2, 1.8) * rng.choice([-1, 1])
+        values.append([*laid(rng, 1 + gap), offset])
+    numbers = named(base, "frame.points.D.x", "frame.points.D.y", "links.rocker.points.H.y")
+    assert set(same_reasons(base, numbers, np.array(values))) == {0, 2}
+
+
 def five_bar(ratio: float) -> Machine:
     return machine(
         {"A": (0.0, 0.0), "E": (3.0, 0.0)},
@@ -225,7 +247,7 @@ WANTED = [*wanted_of(SIGNALS[:2], "rms", "peak_to_peak"), *wanted_of(SIGNALS[2:]
 @cache
 def compiled_batch(angles: int | None = None, threads: int | None = 1) -> Batch:
     """The same loop for all tests below."""
-    return Batch(FOUR, paths_of(numbers_of(FOUR)), WANTED, angles=angles, threads=threads)
+    return Batch(FOUR, paths_of(numbers_of(FOUR)), WANTED, angles, 1e-2, threads)
 
 
 def mixed(count: int, seed: int = 0) -> Array:

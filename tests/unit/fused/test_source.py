@@ -27,7 +27,7 @@ from support.designs import drawn, numbers_of, paths_of
 from support.machines import KINDS, make
 from unit.mechanism.build import four_bar
 
-SUPPORT = {"running", "rotation", "smallest", "greatest", "complex"}
+SUPPORT = {"angle_of", "rotation", "smallest", "greatest", "complex"}
 
 
 def source_of(machine: Machine, *signals: str) -> Source:
@@ -50,7 +50,7 @@ def test_state_calls_kernels_on_what_it_knows(kind: str) -> None:
     source = source_of(make(kind, 0).machine)
     state = state_of(source)
     known = {argument.arg for argument in state.args.args}
-    assert len(known) == len(source.rows) + len(source.slots) + len(source.running)
+    assert len(known) == len(source.rows) + len(source.slots)
     formulas = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
     for line in state.body:
         names = [node for node in ast.walk(line) if isinstance(node, ast.Name)]
