@@ -43,6 +43,7 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/vibration.py
 	$(BIN)/python benchmarks/balancing.py
 	$(BIN)/python benchmarks/tools.py
+	$(BIN)/python benchmarks/studies.py
 	$(BIN)/python benchmarks/startup.py
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
 

@@ -1,0 +1,217 @@
+"""Many designs, beside the ways in which they are computed elsewhere, and studies as a whole.
+
+The objective is that of a four-bar: RMS over 360 crank angles of vertical shaking force, shaking
+moment and drive torque.  All that compute it have to agree before any is timed.  Everything runs on
+one thread, except where more are named; times are for one design.
+"""
+
+from __future__ import annotations
+
+import one_thread  # noqa: F401  has to come before NumPy
+
+# isort: split
+import inspect
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+import c_loop
+import equipoise as eq
+import study_runs
+import sympy_four_bar
+from asked import Limit, Table, agree
+from equipoise.fused import unfused
+from equipoise.fused.batch import Batch
+from equipoise.fused.compiled import run
+from equipoise.fused.figures import Figure
+from equipoise.fused.gram import MassBatch
+from equipoise.fused.grid import all_angles, grid_of
+from equipoise.fused.table import table_of
+from equipoise.mechanism import kernels
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine
+from study_runs import ANGLES, MACHINE, SIGNALS, VARIED, designs
+from timing import in_turn
+
+try:
+    import pinocchio_four_bar
+except ModuleNotFoundError as missing:
+    if missing.name != "pinocchio":
+        raise
+    pinocchio_four_bar = None
+
+WANTED = [Figure(signal, "rms") for signal in SIGNALS]
+LIKE_FOUR_BAR = ("watt-six-bar", "stephenson-six-bar", "balance-geared-a", "geared-counterweight")
+"""The last has its gear on a link that the crank moves unevenly."""
+EXACT, CLOSE = 1e-12, 1e-9
+"""Share to which the same arithmetic agrees, and other formulas."""
+Array = np.ndarray
+Times = Mapping[str, list[float]]
+
+
+class Loop:
+    """The bare loop over designs and crank angles, whose table is filled in beforehand."""
+
+    def __init__(self, batch: Batch, values: Array) -> None:
+        self.batch, self.source = batch, batch.source
+        self.table = table_of(batch.source, batch.base, batch.paths, values).table
+        self.grid = grid_of(batch.source, all_angles(ANGLES, batch.turns))
+
+    def __call__(self) -> Array:
+        return run(self.source, self.table, self.grid)
+
+    def by_numpy(self) -> Array:
+        """The same as where Numba is missing."""
+        module = {name: one for name, one in vars(kernels).items() if inspect.isfunction(one)}
+        module |= vars(unfused.SUPPORT)
+        exec(self.source.text, module)
+        return unfused.run(self.source, module["state"], self.table, self.grid)
+
+
+def batch_of(machine: Machine, paths: tuple[str, ...], wanted: list[Figure]) -> Batch:
+    return Batch(machine, paths, wanted, angles=ANGLES, threads=1)
+
+
+def timed(tasks: Mapping[str, tuple[Callable[[], object], int]], rounds: int) -> Times:
+    """Seconds a design of tasks, each with the number of designs that it computes."""
+    times = in_turn({name: task for name, (task, _) in tasks.items()}, rounds)
+    return {name: [one / tasks[name][1] for one in each] for name, each in times.items()}
+
+
+def show(title: str, times: Times) -> None:
+    print(f"\n{title}")
+    for name, each in times.items():
+        print(f"{name:<64} {1e6 * min(each):9.3f} us   median {1e6 * median(each):9.3f} us")
+
+
+# -- one design of a four-bar ----------------------------------------------------------------------
+
+
+def beside_c(table: Table, folder: Path) -> None:
+    """The bare loop beside the same arithmetic in C."""
+    version = c_loop.gcc()
+    if version is None:
+        table.remark("kernel beside C", "gcc is not installed")
+        return
+    loop = Loop(batch_of(MACHINE, tuple(VARIED), WANTED), designs(4096))
+    tasks = {"kernel": (loop, 4096)}
+    for flags in c_loop.FLAGS:
+        in_c = c_loop.compiled(loop.source, flags, folder)
+        name = " ".join(["gcc", version, *flags])
+        agree(name, in_c(loop.table, loop.grid), loop(), EXACT)
+        tasks[name] = (lambda in_c=in_c: in_c(loop.table, loop.grid), 4096)
+    times = timed(tasks, 25)
+    show(f"bare loop, table filled in; gcc with {' '.join(c_loop.ALWAYS)} as well", times)
+    best = min((name for name in times if name != "kernel"), key=lambda name: min(times[name]))
+    table.ratio(f"kernel / C by {best}", times["kernel"], times[best], Limit(1.2))
+
+
+def beside_peers(table: Table) -> None:
+    """From numbers to figures, beside SymPy, Pinocchio and the loop run by NumPy."""
+    batch, values = batch_of(MACHINE, tuple(VARIED), WANTED), designs(16_384)
+    right, _ = batch(values)
+    tasks = {"equipoise": (lambda: batch(values), len(values))}
+    few = values[:256]
+    form = sympy_four_bar.Form(MACHINE, tuple(VARIED), ANGLES)
+    for name, at_once in {
+        "SymPy, arrays that stay in cache": 8192 // ANGLES,
+        "SymPy, all designs at once": len(few),
+        "SymPy, one design at a time": 1,
+    }.items():
+        agree(name, form(few, at_once), right[: len(few)], CLOSE)
+        tasks[name] = (lambda n=at_once: form(few, n), len(few))
+    if pinocchio_four_bar is not None:
+        tree = pinocchio_four_bar.FourBar(
+            MACHINE, {"coupler": 0, "rocker": 1, "crank": 2}, {"rocker": 3}, ANGLES
+        )
+        for name, task in {
+            "Pinocchio, all angles in a call": tree,
+            "Pinocchio, one angle in a call": tree.one_by_one,
+        }.items():
+            agree(name, task(few), right[: len(few)], CLOSE)
+            tasks[name] = (lambda task=task: task(few), len(few))
+    loop = Loop(batch, few)
+    agree("the loop by NumPy", loop.by_numpy(), loop(), EXACT)
+    tasks["without Numba: the loop by NumPy"] = (loop.by_numpy, len(few))
+    times = timed(tasks, 9)
+    show("from numbers to figures", times)
+    limits = {"SymPy, arrays": Limit(70, False), "Pinocchio, all": Limit(200, False)}
+    for name in list(tasks)[1:]:
+        limit = next((one for start, one in limits.items() if name.startswith(start)), None)
+        table.ratio(f"{name} / equipoise", times[name], times["equipoise"], limit)
+    if pinocchio_four_bar is None:
+        table.remark("Pinocchio / equipoise", "pinocchio is not installed")
+
+
+def other_machines(table: Table) -> None:
+    """The same three figures of other machines, and joint forces, beside those of the four-bar."""
+    tasks = {"four-bar": (Loop(batch_of(MACHINE, tuple(VARIED), WANTED), designs(2048)), 2048)}
+    for name in LIKE_FOUR_BAR:
+        machine = eq.load(name)
+        batch = batch_of(machine, ("drive.speed",), WANTED)
+        speeds = machine.drive.speed * np.linspace(1.0, 1.2, 512)[:, None]
+        agree(name, batch(speeds[:1])[0], analyzed(machine), CLOSE)
+        tasks[name] = (Loop(batch, speeds), 512 * batch.turns)
+    joints = [f"joints.{name}" for name, _ in assemble(MACHINE).named_reactions]
+    wanted = [*WANTED, *(Figure(joint, "rms") for joint in joints)]
+    with_joints = "four-bar with the force in every joint"
+    tasks[with_joints] = (Loop(batch_of(MACHINE, tuple(VARIED), wanted), designs(2048)), 2048)
+    times = timed(tasks, 25)
+    show(f"bare loop, a turn of {ANGLES} crank angles", times)
+    for name in LIKE_FOUR_BAR:
+        table.ratio(f"{name} / four-bar", times[name], times["four-bar"], Limit(2.2))
+    table.ratio(f"{with_joints} / without", times[with_joints], times["four-bar"])
+
+
+def analyzed(machine: Machine) -> list[float]:
+    """The three figures of one machine by the steps that NumPy runs."""
+    forces = eq.analyze(machine, ANGLES).forces
+    signals = forces.shaking_force.y, forces.shaking_moment, forces.drive_torque
+    return [float(np.sqrt(np.mean(signal**2))) for signal in signals]
+
+
+def masses(table: Table) -> None:
+    """Designs that differ in masses alone: all twelve numbers of the links vary."""
+    paths = tuple(
+        f"links.{link}.{key}"
+        for link in MACHINE.links
+        for key in ("mass", "inertia", "center_of_mass.x", "center_of_mass.y")
+    )
+    base = [x for b in MACHINE.links.values() for x in (b.mass, b.inertia, *b.center_of_mass)]
+    spread = 1 + 0.1 * np.random.default_rng(1).standard_normal((200_000, len(base)))
+    values = np.clip(spread, 0.5, 1.5) * base
+    batch = MassBatch(MACHINE, paths, WANTED, ANGLES)
+    agree(
+        "masses alone",
+        batch(values[:1000])[0],
+        batch_of(MACHINE, paths, WANTED)(values[:1000])[0],
+        CLOSE,
+    )
+    times = timed({"masses alone": (lambda: batch(values), len(values))}, 25)["masses alone"]
+    table.value("masses alone, 12 numbers", [1e9 * one for one in times], "ns", Limit(100))
+
+
+def main() -> None:
+    """Print what was measured."""
+    busy = (
+        ", ".join(f"{load:.1f}" for load in os.getloadavg()) if hasattr(os, "getloadavg") else "?"
+    )
+    print(f"{os.cpu_count()} processors; load before (1, 5 and 15 minutes): {busy}")
+    table = Table()
+    with tempfile.TemporaryDirectory() as folder:
+        beside_c(table, Path(folder))
+    beside_peers(table)
+    other_machines(table)
+    masses(table)
+    for part in (study_runs.first_call, study_runs.stored, study_runs.memory, study_runs.cluster):
+        part(table)
+    print()
+    table.print()
+
+
+if __name__ == "__main__":
+    main()
