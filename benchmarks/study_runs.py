@@ -184,7 +184,7 @@ def cluster(table: Table) -> None:
             return task
 
         one, two = ("one worker", "two workers")
-        times = in_turn({one: swept(addresses[0]), two: swept(addresses[1])}, 3)
+        times = in_turn({one: swept(addresses[0]), two: swept(addresses[1])}, 7)
     table.ratio(
         f"rate of two Dask workers / one, {DENSE} crank angles",
         times[one],

@@ -218,8 +218,9 @@ class Batch:
             strongest[some] = found[:, self.source.strongest]
         for k in some:
             for dyad in {self.source.watched[column] for column in np.flatnonzero(near[k])}:
-                weakest[k, dyad] = self._extreme(table[k : k + 1], dyad, 1)
-                strongest[k, dyad] = -self._extreme(table[k : k + 1], dyad, -1)
+                low, high = (self._extreme(table[k : k + 1], dyad, sign) for sign in (1, -1))
+                weakest[k, dyad] = min(weakest[k, dyad], low)
+                strongest[k, dyad] = max(strongest[k, dyad], -high)
 
     def _extreme(self, row: Array, dyad: int, sign: int) -> float:
         """Smallest value, times `sign`, of one dyad's number in one design, closed in on."""

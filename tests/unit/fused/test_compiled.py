@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.fused import compiled, unfused
+from equipoise.fused import compiled, support, unfused
 from equipoise.fused.batch import Batch
 from equipoise.fused.compiled import NOTICE, engine, run
 from equipoise.fused.emit import emit
@@ -88,6 +89,27 @@ def test_numpy_takes_designs_in_pieces(tmp_path: Path, monkeypatch: pytest.Monke
         for size in (1, 100, 240):
             monkeypatch.setattr(unfused, "AT_A_TIME", size)
             assert np.array_equal(run(source, table, grid), whole, equal_nan=True)
+
+
+def test_angles_and_rotations_without_calls() -> None:
+    """The polynomials are exact as far as a link may be from where that of the base is."""
+    import numba
+
+    known = support.compiled()
+    angle_of, rotation = known["angle_of"], known["rotation"]
+
+    @numba.njit
+    def both(u: Array, angles: Array, turned: Array) -> None:
+        for k in range(len(u)):
+            turned[k] = rotation(angles[k])
+            angles[k] = angle_of(u[k])
+
+    rng = np.random.default_rng(1)
+    near, any_angle = rng.uniform(-2 * pi / 3, 2 * pi / 3, 5000), rng.uniform(-100, 100, 5000)
+    angles, turned = any_angle.copy(), np.empty(5000, complex)
+    both(np.exp(1j * near), angles, turned)
+    assert np.max(np.abs(angles - near)) < 2e-15
+    assert np.max(np.abs(turned - np.exp(1j * any_angle))) < 3e-14  # of the angle's own digits
 
 
 @pytest.fixture
