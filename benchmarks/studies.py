@@ -139,7 +139,7 @@ def beside_peers(table: Table) -> None:
     tasks["without Numba: the loop by NumPy"] = (loop.by_numpy, len(few))
     times = timed(tasks, 9)
     show("from numbers to figures", times)
-    limits = {"SymPy, arrays": Limit(70, False), "Pinocchio, all": Limit(200, False)}
+    limits = {"SymPy": Limit(70, False), "Pinocchio": Limit(200, False)}
     for name in list(tasks)[1:]:
         limit = next((one for start, one in limits.items() if name.startswith(start)), None)
         table.ratio(f"{name} / equipoise", times[name], times["equipoise"], limit)
