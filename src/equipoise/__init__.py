@@ -3,7 +3,7 @@
 >>> import equipoise as eq
 >>> analysis = eq.analyze(eq.load("yamashita-1"))
 >>> round(analysis.summary["shaking_force.y"].peak, 1)
-25.5
+23.1
 """
 
 from __future__ import annotations
@@ -47,6 +47,7 @@ _HOMES = {
     "Hand": "tools.model",
     "Harness": "tools.model",
     "Impedance": "tools.model",
+    "Landscape": "studies.landscape",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -126,6 +127,7 @@ _HOMES = {
     "harmonics": "signals",
     "identify_decay": "measured.decay",
     "json_schema": "io.models",
+    "landscape": "studies.landscape",
     "least_moments": "balancing.least",
     "load": "io.models",
     "load_study": "io.studies",
@@ -158,9 +160,11 @@ _HOMES = {
     "verdict": "balancing.verdict",
     "vibrate_freely": "structures.free",
     "vibrate_tool": "tools.modes",
+    "view": "web.widget",
     "weigh_orders": "exposure.measured",
     "weigh_signal": "exposure.measured",
     "weigh_spectrum": "exposure.measured",
+    "write_report": "report.writing",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -277,6 +281,7 @@ if TYPE_CHECKING:
     from equipoise.planting.search import fit_planting as fit_planting
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
+    from equipoise.report.writing import write_report as write_report
     from equipoise.results import Analysis as Analysis
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
@@ -292,6 +297,8 @@ if TYPE_CHECKING:
     from equipoise.studies.best import Best as Best
     from equipoise.studies.best import best as best
     from equipoise.studies.export import export as export
+    from equipoise.studies.landscape import Landscape as Landscape
+    from equipoise.studies.landscape import landscape as landscape
     from equipoise.studies.run import sweep as sweep
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
@@ -338,6 +345,7 @@ if TYPE_CHECKING:
     from equipoise.tools.wishes import DesignLimit as DesignLimit
     from equipoise.tools.wishes import DesignPlan as DesignPlan
     from equipoise.tools.wishes import DesignVariable as DesignVariable
+    from equipoise.web.widget import view as view
 
 
 def __getattr__(name: str) -> Any:

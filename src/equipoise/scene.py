@@ -45,11 +45,17 @@ class Guide:
     """A sliding joint.
 
     point : of the block.  way : direction of its line, (N,) complex of size 1.
+    on : the body that has the line.
+    behind, ahead : how far the line reaches from the block against and along its way, so that it
+        holds the block at all N crank angles, (N,), m.
     """
 
     name: str
     point: str
     way: Array
+    on: str
+    behind: Array
+    ahead: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,6 +67,7 @@ class Scene:
     pins : points that bodies share.
     mass_centers : of links whose mass is known; (N,) complex, m.
     springs : ends of each, on its link and on the frame, as names of points.
+    angles : of each link, counted on through the turns; (N,) rad.
     """
 
     crank_angle: Array
@@ -72,6 +79,7 @@ class Scene:
     wheels: tuple[Wheel, ...]
     guides: tuple[Guide, ...]
     springs: tuple[tuple[str, str], ...]
+    angles: Mapping[str, Array]
 
     @classmethod
     def of(cls, motion: Motion) -> Scene:
@@ -88,7 +96,15 @@ class Scene:
             tuple(_wheels(motion)),
             tuple(_guides(motion)),
             tuple((spring.point, spring.to) for spring in machine.springs),
+            {name: link.angle for name, link in motion.links.items()},
         )
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Points that join nothing, such as the tip of a coupler."""
+        joining = {*self.frame, *self.pins, *(guide.point for guide in self.guides)}
+        joining.update(point for spring in self.springs for point in spring)
+        return tuple(name for name in self.places if name not in joining)
 
     @property
     def box(self) -> tuple[complex, complex]:
@@ -127,8 +143,15 @@ def _wheels(motion: Motion) -> Iterator[Wheel]:
 
 def _guides(motion: Motion) -> Iterator[Guide]:
     for slider in motion.machine.sliders:
-        angle = motion.links[slider.on].angle if slider.on != FRAME else 0 * motion.crank_angle
-        yield Guide(slider.name, slider.point, np.exp(1j * (angle + slider.direction)))
+        place = motion.points[slider.point].place
+        angle = 0 * motion.crank_angle
+        if slider.on != FRAME:
+            angle = motion.links[slider.on].angle
+            place = place - motion.points[next(iter(motion.machine.points_of(slider.on)))].place
+        way = np.exp(1j * (angle + slider.direction))
+        along = (place * way.conj()).real
+        ends = along - along.min(), along.max() - along
+        yield Guide(slider.name, slider.point, way, slider.on, *ends)
 
 
 def hull(places: Array) -> Array:

@@ -12,6 +12,7 @@ from equipoise.plotting.crank import angle_step
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.paths import CM, Mark, Paths
 from equipoise.plotting.style import INK, MAIN, MARKS, NORMAL, SMALL, shown
+from equipoise.words import say
 
 ARROWS_IN = ((0.12, 0.45), (0.55, 0.88))
 """Between which parts of the way from exit to entry the heads of arrows are."""
@@ -84,7 +85,7 @@ def hill_spacing(axes: Axes, paths: Paths, labels: Labels, inch: float) -> None:
     left, right = axes.get_xlim()
     deep = CM * float(np.min(paths.over_ground(paths.ways).imag))
     y = deep - 0.24 * inch
-    text = f"hill spacing {shown(abs(spacing))} cm"
+    text = say("hill spacing {spacing} cm", spacing=shown(abs(spacing)))
     shown_whole = left < spacing < right and paths.curve.turns == 1
     if shown_whole:
         for x in (0.0, spacing):
@@ -109,7 +110,7 @@ def hill_spacing(axes: Axes, paths: Paths, labels: Labels, inch: float) -> None:
 def travel(axes: Axes, paths: Paths, labels: Labels) -> None:
     """An arrow above the path in the direction in which the machine drives."""
     text = axes.annotate(
-        "machine drives",
+        say("machine drives"),
         (0.5, 1),
         xycoords="axes fraction",
         xytext=(0, -6),

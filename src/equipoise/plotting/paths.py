@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.mechanism.motion import move
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.ground import GroundPath
 from equipoise.plotting.linkage import Sketch, sketch
+from equipoise.scene import Scene
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -59,7 +61,8 @@ class Paths:
     @cached_property
     def drawn(self) -> Sketch:
         """The machine at the lowest point of the tip."""
-        return sketch(self.curve, self.figures["lowest.crank_angle"])
+        lowest = self.figures["lowest.crank_angle"]
+        return sketch(Scene.of(move(self.figures.machine, [lowest])))
 
     def way_of(self, name: str, after: float = 0.0) -> float:
         """When an instant comes for the first time at or after another way."""

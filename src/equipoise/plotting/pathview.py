@@ -18,6 +18,7 @@ from equipoise.plotting.style import (
     EARTH,
     FAINT,
     INK,
+    INSTANTS,
     LINES,
     MAIN,
     MARKS,
@@ -29,6 +30,7 @@ from equipoise.plotting.style import (
     heading,
     short,
 )
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -46,9 +48,13 @@ def path_figure(figures: PlantingFigures) -> Figure:
     height = BOTTOM + TOP + row[0].height
     figure = blank(width, height)
     tip, drive = short(figures.planting.tip), short(figures.machine.drive.link)
-    what = f"Path of the tip {tip}, linkage at the lowest point; numbers: angle of {drive}, deg"
+    what = say(
+        "Path of the tip {tip}, linkage at the lowest point; numbers: angle of {link}, deg",
+        tip=tip,
+        link=drive,
+    )
     if paths.drives and figures.planting.units_per_turn > 1:
-        what += "; dashed: other units"
+        what += "; " + say("dashed: other units")
     heading(figure, figures.machine.title, what, LEFT)
     at = LEFT
     for panel, draw in zip(row, (_machine_panel, _ground_panel), strict=False):
@@ -67,13 +73,13 @@ def _soil(axes: Axes, panel: Panel, level: float) -> None:
 
 
 def _machine_panel(axes: Axes, paths: Paths, inch: float) -> None:
-    axes.set_xlabel("x in the frame, cm")
-    axes.set_ylabel("height y in the frame, cm")
+    axes.set_xlabel(say("x in the frame, cm"))
+    axes.set_ylabel(say("height y in the frame, cm"))
     labels = Labels(axes)
     labels.avoid(axes.get_xlim(), [CM * paths.level] * 2)
     draw_sketch(axes, paths.drawn, CM, inch)
-    for points in paths.drawn.links.values():
-        outline = CM * np.array([*points.values(), next(iter(points.values()))])
+    for around in paths.drawn.outlines.values():
+        outline = CM * np.append(around, around[0])
         labels.avoid(outline.real, outline.imag)
     _path(axes, labels, paths, paths.on_machine(paths.cycle))
     if paths.tray.size:
@@ -89,15 +95,15 @@ def _machine_panel(axes: Axes, paths: Paths, inch: float) -> None:
     for name, place in paths.drawn.places.items():
         _put(labels, Mark(short(name), place, 45), near=5, fontweight="bold")
     for mark in marks:
-        _put(labels, mark)
+        _put(labels, replace(mark, name=say(INSTANTS[mark.name])))
     if paths.tray.size:
-        _put(labels, Mark("tray", complex(np.mean(paths.tray)), 0), fontstyle="italic")
+        _put(labels, Mark(say("tray"), complex(np.mean(paths.tray)), 0), fontstyle="italic")
     for mark in angles:
         _put(labels, mark, near=5, optional=True, color=LINES, fontsize=SMALL - 1)
 
 
 def _ground_panel(axes: Axes, paths: Paths, inch: float) -> None:
-    axes.set_xlabel("distance over ground, cm")
+    axes.set_xlabel(say("distance over ground, cm"))
     axes.tick_params(labelleft=False)
     labels = Labels(axes)
     labels.avoid(axes.get_xlim(), [CM * paths.level] * 2)
@@ -111,11 +117,11 @@ def _ground_panel(axes: Axes, paths: Paths, inch: float) -> None:
     hill_spacing(axes, paths, labels, inch)
     travel(axes, paths, labels)
     for mark in _beside(marks, paths.figures["forward_speed"] > 0):
-        _put(labels, mark)
+        _put(labels, replace(mark, name=say(INSTANTS[mark.name])))
     for number, place in enumerate(paths.crossings()):
         axes.plot(CM * place.real, CM * place.imag, "x", color=INK, markersize=5, zorder=4)
         if number == 0:
-            _put(labels, Mark("crossing of the loop", place, 0), near=9)
+            _put(labels, Mark(say("crossing of the loop"), place, 0), near=9)
 
 
 def _beside(marks: list[Mark], ahead: bool) -> list[Mark]:

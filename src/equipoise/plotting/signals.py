@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import ceil
 from typing import TYPE_CHECKING, Any
 
@@ -12,21 +12,10 @@ from matplotlib.figure import Figure
 
 from equipoise import signals
 from equipoise.mechanism.instants import largest, smallest
-from equipoise.plotting.crank import (
-    LEFT,
-    RIGHT,
-    WIDTH,
-    Line,
-    closed,
-    crank_axis,
-    crank_label,
-    draw,
-    event_lines,
-    mark,
-    signal_figure,
-    soil_shade,
-)
+from equipoise.plotting.crank import Line, closed, crank_axis, crank_label, draw, mark
+from equipoise.plotting.stay import event_lines, event_names, soil_shade
 from equipoise.plotting.style import LINES, NORMAL, STRESS, blank, heading, short
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics import Forces, JointForce
@@ -34,17 +23,55 @@ if TYPE_CHECKING:
 
 Array = np.ndarray[Any, Any]
 
-SHADED = "shaded: tip in the soil"
+SHADED = to_say("shaded: tip in the soil")
 AIR = (0, (4, 1.6))
 """Dashes of signals in the air."""
+WIDTH, HEIGHT = 7.2, 3.6
+LEFT, RIGHT, BOTTOM, TOP = 0.78, 0.2, 0.52, 0.92
+"""Inches: the picture and its margins."""
 HEAD, ROW, FOOT, BETWEEN = 0.55, 1.65, 0.34, 0.6
 """Inches: height of the heading, of a row of small axes, of the label below; between columns."""
+
+
+def signal_figure(figures: PlantingFigures, what: str, label: str, lines: Sequence[Line]) -> Figure:
+    """One pair of axes: signals against crank angle, with the stay in the soil."""
+    figure = blank(WIDTH, HEIGHT)
+    axes = figure.add_axes(
+        (
+            LEFT / WIDTH,
+            BOTTOM / HEIGHT,
+            1 - (LEFT + RIGHT) / WIDTH,
+            1 - (BOTTOM + TOP) / HEIGHT,
+        )
+    )
+    heading(figure, figures.machine.title, what, LEFT)
+    crank_axis(axes, figures.curve.turns)
+    axes.set_xlabel(_crank_label(figures))
+    axes.set_ylabel(label)
+    draw(axes, lines)
+    soil_shade(figures, axes)
+    event_names(figures, axes)
+    mark(axes, lines, event_lines(figures, axes))
+    if len(lines) > 1:
+        figure.legend(
+            handles=axes.get_lines()[: len(lines)],
+            loc="upper right",
+            bbox_to_anchor=(1 - RIGHT / WIDTH, 1 - 0.24 / HEIGHT),
+            ncols=len(lines),
+            borderaxespad=0,
+        )
+    return figure
+
+
+def _crank_label(figures: PlantingFigures) -> str:
+    return crank_label(figures.machine.drive.link, figures["speed"])
 
 
 def ratio_figure(figures: PlantingFigures, link: str) -> Figure:
     """Angular velocity of a link over that of the drive."""
     curve = figures.curve
-    theta, values = closed(figures, curve.theta, curve.family.rates(curve.grid.state, link)[0][0])
+    rates = curve.family.rates(curve.grid.state, link)[0][0]
+    theta, values = closed(curve.theta, rates, curve.period)
     marked = [
         (figures[f"ratio.{link}.{which}_at"], figures[f"ratio.{link}.{which}"])
         for which in ("max", "min")
@@ -52,20 +79,35 @@ def ratio_figure(figures: PlantingFigures, link: str) -> Figure:
     drive = figures.machine.drive.link
     return signal_figure(
         figures,
-        f"Angular velocity of {short(link)} over that of {short(drive)}; {SHADED}",
-        f"angular velocity ratio, {short(link, 14)} / {short(drive, 14)}",
+        say("Angular velocity of {link} over that of {drive}", link=short(link), drive=short(drive))
+        + f"; {say(SHADED)}",
+        say(
+            "angular velocity ratio, {link} / {drive}",
+            link=short(link, 14),
+            drive=short(drive, 14),
+        ),
         [Line(theta, values, marked=marked)],
     )
 
 
 QUANTITIES = {
-    "velocity": ("Velocity", "velocity", "m/s", "speed"),
-    "acceleration": ("Acceleration", "acceleration", "m/s²", "acceleration"),
+    "velocity": (
+        to_say("Velocity of the tip {tip} relative to the machine"),
+        to_say("velocity"),
+        "m/s",
+        "speed",
+    ),
+    "acceleration": (
+        to_say("Acceleration of the tip {tip} relative to the machine"),
+        to_say("acceleration"),
+        "m/s²",
+        "acceleration",
+    ),
 }
 PARTS = {
     "": ("", ""),
-    "-x": (", part along x", " x"),
-    "-y": (", part along y", " y"),
+    "-x": (to_say("part along x"), " x"),
+    "-y": (to_say("part along y"), " y"),
 }
 
 
@@ -74,18 +116,17 @@ def tip_figures(figures: PlantingFigures) -> Iterator[tuple[str, Figure]]:
     for name, (title, label, unit, _) in QUANTITIES.items():
         for part, (told, suffix) in PARTS.items():
             line = tip_line(figures, name, part)
-            what = f"{title} of the tip {short(figures.planting.tip)} relative to the machine{told}"
-            yield (
-                name + part,
-                signal_figure(figures, f"{what}; {SHADED}", f"{label}{suffix}, {unit}", [line]),
-            )
+            what = say(title, tip=short(figures.planting.tip))
+            what += f", {say(told)}" if told else ""
+            axis = f"{say(label)}{suffix}, {unit}"
+            yield name + part, signal_figure(figures, f"{what}; {say(SHADED)}", axis, [line])
 
 
 def tip_line(figures: PlantingFigures, name: str, part: str = "") -> Line:
     """Velocity or acceleration of the tip, m/s or m/s2: its size, or its part "-x" or "-y"."""
     curve = figures.curve
     values = _component(_vector(figures, name, curve.theta[None]), part)[0]
-    theta, values = closed(figures, curve.theta, values)
+    theta, values = closed(curve.theta, values, curve.period)
     return Line(theta, values, marked=tuple(_extremes(figures, name, part)))
 
 
@@ -135,7 +176,8 @@ def torque_figure(figures: PlantingFigures) -> Figure:
     pair = (found.in_air.drive_torque, found.in_soil.drive_torque)
     lines = _air_and_soil(figures, *pair, both=True)
     drive = short(figures.machine.drive.link)
-    return signal_figure(figures, f"Drive torque on {drive}; {SHADED}", "drive torque, N m", lines)
+    what = f"{say('Torque of the drive on {link}', link=drive)}; {say(SHADED)}"
+    return signal_figure(figures, what, say("drive torque, {unit}", unit="N m"), lines)
 
 
 def _air_and_soil(
@@ -145,14 +187,16 @@ def _air_and_soil(
     angles = figures.forces.motion.crank_angle
     lines = []
     for name, values, color, dashes in (
-        ("in the air", air, LINES, AIR),
-        ("in the soil", soil, STRESS, "-"),
+        (say("in the air"), air, LINES, AIR),
+        (say("in the soil"), soil, STRESS, "-"),
     ):
         told = signals.figures(angles, values)
         marked = [(told.max_at, told.max), (told.min_at, told.min)] if both else []
-        if not both and name == "in the soil":
+        if not both and values is soil:
             marked = [(told.max_at, told.max)]
-        lines.append(Line(*closed(figures, angles, values), name, color, dashes, marked))
+        lines.append(
+            Line(*closed(angles, values, figures.curve.period), name, color, dashes, marked)
+        )
     return lines
 
 
@@ -163,21 +207,24 @@ def joints_figure(figures: PlantingFigures) -> Figure:
     air, soil = _joints(found.in_air), _joints(found.in_soil)
     columns = min(2, len(air))
     figure = blank(WIDTH, HEAD + ceil(len(air) / columns) * ROW + FOOT)
-    heading(figure, figures.machine.title, f"Force in each joint; {SHADED}", LEFT)
+    heading(figure, figures.machine.title, f"{say('Force in each joint')}; {say(SHADED)}", LEFT)
     for number, (name, joint) in enumerate(soil.items()):
         lines = _air_and_soil(figures, air[name].size, joint.size)
         axes = _small_axes(figure, divmod(number, columns), columns)
         axes.set_title(
-            short(f"{name}: {joint.by} on {joint.on}", 44), fontsize=NORMAL, loc="left", pad=4
+            short(say("{name}: {by} on {on}", name=name, by=joint.by, on=joint.on), 44),
+            fontsize=NORMAL,
+            loc="left",
+            pad=4,
         )
-        crank_axis(figures, axes, most=8, label=False)
+        crank_axis(axes, figures.curve.turns, most=8)
         draw(axes, lines, floor=0.0)
         soil_shade(figures, axes)
         mark(axes, lines, event_lines(figures, axes), angles=False)
     figure.text(
         (LEFT + WIDTH - RIGHT) / 2 / WIDTH,
         0.12 / figure.get_figheight(),
-        crank_label(figures),
+        _crank_label(figures),
         ha="center",
         fontsize=NORMAL,
     )
@@ -209,5 +256,5 @@ def _small_axes(figure: Figure, place: tuple[int, int], columns: int) -> Axes:
         )
     )
     if column == 0:
-        axes.set_ylabel("force, N")
+        axes.set_ylabel(say("force, {unit}", unit="N"))
     return axes

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from functools import cache
 from io import BytesIO
+from threading import RLock
 from typing import Any, Literal
 
 import matplotlib
@@ -14,6 +15,8 @@ import numpy as np
 from matplotlib import font_manager
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+
+from equipoise.words import to_say
 
 Kind = Literal["svg", "png", "pdf"]
 
@@ -34,6 +37,14 @@ MARKS = {
     "exit": "^",
 }
 """Instant of a planting stroke -> marker."""
+INSTANTS = {
+    "pick-up": to_say("pick-up"),
+    "entry": to_say("entry"),
+    "lowest": to_say("lowest"),
+    "release": to_say("release"),
+    "exit": to_say("exit"),
+}
+"""The same in words."""
 
 PARAMETERS: Any = {
     "font.size": NORMAL,
@@ -42,6 +53,7 @@ PARAMETERS: Any = {
     "axes.edgecolor": LINES,
     "axes.labelcolor": INK,
     "axes.linewidth": 0.7,
+    "axes.titley": 1.0,
     "axes.grid": True,
     "axes.axisbelow": True,
     "axes.formatter.limits": (-4, 5),
@@ -101,9 +113,31 @@ def _families() -> list[str]:
     return ["DejaVu Sans", *(name for name in OTHER_SCRIPTS if name in installed), "sans-serif"]
 
 
+_drawing = RLock()
+_styled = False
+
+
 @contextmanager
 def styled() -> Iterator[None]:
-    """Everything inside looks the same whatever the user's Matplotlib is set to."""
+    """Everything inside looks the same whatever the user's Matplotlib is set to.
+
+    Matplotlib's settings belong to the whole process, so one thread draws at a time.
+    """
+    global _styled  # noqa: PLW0603  guarded by the lock
+    with _drawing:
+        if _styled:
+            yield
+            return
+        _styled = True
+        try:
+            with _style():
+                yield
+        finally:
+            _styled = False
+
+
+@contextmanager
+def _style() -> Iterator[None]:
     with matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(PARAMETERS)
@@ -167,7 +201,7 @@ def short(name: str, most: int = 24) -> str:
     return name if len(name) <= most else f"{name[: most - 1]}\N{HORIZONTAL ELLIPSIS}"
 
 
-def free_name(name: str, taken: dict[str, Figure]) -> str:
+def free_name(name: str, taken: Iterable[str]) -> str:
     """A name that is none yet, of signs that every file system takes."""
     name = "".join("_" if sign in '/\\:*?"<>|' else sign for sign in name)[:60].rstrip(". ")
     number = 1

@@ -12,7 +12,9 @@ import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
+from equipoise.plotting.linkage import Sketch, sketch
 from equipoise.plotting.planting import drawings
+from equipoise.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
 BUNDLED = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -67,6 +69,10 @@ def odd_machines() -> dict[str, Machine]:
     }
 
 
+def sketched(machine: Machine, at: float) -> Sketch:
+    return sketch(Scene.of(eq.move(machine, [at])))
+
+
 @cache
 def read_off(name: str) -> PlantingFigures:
     return plant(eq.load(name).with_planting(soil=SOIL))
@@ -78,7 +84,16 @@ def drawn(name: str) -> dict[str, Figure]:
 
 
 def texts(figure: Figure) -> list[Text]:
-    return [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    """Every text that is drawn: not those of ticks outside their axes."""
+    outside = {
+        tick.label1
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for tick in axis.get_major_ticks()
+        if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
+    }
+    found = (text for text in figure.findobj(Text) if text.get_visible() and text.get_text())
+    return [text for text in found if text not in outside]
 
 
 def words(figure: Figure) -> str:

@@ -16,12 +16,22 @@ from matplotlib.figure import Figure
 
 import equipoise as eq
 from equipoise.planting.summary import plant
-from equipoise.plotting.crank import soil_spans
-from equipoise.plotting.linkage import draw_sketch, sketch
+from equipoise.plotting.linkage import draw_sketch
 from equipoise.plotting.paths import Paths
 from equipoise.plotting.planting import drawings
+from equipoise.plotting.stay import soil_spans
 from equipoise.plotting.style import render
-from unit.plotting.samples import BUNDLED, SOIL, arm, drawn, engine, read_off, sprung, words
+from unit.plotting.samples import (
+    BUNDLED,
+    SOIL,
+    arm,
+    drawn,
+    engine,
+    read_off,
+    sketched,
+    sprung,
+    words,
+)
 
 DRY = [
     *("path", "ratio-coupler", "ratio-rocker"),
@@ -218,26 +228,22 @@ def test_the_linkage_is_drawn_where_it_is() -> None:
     figures = read_off("kim-chung-a")
     at = figures["lowest.crank_angle"]
     motion = eq.move(figures.machine, [at])
-    for name, place in sketch(figures.curve, at).places.items():
+    for name, place in sketched(figures.machine, at).places.items():
         assert place == pytest.approx(motion.points[name].place[0], abs=1e-12)
 
 
 def test_gears_touch_and_blocks_sit_on_their_lines() -> None:
-    figures = plant(arm())
-    (sun, r_sun), (idler, r_idler), (_, other), (planet, r_planet) = sketch(
-        figures.curve, 1.0
-    ).circles
+    (sun, r_sun), (idler, r_idler), (_, other), (planet, r_planet) = sketched(arm(), 1.0).circles
     assert abs(idler - sun) == pytest.approx(r_sun + r_idler) and r_sun == pytest.approx(r_idler)
     assert abs(planet - idler) == pytest.approx(other + r_planet)
     assert other == pytest.approx(2 * r_planet)
-    drive = plant(engine())
-    ((block, way),) = sketch(drive.curve, 0.5).guides
-    assert block.real == pytest.approx(0, abs=1e-12) and abs(way.imag) == pytest.approx(1)
+    (slot,) = sketched(engine(), 0.5).slots
+    assert slot.place.real == pytest.approx(0, abs=1e-12) and abs(slot.way.imag) == pytest.approx(1)
 
 
 def test_springs_reach_from_link_to_frame() -> None:
     machine = sprung(eq.load("kim-chung-a"))
-    found = sketch(plant(machine).curve, 0.5)
+    found = sketched(machine, 0.5)
     motion = eq.move(machine, [0.5])
     hook = complex(*machine.frame["S"])
     wanted = [(motion.points[point].place[0], hook) for point in ("P", "C")]

@@ -20,6 +20,7 @@ from equipoise.plotting.marks import arrow
 from equipoise.plotting.panels import Panel
 from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, heading, short
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -46,11 +47,11 @@ FILL = 0.45
 DASHES: Any = {"room": (0, (5, 3)), "gear": (0, (8, 2, 1.5, 2)), "spring": "-"}
 COLORS = {"room": LINES, "gear": STRESS, "spring": STRESS, "move": STRESS, "mass": MAIN}
 NAMES = {
-    "mass": "added mass",
-    "move": "centre of mass, from old to new",
-    "gear": "pitch circles of new gears",
-    "spring": "new spring",
-    "room": "room",
+    "mass": to_say("added mass"),
+    "move": to_say("centre of mass, from old to new"),
+    "gear": to_say("pitch circles of new gears"),
+    "spring": to_say("new spring"),
+    "room": to_say("room"),
 }
 
 
@@ -62,13 +63,13 @@ def changes_figure(found: Balanced) -> Figure:
     figure = blank(panel.width + LEFT + RIGHT, panel.height + TOP + BOTTOM)
     drive = short(found.machine.drive.link)
     changed = any(one.kind != "room" for one in drawn)
-    what = f"{'What to change' if changed else 'Nothing to change'}, to scale"
-    what += f"; angle of {drive} in the frame: 0°"
+    what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
+    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle="0°")
     heading(figure, found.original.title, what, LEFT)
     axes = place(figure, LEFT, BOTTOM, panel.width, panel.height)
     panel.settle(axes)
-    axes.set_xlabel("x in the frame, mm")
-    axes.set_ylabel("y in the frame, mm")
+    axes.set_xlabel(say("x in the frame, mm"))
+    axes.set_ylabel(say("y in the frame, mm"))
     there_already = placed.drawn.springs[: len(found.original.springs)]
     draw_sketch(axes, replace(placed.drawn, springs=there_already), MM, panel.inch)
     for one in drawn:
@@ -137,8 +138,8 @@ def _move(axes: Axes, one: Mark) -> None:
 def _label(axes: Axes, placed: Placed, drawn: list[Mark], inch: float) -> None:
     """What is changed by how much, and the names of points where there is room."""
     labels = Labels(axes)
-    for points in placed.drawn.links.values():
-        outline = MM * np.array([*points.values(), next(iter(points.values()))])
+    for around in placed.drawn.outlines.values():
+        outline = MM * np.append(around, around[0])
         labels.avoid(outline.real, outline.imag)
     for one in drawn:
         if len(one.outline) > 1:

@@ -12,6 +12,7 @@ from equipoise.plotting.balancing.looks import MM, grams
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, MAIN, blank, fit, heading, short, shown
 from equipoise.plotting.vibration.panels import BETWEEN, LEFT, RIGHT, WIDTH, place, told_speed
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +35,7 @@ def front_figure(found: Front) -> Figure:
     """The second objective against the first, each point as good as any can be."""
     figure = blank(WIDTH, HIGH + TOP + BOTTOM)
     speed = told_speed(found.original.drive.speed)
-    title = "Trade-off: the least of one for every value of the other"
+    title = say("Trade-off: the least of one for every value of the other")
     heading(figure, found.original.title, f"{title}, at {speed}", LEFT)
     axes = place(figure, LEFT, BOTTOM, WIDTH - LEFT - RIGHT, HIGH)
     scales, units = _units(found)
@@ -46,13 +47,13 @@ def front_figure(found: Front) -> Figure:
     axes.set_ylabel(f"{short(found.second.name, 40)}, {units[1]}")
     labels = Labels(axes)
     look: Any = {"color": MAIN, "markersize": 4.5, "zorder": 3}
-    axes.plot(values[:, 0], values[:, 1], "o-", label="best machines", **look)
+    axes.plot(values[:, 0], values[:, 1], "o-", label=say("best machines"), **look)
     labels.avoid(values[:, 0], values[:, 1])
     told = tuple(f"{shown(value)} {unit}" for value, unit in zip(before, units, strict=True))
     if seen:
         _as_it_is(axes, labels, before, f"as it is: {', '.join(told)}")
     else:
-        _far_off(axes, labels, f"as it is, far off: {', '.join(told)}")
+        _far_off(axes, labels, say("as it is, far off: {places}", places=", ".join(told)))
     _ends(labels, found, values, units)
     return figure
 
@@ -108,5 +109,5 @@ def _ends(labels: Labels, found: Front, values: Array, units: tuple[str, str]) -
         text = f"{shown(x)} {units[0]}, {shown(y)} {units[1]}"
         added = found.points[k].added_mass
         if added > 1e-9:
-            text += f"\nwith {grams(added)} more"
+            text += "\n" + say("with {mass} more", mass=grams(added))
         labels.put(text, x, y, wish=wish, color=MAIN)

@@ -8,10 +8,10 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from equipoise import signals
-from equipoise.plotting.crank import Line, draw, mark
+from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, MAIN, short, shown
 from equipoise.plotting.vibration.panels import Unit, by_phase, name_x, name_y
-from equipoise.plotting.vibration.signals import phase_axis
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,6 +29,7 @@ LOOKS: dict[str, dict[str, Any]] = {
     "after": {"color": MAIN, "linewidth": STRONG, "zorder": 3.0},
 }
 """The thin line lies on the strong one, so that both are seen where they are the same."""
+WHEN = {"before": to_say("before"), "after": to_say("after")}
 SHORT = 16
 """Signs that a link's name may have beside other words."""
 NOTHING = 1e-9
@@ -37,7 +38,7 @@ NOTHING = 1e-9
 
 def keys() -> list[Any]:
     """What the two lines are, for a legend."""
-    return [Line2D([], [], label=name, **look) for name, look in LOOKS.items()]
+    return [Line2D([], [], label=say(WHEN[name]), **look) for name, look in LOOKS.items()]
 
 
 def settled(before: Array, after: Array) -> Array:
@@ -64,7 +65,7 @@ def compare(
     period = float(angles[-1] + angles[1] - angles[0])
     told = [when for when in LOOKS if when in pair]
     lines = [_line(angles, unit.factor * pair[when], when, period) for when in told]
-    phase_axis(axes, round(period / (2 * np.pi)))
+    crank_axis(axes, round(period / (2 * np.pi)))
     name_y(axes, f"{kind}, {unit.name}")
     draw(axes, lines)
     for line, when in zip(axes.get_lines(), told, strict=False):

@@ -11,7 +11,7 @@ from matplotlib.patches import Circle
 
 from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import Objective
-from equipoise.plotting.balancing.looks import LOOKS, MM, compare, keys, name_angles, settled
+from equipoise.plotting.balancing.looks import LOOKS, MM, WHEN, compare, keys, name_angles, settled
 from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import FAINT, NORMAL, SMALL, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -25,6 +25,7 @@ from equipoise.plotting.vibration.panels import (
     told_speed,
 )
 from equipoise.signals import Periodic
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,7 +56,7 @@ def phases_figure(original: Machine | None, machine: Machine) -> Figure:
     lines = ceil(count / IN_LINE)
     row = 2 * FACE + ABOVE + BELOW
     figure = blank(WIDTH, HEAD + lines * row + FOOT)
-    what = f"Direction of {short(machine.drive.link)} in each row at one instant"
+    what = say("Direction of {link} in each row at one instant", link=short(machine.drive.link))
     heading(figure, machine.title, what, LEFT)
     order = sorted(range(count), key=lambda k: machine.rows[k].lateral)
     for number, k in enumerate(order):
@@ -67,7 +68,7 @@ def phases_figure(original: Machine | None, machine: Machine) -> Figure:
         _dial(axes, original, machine, k)
     shown_keys = keys() if original is not None else keys()[1:]
     legend(figure, shown_keys)
-    name_x(figure, "from left to right of who looks forward, with their lateral places")
+    name_x(figure, say("from left to right of who looks forward, with their lateral places"))
     return figure
 
 
@@ -81,7 +82,7 @@ def _dial(axes: Axes, original: Machine | None, machine: Machine, k: int) -> Non
     for way in (1, 1j, -1, -1j):
         tick = np.array([0.9 * way, way])
         axes.plot(tick.real, tick.imag, color=FAINT, linewidth=0.8)
-    told = [f"{shown(MM * machine.rows[k].lateral)} mm"]
+    told = [(f"{shown(MM * machine.rows[k].lateral)} mm", "black")]
     for when, one in (("before", original), ("after", machine)):
         if one is None:
             continue
@@ -90,25 +91,29 @@ def _dial(axes: Axes, original: Machine | None, machine: Machine, k: int) -> Non
         tip = complex(np.exp(1j * phase))
         style = {"color": look["color"], "lw": look["linewidth"], "zorder": look["zorder"]}
         arrow(axes, 0j, tip, mutation_scale=HEADS[when], **style)
-        told.append(f"{when} {shown(round(float(np.degrees(phase)), 2) % 360)}°")
+        text = f"{say(WHEN[when])} {shown(round(float(np.degrees(phase)), 2) % 360)}°"
+        told.append((text, look["color"]))
     axes.plot(0, 0, "o", color=LOOKS["after"]["color"], markersize=4, zorder=5)
-    axes.text(0, 1.12, f"row {k + 1}", fontsize=NORMAL, fontweight="bold", ha="center")
+    axes.text(
+        0, 1.12, say("row {number}", number=k + 1), fontsize=NORMAL, fontweight="bold", ha="center"
+    )
     _below(axes, told)
 
 
-def _below(axes: Axes, told: list[str]) -> None:
-    """Lines of words below a dial: where the row is, and its phases."""
-    for number, text in enumerate(told):
-        color = LOOKS[text.split()[0]]["color"] if number else "black"
+def _below(axes: Axes, told: list[tuple[str, str]]) -> None:
+    """Lines of words below a dial, with their colours: where the row is, and its phases."""
+    for number, (text, color) in enumerate(told):
         y = -1.05 - (number + 0.85) * LINE / FACE
         axes.text(0, y, text, fontsize=SMALL, color=color, ha="center", clip_on=False)
 
 
 def together_figure(original: Machine | None, machine: Machine) -> Figure:
     """Components of the shaking force of all rows together over crank angle."""
-    told = "before and after, " if original is not None else ""
-    speed = told_speed(machine.drive.speed)
-    what = f"Shaking force of {len(machine.rows)} rows together, {told}at {speed}"
+    told = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
+    if original is None:
+        what = say("Shaking force of {count} rows together, at {speed}", **told)
+    else:
+        what = say("Shaking force of {count} rows together, before and after, at {speed}", **told)
     figure, panels = stack(2, HIGH, machine.title, what, KEYS)
     for axes, axis in zip(panels, ("x", "y"), strict=True):
         angles, after = summed(machine, axis)
@@ -116,7 +121,7 @@ def together_figure(original: Machine | None, machine: Machine) -> Figure:
         if original is not None:
             before = summed(original, axis)[1]
             pair = {"before": before, "after": settled(before, after)}
-        compare(axes, angles, pair, f"along {axis}")
+        compare(axes, angles, pair, say("along {axis}", axis=axis))
     name_angles(figure, machine.drive)
     legend(figure, keys() if original is not None else keys()[1:])
     return figure

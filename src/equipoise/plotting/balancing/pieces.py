@@ -12,6 +12,7 @@ import numpy as np
 
 from equipoise.plotting.balancing.looks import MM, SHORT, grams
 from equipoise.plotting.style import short, shown
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.balancing.parts import Change
@@ -130,7 +131,11 @@ def _spring(placed: Placed, change: Change) -> Mark:
     one = MM * placed.at(change.link, complex(*own))
     other = MM * complex(*placed.machine.frame[values["to"]])
     free = round(MM * values["free_length"], FINEST)
-    text = f"{shown(values['stiffness'])} N/m, {shown(free)} mm free"
+    text = say(
+        "{stiffness} N/m, {length} mm free",
+        stiffness=shown(values["stiffness"]),
+        length=shown(free),
+    )
     away = 1j * _way(other - one)
     return Mark("spring", np.array([one, other]), (), (one + other) / 2, text, away)
 
@@ -145,7 +150,7 @@ def _gears(placed: Placed, change: Change) -> Iterator[Mark]:
     at = MM * complex(*placed.machine.frame[pin])
     aside = 1j * _way(axis - at)
     for middle, radius in ((at, driver), (axis, shaft)):
-        text = f"gear, {shown(radius)} mm"
+        text = say("gear, {radius} mm", radius=shown(radius))
         edge = middle + radius * aside
         yield Mark("gear", circle(middle, radius), (), edge, text, aside)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -28,6 +29,7 @@ from equipoise.plotting.vibration.panels import FOOT, LEFT, RIGHT, RPM, WIDTH, n
 from equipoise.tools.exposed import grips
 from equipoise.tools.response import respond_tool
 from equipoise.tools.wishes import MEASURES
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.design import ToolDesign
@@ -39,6 +41,18 @@ COLUMN = (WIDTH - LEFT - RIGHT) / 2
 MOST = 8
 """Changes that are told."""
 DASHED: Any = (0, (4, 2))
+
+
+AT = re.compile("(a_hv|force) at (.+), (RMS over the band|largest)")
+FIGURES = (
+    to_say("a_hv of the worst hand, RMS over the band"),
+    to_say("a_hv of the worst hand, largest"),
+    to_say("mass"),
+)
+AT_STATION = {"a_hv": to_say("a_hv at {station}"), "force": to_say("force at {station}")}
+WORST = {"RMS over the band": to_say("RMS over the band"), "largest": to_say("largest")}
+"""Parts of the names of figures, in words."""
+ALLOWED = {"lowest": to_say("lowest allowed"), "highest": to_say("highest allowed")}
 
 
 def design_figure(found: ToolDesign) -> Figure:
@@ -59,18 +73,26 @@ def design_figure(found: ToolDesign) -> Figure:
     axes = place(figure, LEFT, FOOT, WIDTH - LEFT - RIGHT, TALL)
     engine_axis(axes, found.speed)
     name_y(axes, "a_hv, m/s²")
-    name_x(figure, SPEED)
+    name_x(figure, say(SPEED))
     handles = _draw(axes, found, before, after)
     legend_at(figure, handles, TOP + words)
     legend_at(figure, keys, TOP + words + LINE * rows_of(handles))
     return figure
 
 
+def figure_named(name: str) -> str:
+    """A figure of a design, as `tools.design` calls it, in words."""
+    at = AT.fullmatch(name)
+    if at is None:
+        return say(name) if name in FIGURES else name
+    return f"{say(AT_STATION[at[1]], station=at[2])}, {say(WORST[at[3]])}"
+
+
 def _measure_told(found: ToolDesign) -> str:
     """What was made small, in words; the first figures are the measures, in their order."""
     design = found.tool.design
     one = found.figures[MEASURES.index("rms" if design is None else design.measure)]
-    return f"{one.name}: {shown(one.before)} → {shown(one.after)} m/s²"
+    return f"{figure_named(one.name)}: {shown(one.before)} → {shown(one.after)} m/s²"
 
 
 def _curves(tool: Tool, found: ToolDesign) -> list[Curve]:
@@ -83,8 +105,8 @@ def _curves(tool: Tool, found: ToolDesign) -> list[Curve]:
 
 def _keys() -> list[Line2D]:
     return [
-        Line2D([], [], color=INK, linestyle=DASHED, linewidth=1.2, label="before"),
-        Line2D([], [], color=INK, linewidth=1.5, label="after"),
+        Line2D([], [], color=INK, linestyle=DASHED, linewidth=1.2, label=say("before")),
+        Line2D([], [], color=INK, linewidth=1.5, label=say("after")),
     ]
 
 
@@ -114,9 +136,13 @@ def changes_told(found: ToolDesign) -> list[str]:
     for one, edge in zip(found.variables, found.edges, strict=True):
         unit, factor = UNITS[one.dimension]
         ends = f"{shown(factor * one.before)} → {shown(factor * one.after)} {unit}"
-        end = f" ({edge} allowed)" if edge else ""
+        end = f" ({say(ALLOWED[edge])})" if edge else ""
         words.append(f"{short(one.name.replace('_', ' '), 40)}: {ends}{end}")
-    return words if count <= MOST else [*words[: MOST - 1], f"and {count - MOST + 1} more"]
+    return (
+        words
+        if count <= MOST
+        else [*words[: MOST - 1], say("and {count} more", count=count - MOST + 1)]
+    )
 
 
 def _columns(told: Sequence[str]) -> int:

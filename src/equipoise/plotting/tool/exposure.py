@@ -44,6 +44,7 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.exposed import ToolExposure
@@ -53,8 +54,8 @@ Array = np.ndarray[Any, Any]
 TOP, TALL = 0.58, 3.4
 """Inches: heading, and height of the panel."""
 LEVELS = (
-    (ACTION, "action: A(8) of", (0, (1, 2.4)), 1.2),
-    (LIMIT, "limit: A(8) of", (0, (1, 1)), 1.6),
+    (ACTION, to_say("action: A(8) of"), (0, (1, 2.4)), 1.2),
+    (LIMIT, to_say("limit: A(8) of"), (0, (1, 1)), 1.6),
 )
 """m/s2 of A(8), name, dots and width of each level."""
 
@@ -66,17 +67,22 @@ def acceleration_figure(exposure: ToolExposure) -> Figure:
     }
     weight = factor(exposure.speed / (2 * pi))
     allowed = {name: level / weight for name, level in levels(exposure).items()}
-    what = "Acceleration, not weighted; dotted: action and limit value if all of it is of order 1"
-    return _figure(exposure, read, allowed, f"{what}, {_hours(exposure)}", "RMS, m/s²")
+    what = say(
+        "Acceleration, not weighted; dotted: action and limit value if all of it is of order 1"
+    )
+    return _figure(
+        exposure, read, allowed, f"{what}, {_hours(exposure)}", say("RMS, {unit}", unit="m/s²")
+    )
 
 
 def exposure_figure(exposure: ToolExposure) -> Figure:
     """Weighted total value of each hand, with action and limit value for the time of work."""
     read = {name: grip.a_hv for name, grip in exposure.grips.items()}
     allowed = {name: np.full(len(exposure.speed), one) for name, one in levels(exposure).items()}
-    what = f"Weighted acceleration; dotted: action and limit value, {_hours(exposure)}"
+    what = f"{say('Weighted acceleration; dotted: action and limit value')}, {_hours(exposure)}"
     if exposure.worst is not None and exposure.a8 is not None:
-        what += f"; A(8) = {shown(exposure.a8)} m/s² at {short(exposure.worst)}"
+        told = {"a8": shown(exposure.a8), "hand": short(exposure.worst)}
+        what += "; " + say("A(8) = {a8} m/s² at {hand}", **told)
     return _figure(exposure, read, allowed, what, "a_hv, m/s²")
 
 
@@ -92,7 +98,7 @@ def levels(exposure: ToolExposure) -> dict[str, float]:
 
 
 def _hours(exposure: ToolExposure) -> str:
-    return f"{shown(duration_of(exposure) / 3600)} h a day"
+    return say("{hours} h a day", hours=shown(duration_of(exposure) / 3600))
 
 
 def _figure(
@@ -111,7 +117,7 @@ def _figure(
     axes = place(figure, LEFT, FOOT, WIDTH - LEFT - RIGHT, TALL)
     engine_axis(axes, speed)
     name_y(axes, label)
-    name_x(figure, SPEED)
+    name_x(figure, say(SPEED))
     curve_limits(axes, curves, (1.8, 2.2), [float(np.min(row)) for row in allowed.values()])
     _levels(axes, speed, allowed)
     work = work_line(axes, tool)
@@ -131,7 +137,7 @@ def _figure(
 def _keys() -> list[Line2D]:
     """What the dotted lines are."""
     return [
-        Line2D([], [], label=f"{name} {level:g} m/s²", **_dotted(dots, width))
+        Line2D([], [], label=f"{say(name)} {level:g} m/s²", **_dotted(dots, width))
         for level, name, dots, width in LEVELS
     ]
 

@@ -18,6 +18,7 @@ from equipoise.plotting.tool.shaft import (
     PLACE,
     mark_stations,
     names_of,
+    plane_named,
     shaft_axis,
     station_keys,
     write_names,
@@ -25,6 +26,7 @@ from equipoise.plotting.tool.shaft import (
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.vibration.curves import LINE, legend_at, rows_of
 from equipoise.plotting.vibration.panels import FOOT, WIDTH, place
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.tools.modes import PlaneModes, ToolModes
@@ -69,22 +71,25 @@ def _figure(modes: ToolModes, plane: int, numbers: Sequence[int]) -> Figure:
         _beside(axes, found, number)
         if row < len(numbers) - 1:
             axes.tick_params(bottom=False, labelbottom=False)
-    axes.set_xlabel(PLACE)
+    axes.set_xlabel(say(PLACE))
     return figure
 
 
 def _told(modes: ToolModes, plane: int, numbers: Sequence[int]) -> str:
-    which = "both planes" if modes.alike else ("vertical plane", "lateral plane")[plane]
+    which = plane_named(plane, modes.alike)
     count = len(modes.planes[plane].frequency)
-    part = "" if len(numbers) == count else f" ({numbers[0] + 1} to {numbers[-1] + 1} of {count})"
-    return f"Shapes of free vibration without damping, {which}{part}"
+    told = f"{say('Shapes of free vibration without damping')}, {which}"
+    if len(numbers) == count:
+        return told
+    first, last = numbers[0] + 1, numbers[-1] + 1
+    return f"{told} " + say("({first} to {last} of {count})", first=first, last=last, count=count)
 
 
 def _keys(modes: ToolModes) -> list[Line2D]:
     keys = [
-        Line2D([], [], color=MAIN, linewidth=1.5, label="one end of the swing"),
-        Line2D([], [], color=FAINT, linewidth=1.0, linestyle=DASHED, label="the other"),
-        Line2D([], [], label="node, mm", **_node_look()),
+        Line2D([], [], color=MAIN, linewidth=1.5, label=say("one end of the swing")),
+        Line2D([], [], color=FAINT, linewidth=1.0, linestyle=DASHED, label=say("the other")),
+        Line2D([], [], label=say("node, mm"), **_node_look()),
     ]
     return keys + station_keys(modes.tool.stations)
 
@@ -123,7 +128,7 @@ def _beside(axes: Axes, found: PlaneModes, number: int) -> None:
     figure: Any = axes.get_figure(root=True)
     inch = figure.dpi / axes.get_window_extent().width
     look: Any = {"transform": axes.transAxes, "va": "center"}
-    axes.text(-0.1 * inch, 0.5, f"mode {number + 1}", ha="right", **look)
+    axes.text(-0.1 * inch, 0.5, say("mode {number}", number=number + 1), ha="right", **look)
     lines = _figures(found, number)
     axes.text(1 + 0.1 * inch, 0.5, "\n".join(lines), linespacing=1.35, **look)
 

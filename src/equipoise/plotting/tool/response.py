@@ -33,6 +33,7 @@ from equipoise.plotting.vibration.panels import (
 )
 from equipoise.tools.exposed import grips
 from equipoise.tools.response import respond_tool
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.tools.fields import Line
@@ -67,7 +68,7 @@ def moment_figure(response: ToolResponse, speed: float | None) -> Figure:
     names = names_of(tool, LEFT, RIGHT)
     above = TOP + LINE * rows_of(keys) + names.height
     figure = blank(WIDTH, above + MOMENT + GAP + SHAPE + FOOT)
-    what = "RMS of the bending moment, and shape of each order when it is largest"
+    what = say("RMS of the bending moment, and shape of each order when it is largest")
     heading(figure, tool.title, f"{what}; {turns(speed)} rpm", LEFT)
     legend_at(figure, keys, TOP - 0.06)
     wide = WIDTH - LEFT - RIGHT
@@ -79,7 +80,7 @@ def moment_figure(response: ToolResponse, speed: float | None) -> Figure:
     write_names(moment, names)
     _draw_moment(moment, places, line, loudest)
     _draw_shapes(shape, places, shapes)
-    name_x(figure, PLACE)
+    name_x(figure, say(PLACE))
     return figure
 
 
@@ -136,15 +137,15 @@ def _largest(amplitude: Array) -> Array:
 
 
 def _keys(orders: Array, loudest: list[int], shapes: dict[tuple[int, int], Array]) -> list[Line2D]:
-    keys = [Line2D([], [], color=INK, linewidth=1.8, label="all orders, root of squares")]
+    keys = [Line2D([], [], color=INK, linewidth=1.8, label=say("all orders, root of squares"))]
     for number, k in enumerate(loudest):
         color, marker = ORDERS[number]
         look: Any = {"color": color, "marker": marker, "markerfacecolor": "white"}
-        text = f"order {shown(float(orders[k]))}"
+        text = say("order {order}", order=shown(float(orders[k])))
         keys.append(Line2D([], [], label=text, markersize=4.5, **look))
     planes = {plane for _, plane in shapes}
     if planes == {0, 1}:
-        keys.append(Line2D([], [], color=INK, linestyle=DASHED, label="lateral plane"))
+        keys.append(Line2D([], [], color=INK, linestyle=DASHED, label=say("lateral plane")))
     return keys
 
 
@@ -153,7 +154,7 @@ def _draw_moment(axes: Axes, places: Array, line: Line, loudest: list[int]) -> N
     squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1) / 2
     total = np.sqrt(np.sum(squares, axis=1))
     unit = Unit.of("force", True, total)
-    name_y(axes, f"moment, {unit.name}")
+    name_y(axes, say("moment, {unit}", unit=unit.name))
     x, top = MM * places, unit.factor * float(np.max(total))
     axes.set_ylim(0, 1.18 * top or 1.0)
     axes.plot(x, unit.factor * total, color=INK, linewidth=1.8, zorder=3)
@@ -167,14 +168,16 @@ def _draw_moment(axes: Axes, places: Array, line: Line, loudest: list[int]) -> N
     k = int(np.argmax(total))
     labels = Labels(axes)
     labels.avoid(x, unit.factor * total)
-    text = f"{shown(top)} {unit.name} at {MM * places[k]:.0f} mm"
+    text = say(
+        "{value} at {place} mm", value=f"{shown(top)} {unit.name}", place=f"{MM * places[k]:.0f}"
+    )
     labels.put(text, float(x[k]), top, wish=60.0)
 
 
 def _draw_shapes(axes: Axes, places: Array, shapes: dict[tuple[int, int], Array]) -> None:
     every = np.array([*shapes.values()]) if shapes else np.zeros((1, len(places)))
     unit = Unit.of("displacement", False, every)
-    name_y(axes, f"displacement, {unit.name}")
+    name_y(axes, say("displacement, {unit}", unit=unit.name))
     low, high = unit.factor * float(np.min(every)), unit.factor * float(np.max(every))
     room = 0.12 * (high - low) or 1.0
     axes.set_ylim(min(low, 0.0) - room, max(high, 0.0) + room)

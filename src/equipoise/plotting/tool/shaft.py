@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, SMALL, blank, inches, short
 from equipoise.plotting.vibration.panels import WIDTH
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.model import Station, Tool
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 
 MM = 1000.0
-PLACE = "place on the shaft from its left end, mm"
+PLACE = to_say("place on the shaft from its left end, mm")
 BESIDE = 0.02
 """Share of the shaft that the axis goes on beyond its ends."""
 LEAD, ROOM, EDGE = 0.1, 0.1, 0.06
@@ -31,6 +32,11 @@ LONGEST, MOST = 20, 24
 """Signs of a name; names at most."""
 SIGNS = {"hand": "s", "harness or ground": "^", "station": "o"}
 """What holds a station -> its marker; the last holds nothing."""
+NAMES = {
+    "hand": to_say("hand"),
+    "harness or ground": to_say("harness or ground"),
+    "station": to_say("station"),
+}
 
 
 @dataclass(frozen=True)
@@ -86,6 +92,13 @@ def kind_of(station: Station) -> str:
     return "harness or ground" if station.harness is not None or grounded else "station"
 
 
+def plane_named(plane: int, alike: bool) -> str:
+    """The vertical plane, the lateral one, or both where they are alike."""
+    if alike:
+        return say("both planes")
+    return say("lateral plane") if plane else say("vertical plane")
+
+
 def shaft_axis(axes: Axes, tool: Tool) -> None:
     """The x axis along the shaft, mm, with a thin line at every station."""
     length = MM * tool.shaft.length
@@ -125,7 +138,9 @@ def mark_stations(axes: Axes, tool: Tool, places: Any, values: Any) -> None:
 def station_keys(stations: Iterable[Station]) -> list[Line2D]:
     """What the markers are, those that there are."""
     there = {kind_of(station) for station in stations}
-    return [Line2D([], [], label=name, **_look(name)) for name in SIGNS if name in there]
+    return [
+        Line2D([], [], label=say(NAMES[name]), **_look(name)) for name in SIGNS if name in there
+    ]
 
 
 def _look(kind: str) -> dict[str, Any]:

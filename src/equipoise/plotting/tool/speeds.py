@@ -15,13 +15,14 @@ from equipoise.plotting.style import FAINT, LINES, shown
 from equipoise.plotting.vibration.curves import DECADES, Curve, bounded, speed_axis
 from equipoise.plotting.vibration.map import names_above
 from equipoise.plotting.vibration.panels import RPM, log_scale
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 
-SPEED = "speed of the engine, rpm"
+SPEED = to_say("speed of the engine, rpm")
 ALONE = 0.1
 """Share by which the axis goes beyond a speed that stands alone."""
 FINE = ((8.0, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)), (150.0, (1.0, 2.0, 5.0)))
@@ -95,7 +96,9 @@ def name_work(axes: Axes, labels: Labels, at: float | None, above: bool = True) 
     end = 0.95 if above else 0.05
     log = axes.get_yscale() == "log"
     y = low * (high / low) ** end if log else low + (high - low) * end
-    labels.put(f"work, {turns(at / RPM)} rpm", at, y, wish=0.0, near=3.0, color=LINES)
+    labels.put(
+        say("work, {speed} rpm", speed=turns(at / RPM)), at, y, wish=0.0, near=3.0, color=LINES
+    )
 
 
 def mode_lines(axes: Axes, frequency: Sequence[float] | Array, named: bool) -> None:
@@ -109,7 +112,7 @@ def mode_lines(axes: Axes, frequency: Sequence[float] | Array, named: bool) -> N
     for _, at in inside:
         axes.axvline(at, color=FAINT, linewidth=0.7, linestyle=(0, (1.5, 2)), zorder=1.5)
     if named:
-        names_above(axes, [(at, str(number)) for number, at in inside], "mode")
+        names_above(axes, [(at, str(number)) for number, at in inside], say("mode"))
 
 
 def avoid_curves(labels: Labels, speed: Array, curves: Sequence[Curve]) -> None:
@@ -134,6 +137,7 @@ def tell_peaks(
         k = int(np.nanargmax(curve.values))
         size = float(curve.values[k])
         if 0 < k < len(speed) - 1 and 0 < size <= labels.axes.get_ylim()[1]:
-            text = f"{shown(size)} m/s² at {turns(float(speed[k]))} rpm"
+            told = {"value": f"{shown(size)} m/s²", "speed": turns(float(speed[k]))}
+            text = say("{value} at {speed} rpm", **told)
             at = float(speed[k]) * RPM
             labels.put(text, at, size, wish=20.0, color=color, optional=True)

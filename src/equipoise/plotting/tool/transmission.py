@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, LINES, blank, heading, short
+from equipoise.plotting.tool.shaft import plane_named
 from equipoise.plotting.tool.speeds import (
     SPEED,
     Speeds,
@@ -42,6 +43,7 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.tools.modes import ToolModes
@@ -78,21 +80,22 @@ def transmission_figure(found: Transmissions, plane: int, modes: ToolModes | Non
     _phases(phase, found, curves, plane)
     legend_at(figure, handles, TOP - 0.06)
     legend_at(figure, keys, TOP - 0.06 + LINE * rows_of(handles))
-    name_x(figure, SPEED)
+    name_x(figure, say(SPEED))
     return figure
 
 
 def _told(found: Transmissions, plane: int) -> str:
-    which = "both planes" if found.tool.alike else ("vertical plane", "lateral plane")[plane]
-    return f"Force on the body under a unit force at {short(found.source)}, {which}"
+    which = plane_named(plane, found.tool.alike)
+    told = say("Force on the body under a unit force at {station}", station=short(found.source))
+    return f"{told}, {which}"
 
 
 def _keys(speed: Array, frequency: Array) -> list[Line2D]:
     """What is marked: quiet speeds, and modes where some are in sight."""
-    keys = [Line2D([], [], label="quiet speed, rpm", **_quiet_look(LINES))]
+    keys = [Line2D([], [], label=say("quiet speed, rpm"), **_quiet_look(LINES))]
     if np.any((frequency >= speed[0]) & (frequency <= speed[-1])):
         look: Any = {"color": FAINT, "linewidth": 0.9, "linestyle": LIGHT}
-        keys.append(Line2D([], [], label="natural frequency", **look))
+        keys.append(Line2D([], [], label=say("natural frequency"), **look))
     return keys
 
 
@@ -101,7 +104,7 @@ def _quiet_look(color: str) -> dict[str, Any]:
 
 
 def _sizes(axes: Axes, found: Transmissions, curves: list[Curve], plane: int) -> list[Line2D]:
-    name_y(axes, "force ratio")
+    name_y(axes, say("force ratio"))
     axes.tick_params(labelbottom=False)
     curve_limits(axes, curves, (3.0, 2.0))
     work = work_line(axes, found.tool)
@@ -130,7 +133,7 @@ def _quiet(
 
 
 def _phases(axes: Axes, found: Transmissions, curves: list[Curve], plane: int) -> None:
-    name_y(axes, "phase, deg")
+    name_y(axes, say("phase, deg"))
     axes.set_ylim(-195, 195)
     axes.set_yticks(np.arange(-180, 181, 90))
     work_line(axes, found.tool)

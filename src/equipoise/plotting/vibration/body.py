@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from equipoise.plotting.linkage import hull
+from equipoise.scene import hull
 from equipoise.structures.linkages import rows_of
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class Shape:
 
     def outline(self, view: View, phase: complex = 0.0) -> Array:
         """Closed outline in a view, complex, mm: a line drawn tightly around discs at corners."""
-        corners = seen(self.displaced(self.corners, phase), view)
+        corners = hull(seen(self.displaced(self.corners, phase), view))
         disc = ROUND * self.size * MM * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
         around = hull((corners[:, None] + disc).ravel())
         return np.append(around, around[0])

@@ -15,6 +15,7 @@ from matplotlib.lines import Line2D
 from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, NORMAL, SMALL, STRESS, fit, short
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, RPM, WIDTH, log_scale
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.structures.resonance import Resonance
@@ -87,7 +88,8 @@ def speed_axis(axes: Axes, sweep: Range) -> None:
 
 def speed_label(sweep: Sweep) -> str:
     """What that axis is."""
-    return "crank speed, rpm" + (" (clockwise)" if sweep.speed[-1] < 0 else "")
+    clockwise = " " + say("(clockwise)") if sweep.speed[-1] < 0 else ""
+    return say("crank speed, rpm") + clockwise
 
 
 def bands(axes: Axes, sweep: Sweep) -> None:
@@ -186,7 +188,7 @@ def draw_curves(axes: Axes, sweep: Range, curves: Sequence[Curve]) -> list[Line2
             look |= {"marker": marker, "markersize": 4.5, "markerfacecolor": "white"}
             handles.append(Line2D([], [], label=short(curve.name, 40), **look))
     if len(curves) > len(KINDS):
-        text = f"{len(curves) - len(KINDS)} quieter ones"
+        text = say("{count} quieter ones", count=len(curves) - len(KINDS))
         handles.append(Line2D([], [], color=FAINT, linewidth=0.7, label=text))
     return handles
 
@@ -222,7 +224,9 @@ def log_axis(axes: Axes, curves: Sequence[Curve]) -> None:
     if not heard.size:
         axes.set_ylim(0, 1)
         axes.set_yticks([])
-        axes.text(0.5, 0.5, "nothing moves", transform=axes.transAxes, ha="center", va="center")
+        axes.text(
+            0.5, 0.5, say("nothing moves"), transform=axes.transAxes, ha="center", va="center"
+        )
         return
     high = float(np.max(heard))
     low = max(float(np.min(heard)), high * 10**-DECADES)

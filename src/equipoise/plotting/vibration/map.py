@@ -22,6 +22,7 @@ from equipoise.plotting.vibration.curves import (
     speed_label,
 )
 from equipoise.plotting.vibration.panels import LEFT, RPM, WIDTH, name_x, name_y, place
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.structures.sweep import Sweep
@@ -38,13 +39,13 @@ USUAL_ORDERS = (1.0, 2.0, 3.0)
 def map_figure(sweep: Sweep) -> Figure:
     """Natural frequencies, orders, and their meetings, each as large as it is loud."""
     figure = blank(WIDTH, HEIGHT)
-    what = "Orders of the crank's speed, natural frequencies, and how loud they meet (size)"
+    what = say("Orders of the crank's speed, natural frequencies, and how loud they meet (size)")
     heading(figure, sweep.machine.title, what, LEFT)
     legend_at(figure, _keys(sweep), 0.52)
     axes = place(figure, LEFT, FOOT, WIDTH - LEFT - RIGHT, HEIGHT - HEAD - FOOT)
     speed_axis(axes, sweep)
     axes.set_ylim(0, _highest(sweep))
-    name_y(axes, "frequency, Hz")
+    name_y(axes, say("frequency, Hz"))
     name_x(figure, speed_label(sweep))
     bands(axes, sweep)
     at_right = _draw_modes(axes, sweep)
@@ -74,10 +75,10 @@ def _keys(sweep: Sweep) -> list[Any]:
     keys: list[Any] = []
     if sweep.resonances:
         look: Any = {"color": STRESS, "markerfacecolor": "white", "linewidth": 0}
-        text = "order meets mode"
+        text = say("order meets mode")
         keys.append(Line2D([], [], marker="o", markersize=7, label=text, **look))
     if any(resonance.avoid is not None for resonance in sweep.resonances):
-        keys.append(Patch(facecolor=LOUD_BAND, linewidth=0, label="keep away (pale: quiet)"))
+        keys.append(Patch(facecolor=LOUD_BAND, linewidth=0, label=say("keep away (pale: quiet)")))
     return keys
 
 
@@ -98,7 +99,13 @@ def _draw_modes(axes: Axes, sweep: Sweep) -> list[tuple[float, str, str]]:
         if mode.swings:
             frequency = mode.cycles_per_second
             axes.axhline(frequency, color=MAIN, linewidth=1.4, zorder=3)
-            named.append((frequency, f"mode {number}: {shown(frequency)} Hz", MAIN))
+            named.append(
+                (
+                    frequency,
+                    say("mode {number}: {frequency} Hz", number=number, frequency=shown(frequency)),
+                    MAIN,
+                )
+            )
     return named
 
 
@@ -110,10 +117,10 @@ def _draw_orders(axes: Axes, sweep: Sweep) -> list[tuple[float, str, str]]:
         slope = order / 60
         axes.plot([low, high], [slope * low, slope * high], color=LINES, linewidth=0.8, zorder=2)
         if slope * high <= top:
-            right.append((slope * high, f"order {fraction(order)}", INK))
+            right.append((slope * high, say("order {order}", order=fraction(order)), INK))
         elif slope * low < top:
             above.append((top / slope, fraction(order)))
-    names_above(axes, above, "order")
+    names_above(axes, above, say("order"))
     return right
 
 

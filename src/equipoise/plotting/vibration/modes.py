@@ -14,12 +14,17 @@ from equipoise.plotting.style import NORMAL, blank, fit, heading, shown
 from equipoise.plotting.vibration.body import Shape, View
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, place
 from equipoise.plotting.vibration.view import draw_view, keys_of, settle, write_keys
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.structures.free import FreeVibration
     from equipoise.structures.modes import Mode
 
-VIEWS: dict[View, str] = {"side": "from the side", "rear": "from the rear", "top": "from above"}
+VIEWS: dict[View, str] = {
+    "side": to_say("from the side"),
+    "rear": to_say("from the rear"),
+    "top": to_say("from above"),
+}
 HEAD, TOP, FOOT, KEYS = 0.78, 0.76, 0.48, 0.2
 """Inches: heading of one view, and of three; labels of the x axis; a row of words."""
 KEYS_IN_ROW = 4
@@ -43,7 +48,8 @@ def mode_figure(free: FreeVibration, number: int) -> Figure:
     shape = Shape(free, mode)
     planar = free.linear.body.support.planar
     figure, views = _one_view(shape) if planar else _three_views(shape)
-    heading(figure, free.machine.title, f"Mode {number}: {told(mode)}", LEFT)
+    what = say("Mode {number}: {told}", number=number, told=told(mode))
+    heading(figure, free.machine.title, what, LEFT)
     for view, axes in views.items():
         draw_view(axes, shape, view, alone=planar)
     return figure
@@ -53,13 +59,20 @@ def told(mode: Mode) -> str:
     """Frequency and damping in words."""
     frequency, decay = mode.natural_frequency, -mode.eigenvalue.real
     if frequency == 0:
-        return "free, without a spring"
+        return say("free, without a spring")
     if mode.swings:
         hertz = shown(frequency / (2 * pi))
         damping = mode.damping_ratio if abs(mode.damping_ratio) > UNDAMPED else 0.0
-        return f"{hertz} Hz, {shown(frequency)} rad/s, damping ratio {shown(damping)}"
-    way = "overdamped, dies out" if decay > 0 else "falls over, grows"
-    return f"does not swing: {way} by a factor of e in {shown(1 / abs(decay))} s"
+        return say(
+            "{hertz} Hz, {frequency} rad/s, damping ratio {damping}",
+            hertz=hertz,
+            frequency=shown(frequency),
+            damping=shown(damping),
+        )
+    time = shown(1 / abs(decay))
+    if decay > 0:
+        return say("does not swing: overdamped, dies out by a factor of e in {time} s", time=time)
+    return say("does not swing: falls over, grows by a factor of e in {time} s", time=time)
 
 
 def shape_told(free: FreeVibration, mode: Mode) -> list[str]:
@@ -89,7 +102,8 @@ def _one_view(shape: Shape) -> tuple[Figure, dict[View, Axes]]:
     figure = blank(WIDTH, whole)
     axes = place(figure, LEFT, whole - HEAD - tall, wide, tall)
     settle(axes, (low + high) / 2, scale, "side")
-    words = f"Shape: {', '.join(shape_told(shape.free, shape.mode))}, or any multiple"
+    told = ", ".join(shape_told(shape.free, shape.mode))
+    words = say("Shape: {told}, or any multiple", told=told)
     fit(figure.text(LEFT / WIDTH, 1 - 0.475 / whole, words, va="top"), wide)
     write_keys(figure, shape, LEFT, 0.06, KEYS_IN_ROW)
     return figure, {"side": axes}
@@ -127,7 +141,7 @@ def _three_views(shape: Shape) -> tuple[Figure, dict[View, Axes]]:
             "top": complex(sum(x) / 2, middle.imag),
         }
         settle(axes, centered[view], scale, view)
-        axes.set_title(VIEWS[view], fontsize=NORMAL, loc="left", pad=4)
+        axes.set_title(say(VIEWS[view]), fontsize=NORMAL, loc="left", pad=4)
     _words(figure, shape, LEFT + first + 0.3, lower + float(tall[1]))
     return figure, views
 
@@ -140,7 +154,7 @@ def _words_height(shape: Shape) -> float:
 def _words(figure: Figure, shape: Shape, left: float, top: float) -> None:
     """The shape and what the signs are, where no view is."""
     height = figure.get_figheight()
-    lines = ["Shape, or any multiple of it:", *shape_told(shape.free, shape.mode)]
+    lines = [say("Shape, or any multiple of it:"), *shape_told(shape.free, shape.mode)]
     for number, line in enumerate(lines):
         at = (left / WIDTH, (top - KEYS * number) / height)
         fit(figure.text(*at, line, va="top"), WIDTH - left - 0.1)

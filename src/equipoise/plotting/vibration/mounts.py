@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from equipoise.plotting.crank import Line, draw, mark
+from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, MAIN, PALE, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
     Unit,
@@ -31,12 +31,12 @@ from equipoise.plotting.vibration.signals import (
     MEAN,
     line_of,
     period_told,
-    phase_axis,
     phase_label,
     sampled,
 )
 from equipoise.structures.choice import usual_step
 from equipoise.structures.linear import Linear
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.structures.response import GaugeSignals, MountForce, Response
@@ -56,14 +56,15 @@ def spectrum_figures(response: Response) -> Iterator[Figure]:
     """Amplitude of each order at the gauges."""
     every = list(response.gauges)
     for names in groups(every):
-        what = f"Amplitude at the gauges by order{continued(names, every)}"
-        what += f" at {told_speed(response.speed)}; model {response.model}"
+        what = say("Amplitude at the gauges by order") + continued(names, every)
+        speed, model = told_speed(response.speed), response.model
+        what += ", " + say("at {speed}; model {model}", speed=speed, model=model)
         figure, panels = grid(len(names), BARS, response.machine.title, what)
         last = max(_last_order(response.gauges[name]) for name in names)
         for axes, name in zip(panels, names, strict=True):
             name_panel(axes, short(name, 44))
             _bars(axes, response.gauges[name], last)
-        name_x(figure, "order: events in one turn of the crank")
+        name_x(figure, say("order: events in one turn of the crank"))
         yield figure
 
 
@@ -85,10 +86,12 @@ def _bars(axes: Axes, gauge: GaugeSignals, last: float) -> None:
     axes.set_xlim(0, last + 1)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.grid(visible=False, axis="x")
-    name_y(axes, f"amplitude, {unit.name}")
+    name_y(axes, say("amplitude, {unit}", unit=unit.name))
     if not largest:
         axes.set_yticks([])
-        axes.text(0.5, 0.5, "does not move", transform=axes.transAxes, ha="center", va="center")
+        axes.text(
+            0.5, 0.5, say("does not move"), transform=axes.transAxes, ha="center", va="center"
+        )
         return
     log_scale(axes, largest * MATTERS, largest * 6)
     heard = sizes > largest * MATTERS
@@ -111,19 +114,19 @@ def mounts_figures(response: Response) -> Iterator[Figure]:
     every = list(response.mounts)
     at_rest = _at_rest(response) if every else {}
     for names in groups(every):
-        what = f"Force in the mounts on the support{continued(names, every)}"
+        what = say("Force in the mounts on the support") + continued(names, every)
         title = response.machine.title
-        figure, panels = grid(len(names), MOUNTS, title, f"{what} {period_told(response)}", True)
+        figure, panels = grid(len(names), MOUNTS, title, f"{what}, {period_told(response)}", True)
         lifted = False
         for axes, name in zip(panels, names, strict=True):
-            phase_axis(axes, response.turns, most=8)
+            crank_axis(axes, response.turns, most=8)
             lifted |= _mount(axes, response, name, at_rest[name])
         handles: list[Any] = [
-            Line2D([], [], color=MAIN, label="force"),
-            Line2D([], [], color=LINES, linewidth=0.9, linestyle=MEAN, label="at rest"),
+            Line2D([], [], color=MAIN, label=say("force")),
+            Line2D([], [], color=LINES, linewidth=0.9, linestyle=MEAN, label=say("at rest")),
         ]
         if lifted:
-            handles.append(Patch(color=PALE, linewidth=0, label="off its ground"))
+            handles.append(Patch(color=PALE, linewidth=0, label=say("off its ground")))
         legend(figure, handles)
         name_x(figure, phase_label(response))
         yield figure
@@ -153,7 +156,7 @@ def _mount(axes: Axes, response: Response, name: str, rest: float) -> bool:
         line = replace(line, values=np.maximum(line.values, 0.0), marked=line.marked[:1])
     draw(axes, [line, Line(line.theta[[0, -1]], np.full(2, unit.factor * rest), "", LINES, MEAN)])
     axes.get_lines()[1].set_linewidth(0.9)
-    name_y(axes, f"{'torque' if rotation else 'force'}, {unit.name}")
+    name_y(axes, f"{say('torque') if rotation else say('force')}, {unit.name}")
     title = short(name, 44)
     if lifted:
         for low, high in off:
@@ -179,7 +182,7 @@ def _told_off(response: Response, mount: MountForce, off: list[tuple[float, floa
     """For how long it is off its ground, in words."""
     share = sum(high - low for low, high in off) / mount.force.period
     if not np.any(mount.force.sizes):
-        return "does not touch"
+        return say("does not touch")
     if response.model == "exact":
-        return f"off its ground for {100 * mount.lifts_off:.0f} %"
-    return f"would have to pull for {100 * share:.0f} %"
+        return say("off its ground for {share} %", share=f"{100 * mount.lifts_off:.0f}")
+    return say("would have to pull for {share} %", share=f"{100 * share:.0f}")

@@ -12,7 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from equipoise.plotting.style import FAINT, NORMAL, blank, fit, heading, short, shown
+from equipoise.plotting.crank import crank_label, runs_left
+from equipoise.plotting.style import FAINT, NORMAL, blank, fit, heading, shown
+from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 
@@ -133,6 +135,8 @@ def name_x(figure: Figure, label: str) -> None:
 
 def legend(figure: Figure, handles: Sequence[Any]) -> None:
     """What the lines are, below the heading at the left."""
+    if not handles:
+        return
     width, height = figure.get_size_inches()
     figure.legend(
         handles=handles,
@@ -167,8 +171,10 @@ def groups(names: Sequence[str], most: int = MOST_PANELS) -> Iterator[Sequence[s
 
 def told_speed(speed: float) -> str:
     """A crank speed in words."""
-    sense = ", clockwise" if speed < 0 else ""
-    return f"{shown(abs(speed) * RPM)} rpm ({shown(abs(speed))} rad/s{sense})"
+    values = {"rpm": shown(abs(speed) * RPM), "rate": shown(abs(speed))}
+    if speed < 0:
+        return say("{rpm} rpm ({rate} rad/s, clockwise)", **values)
+    return say("{rpm} rpm ({rate} rad/s)", **values)
 
 
 def continued(names: Sequence[str], every: Sequence[str]) -> str:
@@ -176,15 +182,13 @@ def continued(names: Sequence[str], every: Sequence[str]) -> str:
     if len(names) == len(every):
         return ""
     first = every.index(names[0]) + 1
-    return f" ({first} to {first + len(names) - 1} of {len(every)})"
+    last = first + len(names) - 1
+    return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 
 def by_phase(drive: str, speed: float, with_motor: bool) -> str:
     """What the x axis over a period is."""
-    if with_motor:
-        text = "time, in degrees: 360° last as long as a turn of the crank in the mean"
-    else:
-        text = f"crank angle: angle of {short(drive)} in the frame, deg"
-    if speed < 0:
-        text += "  (turns clockwise: time runs from right to left)"
-    return text
+    if not with_motor:
+        return crank_label(drive, speed)
+    text = say("time, in degrees: 360° last as long as a turn of the crank in the mean")
+    return text + runs_left(speed)

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from equipoise.plotting.crank import MOST_TICKS, Line, angle_step, draw, mark
+from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
     RPM,
@@ -19,6 +19,7 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
@@ -26,6 +27,11 @@ if TYPE_CHECKING:
 
 Array = np.ndarray[Any, Any]
 
+QUANTITIES = {
+    "displacement": to_say("displacement"),
+    "velocity": to_say("velocity"),
+    "acceleration": to_say("acceleration"),
+}
 SAMPLES = 720
 """In a turn."""
 ROW = 1.6
@@ -55,12 +61,6 @@ def line_of(signal: Periodic, factor: float) -> Line:
     return Line(theta, values, marked=marked)
 
 
-def phase_axis(axes: Axes, turns: int, most: int = MOST_TICKS) -> None:
-    """The x axis: one period in degrees."""
-    axes.set_xlim(0, 360 * turns)
-    axes.set_xticks(np.arange(0, 360 * turns + 1, angle_step(turns, most)))
-
-
 def phase_label(response: Response) -> str:
     """What that axis is."""
     drive = response.machine.drive.link
@@ -69,8 +69,10 @@ def phase_label(response: Response) -> str:
 
 def period_told(response: Response) -> str:
     """Length of a period, speed and model in words."""
-    turns = "one turn" if response.turns == 1 else f"{response.turns} turns"
-    return f"over {turns} at {told_speed(response.speed)}; model {response.model}"
+    told = {"speed": told_speed(response.speed), "model": response.model}
+    if response.turns == 1:
+        return say("over one turn at {speed}; model {model}", **told)
+    return say("over {turns} turns at {speed}; model {model}", turns=response.turns, **told)
 
 
 def gauge_figure(response: Response, name: str) -> Figure:
@@ -81,12 +83,19 @@ def gauge_figure(response: Response, name: str) -> Figure:
         "velocity": gauge.velocity,
         "acceleration": gauge.acceleration,
     }
-    what = f"{'Rotation' if gauge.rotation else 'Motion'} at {short(name)} {period_told(response)}"
+    at = short(name)
+    what = (
+        say("Rotation at {gauge}", gauge=at)
+        if gauge.rotation
+        else say("Motion at {gauge}", gauge=at)
+    )
+    what += f", {period_told(response)}"
     figure, panels = stack(len(signals), ROW, response.machine.title, what)
     for axes, (quantity, signal) in zip(panels, signals.items(), strict=True):
         unit = Unit.of(quantity, gauge.rotation, [signal.extreme(sign)[0] for sign in (1, -1)])
-        label = "rotation" if gauge.rotation and quantity == "displacement" else quantity
-        phase_axis(axes, response.turns)
+        turned = gauge.rotation and quantity == "displacement"
+        label = say("rotation") if turned else say(QUANTITIES[quantity])
+        crank_axis(axes, response.turns)
         signal_panel(axes, signal, unit.factor, f"{label}, {unit.name}")
     name_x(figure, phase_label(response))
     return figure
@@ -95,20 +104,22 @@ def gauge_figure(response: Response, name: str) -> Figure:
 def drive_figure(response: Response) -> Figure:
     """Torque of the drive and, where it varies, speed of the crank."""
     drive = response.drive
-    what = f"Drive of {short(response.machine.drive.link)}"
+    what = say("Drive of {link}", link=short(response.machine.drive.link))
     rows = len(response.machine.rows)
-    what += f", {rows} rows together," if rows > 1 else ""
-    what += f" {period_told(response)}"
+    what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
+    what += f", {period_told(response)}"
     count = 1 if drive.speed is None else 2
     figure, panels = stack(count, ROW + 0.6, response.machine.title, what)
     unit = Unit.of("force", True, [drive.torque.extreme(sign)[0] for sign in (1, -1)])
-    phase_axis(panels[0], response.turns)
-    signal_panel(panels[0], drive.torque, unit.factor, f"drive torque, {unit.name}", mean=True)
+    crank_axis(panels[0], response.turns)
+    signal_panel(
+        panels[0], drive.torque, unit.factor, say("drive torque, {unit}", unit=unit.name), mean=True
+    )
     if drive.speed is not None:
-        phase_axis(panels[1], response.turns)
-        signal_panel(panels[1], drive.speed, RPM, "crank speed, rpm", mean=True)
+        crank_axis(panels[1], response.turns)
+        signal_panel(panels[1], drive.speed, RPM, say("crank speed, rpm"), mean=True)
         panels[1].set_title(
-            f"varies by {shown(100 * drive.fluctuation)} % of its mean",
+            say("varies by {share} % of its mean", share=shown(100 * drive.fluctuation)),
             fontsize=SMALL,
             loc="left",
             pad=3,
@@ -130,6 +141,6 @@ def signal_panel(
         if abs(average) <= VARIES * float(np.ptp(line.values)):
             average = 0.0
         axes.axhline(average, color=LINES, linewidth=0.9, linestyle=MEAN, zorder=2)
-        text = f"dashed: mean {shown(average)}"
+        text = say("dashed: mean {value}", value=shown(average))
         axes.set_title(text, fontsize=SMALL, loc="right", pad=3, color=LINES)
     mark(axes, [line], [])

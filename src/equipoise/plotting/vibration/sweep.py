@@ -41,6 +41,7 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
+from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,9 +55,15 @@ TALL = {1: 2.9, 2: 2.2, 3: 1.8}
 TOP, NUMBERS, GAP = 0.58, 0.38, 0.3
 """Inches: heading; order and mode of resonances; gap below a panel."""
 QUANTITIES = {
-    "displacement": ("Peak-to-peak displacement", "peak_to_peak"),
-    "velocity": ("RMS of the velocity", "velocity_rms"),
-    "acceleration": ("RMS of the acceleration", "acceleration_rms"),
+    "displacement": (
+        to_say("Peak-to-peak displacement at the gauges against crank speed"),
+        "peak_to_peak",
+    ),
+    "velocity": (to_say("RMS of the velocity at the gauges against crank speed"), "velocity_rms"),
+    "acceleration": (
+        to_say("RMS of the acceleration at the gauges against crank speed"),
+        "acceleration_rms",
+    ),
 }
 PEAKS = 3
 """Curves whose highest peak is told."""
@@ -83,10 +90,10 @@ def gauges_curves(sweep: Sweep, quantity: str) -> Figure:
         read = {n: getattr(c, key) for n, c in sweep.gauges.items() if c.rotation == rotation}
         if read:
             unit = _unit(quantity, rotation, read)
-            label = "peak to peak" if quantity == "displacement" else "RMS"
-            named = f"rotation, {label}" if rotation else label
+            label = say("peak to peak") if quantity == "displacement" else say("RMS")
+            named = f"{say('rotation')}, {label}" if rotation else label
             panels.append(Panel(f"{named}, {unit.name}", ordered(read, unit.factor)))
-    return _figure(sweep, f"{what} at the gauges against crank speed", panels)
+    return _figure(sweep, say(what), panels)
 
 
 def _unit(quantity: str, rotation: bool, read: Mapping[str, Array]) -> Unit:
@@ -108,17 +115,17 @@ def mounts_curves(sweep: Sweep) -> Figure:
         }
         if read:
             unit = _unit("force", rotation, read)
-            panels.append(Panel(f"peak to peak, {unit.name}", ordered(read, unit.factor)))
+            panels.append(Panel(f"{say('peak to peak')}, {unit.name}", ordered(read, unit.factor)))
     handed = {
         name: curve.transmissibility
         for name, curve in sweep.mounts.items()
         if np.any(np.isfinite(curve.transmissibility))
     }
     if handed:
-        panels.append(Panel("transmissibility", _in_order_of(panels[0], handed), told=False))
-    what = "Force in the mounts"
+        panels.append(Panel(say("transmissibility"), _in_order_of(panels[0], handed), told=False))
+    what = say("Force in the mounts")
     if handed:
-        what += "; transmissibility: its RMS over the shaking force's"
+        what += "; " + say("transmissibility: its RMS over the shaking force's")
     return _figure(sweep, what, panels)
 
 
@@ -140,7 +147,7 @@ def _figure(sweep: Sweep, what: str, panels: list[Panel]) -> Figure:
     numbers = NUMBERS if sweep.resonances else 0.08
     whole = head + numbers + sum(above) + len(panels) * (tall + GAP) - GAP + FOOT
     figure = blank(WIDTH, whole)
-    heading(figure, sweep.machine.title, f"{what}; model {sweep.model}", LEFT)
+    heading(figure, sweep.machine.title, f"{what}; {say('model {model}', model=sweep.model)}", LEFT)
     legend_at(figure, keys, TOP - 0.06)
     top = head
     for number, (panel, room) in enumerate(zip(panels, above, strict=True)):
@@ -164,13 +171,13 @@ def _keys(sweep: Sweep) -> list[Any]:
     keys: list[Any] = []
     if sweep.resonances:
         dashes: Any = (0, (4, 2))
-        text = "order meets mode"
+        text = say("order meets mode")
         keys.append(Line2D([], [], color=LINES, linewidth=0.8, linestyle=dashes, label=text))
     if any(resonance.avoid is not None for resonance in sweep.resonances):
-        text = "keep away (pale: quiet)"
+        text = say("keep away (pale: quiet)")
         keys.append(Patch(facecolor=LOUD_BAND, linewidth=0, label=text))
     if np.any(~sweep.stable & np.isfinite(sweep.fluctuation)):
-        keys.append(Line2D([], [], color=INK, linestyle=(0, (2.2, 1.3)), label="not stable"))
+        keys.append(Line2D([], [], color=INK, linestyle=(0, (2.2, 1.3)), label=say("not stable")))
     return keys
 
 
@@ -204,6 +211,6 @@ def _tell_peaks(axes: Axes, sweep: Sweep, panel: Panel) -> None:
             continue
         told.append((k, size))
         if 0 < k < len(speed) - 1:
-            text = f"{shown(size)} at {shown(speed[k])} rpm"
+            text = say("{value} at {speed} rpm", value=shown(size), speed=shown(speed[k]))
             look: Any = {"wish": 20.0, "color": KINDS[number][0], "optional": len(told) > 1}
             labels.put(text, float(speed[k]), size, **look)

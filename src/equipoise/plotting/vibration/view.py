@@ -23,13 +23,14 @@ from equipoise.plotting.vibration.symbols import (
     draw_pivot,
     draw_turning,
 )
+from equipoise.words import say, to_say
 
 Array = np.ndarray[Any, Any]
 
 AXIS_NAMES: dict[View, tuple[str, str]] = {
-    "side": ("x (forward), mm", "y (up), mm"),
-    "rear": ("z (to the right), mm", "y (up), mm"),
-    "top": ("x (forward), mm", "z (to the right), mm"),
+    "side": (to_say("x (forward), mm"), to_say("y (up), mm")),
+    "rear": (to_say("z (to the right), mm"), to_say("y (up), mm")),
+    "top": (to_say("x (forward), mm"), to_say("z (to the right), mm")),
 }
 TICKS = 0.6
 """Inches between numbers on the axes, about."""
@@ -72,7 +73,7 @@ def settle(axes: Axes, middle: complex, scale: float, view: View) -> None:
     for center, reach, limit, put in ends:
         limit(center - reach, center + reach)
         put(step * np.arange(np.ceil((center - reach) / step), (center + reach) / step))
-    across, up = AXIS_NAMES[view]
+    across, up = map(say, AXIS_NAMES[view])
     axes.set_xlabel(across)
     axes.set_ylabel(up)
     if view == "top":
@@ -161,19 +162,19 @@ def keys_of(shape: Shape) -> dict[str, Any]:
     """Name -> sign, those that the picture has."""
     support = shape.support
     keys: dict[str, Any] = {
-        "support at rest": Patch(fc=PALE, ec=LINES, lw=0.8),
-        "one end of the swing": Line2D([], [], color=MAIN),
-        "the other": Line2D([], [], color=STRESS, linestyle=DASHED),
-        "joint of the linkages": _sign("s", 3.2),
-        "centre of mass": (_sign("o", 6.5), _sign("+", 6.5)),
+        say("support at rest"): Patch(fc=PALE, ec=LINES, lw=0.8),
+        say("one end of the swing"): Line2D([], [], color=MAIN),
+        say("the other"): Line2D([], [], color=STRESS, linestyle=DASHED),
+        say("joint of the linkages"): _sign("s", 3.2),
+        say("centre of mass"): (_sign("o", 6.5), _sign("+", 6.5)),
     }
     if any(gauge.point is not None for gauge in support.gauges.values()):
-        keys["gauge and its way"] = _sign("D", 5, INK)
+        keys[say("gauge and its way")] = _sign("D", 5, INK)
     pushing = {mount.one_sided for mount in support.mounts.values() if mount.point is not None}
     if False in pushing:
-        keys["mount"] = _sign("o", 4.5, face=LINES)
+        keys[say("mount")] = _sign("o", 4.5, face=LINES)
     if True in pushing:
-        keys["pushing mount"] = _sign("o", 4.5)
+        keys[say("pushing mount")] = _sign("o", 4.5)
     return keys
 
 
