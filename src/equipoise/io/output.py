@@ -45,8 +45,8 @@ def csv_text(table: Sequence[tuple[str, str, Array]]) -> str:
     return text.getvalue()
 
 
-def write(path: str | os.PathLike[str], text: str, *, replace: bool = True) -> None:
-    """Write a result file, whole or not at all.
+def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = True) -> None:
+    """Write a result file, whole or not at all; text as UTF-8.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def write(path: str | os.PathLike[str], text: str, *, replace: bool = True) -> N
     if not replace and os.path.lexists(path):
         raise UsageError(f"{shown}: is there already; choose another name")
     try:
-        write_bytes(path, text.encode("utf-8"))
+        write_bytes(path, text if isinstance(text, bytes) else text.encode("utf-8"))
     except FileError as problem:
         raise UsageError(f"{shown}: {problem}") from problem
 

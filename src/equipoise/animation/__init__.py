@@ -1,0 +1,1 @@
+"""Linkages that move: as a picture for pages, and as films."""

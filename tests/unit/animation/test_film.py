@@ -1,0 +1,143 @@
+"""Films, read back frame by frame and held to the motion they show."""
+
+from __future__ import annotations
+
+import re
+import sys
+from io import BytesIO
+
+import numpy as np
+import pytest
+from PIL import Image
+
+import equipoise as eq
+from equipoise.animation.film import gif, mp4
+from equipoise.errors import UsageError
+from equipoise.plotting.cartoon import DARK, LIGHT
+from equipoise.plotting.stage import Stage
+from equipoise.scene import Scene
+from unit.animation.samples import analyzed, prepared, three_turns
+
+SMALL = {"seconds": 0.4, "width": 320}
+"""Ten frames of a GIF, twelve of an MP4."""
+
+
+def frames_of_gif(data: bytes) -> list[np.ndarray]:
+    with Image.open(BytesIO(data)) as image:
+        assert image.info["loop"] == 0
+        found = []
+        for number in range(image.n_frames):
+            image.seek(number)
+            assert image.info["duration"] == 40
+            found.append(np.asarray(image.convert("RGB")))
+        return found
+
+
+def frames_of_mp4(data: bytes) -> list[np.ndarray]:
+    av = pytest.importorskip("av")
+    with av.open(BytesIO(data)) as film:
+        (stream,) = film.streams.video
+        assert stream.codec_context.name == "h264"
+        assert stream.average_rate == 30
+        assert stream.pix_fmt == "yuv420p"
+        frames = [frame.reformat(format="rgb24", src_colorspace=1) for frame in film.decode(stream)]
+        return [frame.to_ndarray() for frame in frames]
+
+
+def color(text: str) -> np.ndarray:
+    return np.array([int(text[k : k + 2], 16) for k in (1, 3, 5)])
+
+
+def check_tip(frames: list[np.ndarray], scene: Scene, shade: str, near: float) -> None:
+    """The middle of the tip's sign has its colour where the motion has the tip."""
+    stage = Stage(scene, None, len(frames), 320)
+    every = len(scene.crank_angle) // len(frames)
+    for frame, place in zip(frames, stage.at(scene.places["P"][::every]), strict=True):
+        assert frame.shape == (stage.height, 320, 3)
+        found = frame[int(place.imag), int(place.real)].astype(float)
+        assert abs(found - color(shade)).max() <= near
+        assert abs(frame[0, 0] - color(LIGHT["paper"])).max() <= near
+
+
+def test_a_gif_shows_the_motion_in_steady_colors() -> None:
+    _, scene, _ = analyzed("yamashita-1", 720)
+    data = gif(scene, traced=["P"], **SMALL)
+    assert data == gif(scene, traced=["P"], **SMALL)
+    frames = frames_of_gif(data)
+    assert len(frames) == 10
+    check_tip(frames, scene, LIGHT["main"], 0)
+    assert len({tuple(shade) for frame in frames for shade in frame.reshape(-1, 3)}) <= 256
+
+
+def test_a_film_shows_the_motion() -> None:
+    pytest.importorskip("av")
+    _, scene, _ = analyzed("yamashita-1", 720)
+    data = mp4(scene, traced=["P"], **SMALL)
+    assert data == mp4(scene, traced=["P"], **SMALL)
+    frames = frames_of_mp4(data)
+    assert len(frames) == 12
+    check_tip(frames, scene, LIGHT["main"], 45)  # hues are stored for two by two pixels
+
+
+def test_a_film_takes_as_many_turns_as_it_is_told_and_has_even_sides() -> None:
+    pytest.importorskip("av")
+    _, scene, arrow = prepared(three_turns(60))
+    told: list[tuple[int, int]] = []
+    options = {"seconds": 0.2, "width": 201, "arrow": arrow, "dark": True}
+    whole = frames_of_mp4(mp4(scene, told=lambda *count: told.append(count), **options))
+    assert len(whole) == 3 * 6
+    assert told == [(done, 18) for done in range(1, 19)]
+    assert all(side % 2 == 0 for side in whole[0].shape[:2])
+    assert abs(whole[0][0, 0] - color(DARK["paper"]).astype(float)).max() < 4
+    longer = frames_of_mp4(mp4(scene, turns=4, **options))
+    assert len(longer) == 4 * 6
+    difference = abs(longer[18].astype(float) - longer[0])
+    assert difference.mean() < 1  # after three turns all is as it was
+    assert abs(longer[6].astype(float) - longer[0]).mean() > 3 * difference.mean()
+
+
+def test_the_colors_and_the_ground_of_a_dark_gif() -> None:
+    _, scene, arrow = analyzed("geared-counterweight", 720)
+    frames = frames_of_gif(gif(scene, arrow=arrow, dark=True, **SMALL))
+    assert len(frames) == 10
+    for name in DARK.keys() - {"main"}:
+        assert np.any(np.all(frames[3] == color(DARK[name]), axis=-1)), name
+
+
+def test_part_of_a_turn_goes_there_and_back() -> None:
+    motion = eq.move(eq.load("yamashita-1"), np.radians(np.linspace(20, 140, 121)))
+    frames = frames_of_gif(gif(Scene.of(motion), traced=["P"], seconds=0.6, width=320))
+    assert len(frames) == 2 * 5
+    for k in range(1, 5):
+        assert np.array_equal(frames[k], frames[-k])
+    assert not np.array_equal(frames[0], frames[5])
+
+
+@pytest.mark.parametrize("kind", [gif, mp4])
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"seconds": 500.0}, "frames; 640 pixels wide it can have 1464: give a shorter time"),
+        ({"seconds": float("nan")}, "got nan s for a turn"),
+        ({"width": 50}, "got a width of 50 pixels; give 100 to 3840"),
+        ({"traced": ["Q"]}, "no point is called 'Q'"),
+    ],
+)
+def test_what_cannot_be_filmed_is_told(kind, options: dict[str, object], told: str) -> None:
+    pytest.importorskip("av")
+    _, scene, _ = analyzed("yamashita-1", 720 if "seconds" not in options else 30_000)
+    with pytest.raises(UsageError, match=re.escape(told)):
+        kind(scene, **options)
+
+
+def test_there_are_as_many_crank_angles_as_frames() -> None:
+    _, scene, _ = analyzed("yamashita-1", 90)
+    with pytest.raises(UsageError, match="got 90 crank angles, too few for 100 frames in a turn"):
+        gif(scene, seconds=4.0)
+
+
+def test_a_missing_library_is_told_with_the_command_that_installs_it(monkeypatch) -> None:
+    monkeypatch.setitem(sys.modules, "av", None)
+    _, scene, _ = analyzed("yamashita-1", 90)
+    with pytest.raises(UsageError, match=re.escape('pip install "equipoise[video]"')):
+        mp4(scene)

@@ -1,0 +1,218 @@
+"""Moving pictures, read back as a browser would and held to the motion they show."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.animation.svg import animated_svg
+from equipoise.errors import UsageError
+from equipoise.scene import Scene
+from equipoise.words import speaking
+from unit.animation.samples import analyzed, prepared, three_turns
+
+NAME = "{http://www.w3.org/2000/svg}"
+STEP = re.compile(
+    r"([\d.]+)%\{transform:translate\(([-\d.]+)px,([-\d.]+)px\)rotate\(([-\d.]+)deg\)"
+    r"(?:scale\(([-\d.]+),1\))?\}"
+)
+ROUNDED = 0.1
+"""Pixels: places and angles have two decimals, and an angle acts over up to 600 pixels."""
+
+
+class Picture:
+    """What a browser makes of an animation: places of shapes at the instants of its keyframes."""
+
+    def __init__(self, text: str) -> None:
+        self.root = ElementTree.fromstring(text)
+        style = self.root.findtext(f"{NAME}style") or ""
+        self.style = style
+        self.moves = {}
+        for number, steps in re.findall(r"@keyframes e\w+-(\d+)\{(.*)\}", style):
+            rows = [[float(v or 1) for v in row] for row in STEP.findall(steps)]
+            assert len(rows) == steps.count("%")
+            self.moves[number] = np.array(rows).T
+
+    def groups(self) -> Iterator[tuple[ElementTree.Element, np.ndarray | None]]:
+        for group in self.root.iter(f"{NAME}g"):
+            found = re.search(r"m(\d+)", group.get("class", ""))
+            yield group, None if found is None else self.moves[found[1]]
+
+    def circles(self, look: str) -> list[np.ndarray]:
+        """Place of each circle of a look at each instant, pixels; (1,) where it stands still."""
+        found = []
+        for group, move in self.groups():
+            for circle in group.iter(f"{NAME}circle"):
+                if circle.get("class") == look:
+                    own = complex(float(circle.get("cx")), float(circle.get("cy")))
+                    found.append(np.array([own]) if move is None else placed(move, own))
+        return found
+
+    def ends(self, look: str) -> list[np.ndarray]:
+        """The same of the points of each path of a look, (points, instants)."""
+        found = []
+        for group, move in self.groups():
+            for path in group.iter(f"{NAME}path"):
+                if path.get("class") == look and move is not None:
+                    numbers = re.findall(r"(-?[\d.]+) (-?[\d.]+)", path.get("d"))
+                    own = [complex(float(x), float(y)) for x, y in numbers]
+                    found.append(np.array([placed(move, z) for z in own]))
+        return found
+
+
+def placed(move: np.ndarray, own: complex) -> np.ndarray:
+    _, x, y, angle, stretch = move
+    return x + 1j * y + (own.real * stretch + 1j * own.imag) * np.exp(1j * np.radians(angle))
+
+
+def pixels(picture: Picture, scene: Scene, one: str, other: str):
+    """Pixels of a place in m, as two pivots have them."""
+    still = [circle[0] for circle in picture.circles("pin") if len(circle) == 1]
+    held = scene.pins.union(to for _, to in scene.springs)
+    at = dict(zip([name for name in scene.frame if name in held], still, strict=True))
+    first, second = scene.places[one][0], scene.places[other][0]
+    turn = (at[other] - at[one]) / np.conj(second - first)
+    assert abs(turn.imag) < 1e-3 * turn.real
+    return lambda place: at[one] + np.conj(place - first) * turn
+
+
+CASES = [("watt-six-bar", "A", "G"), ("geared-counterweight", "O2", "E"), ("yamashita-1", "A", "D")]
+
+
+@pytest.mark.parametrize(("name", "one", "other"), [*CASES, ("quick-return", "A", "D")])
+def test_pins_are_where_the_motion_has_them(name: str, one: str, other: str) -> None:
+    _, scene, _ = analyzed(name)
+    picture = Picture(animated_svg(scene, title=name, frames=40))
+    to_pixels = pixels(picture, scene, one, other)
+    shown = [circle for circle in picture.circles("pin") if len(circle) > 1]
+    moving = [name for name in scene.pins if name not in scene.frame]
+    assert len(shown) == len(moving)
+    every = [to_pixels(scene.places[name][:: 720 // 40]) for name in moving]
+    for circle in shown:
+        off = [abs(circle[:-1] - place).max() for place in every]
+        assert min(off) < ROUNDED
+        assert circle[0] == pytest.approx(circle[-1], abs=ROUNDED)
+
+
+@pytest.mark.parametrize(("name", "one", "other"), CASES)
+def test_links_reach_from_pin_to_pin(name: str, one: str, other: str) -> None:
+    _, scene, _ = analyzed(name)
+    picture = Picture(animated_svg(scene, title=name, frames=30))
+    to_pixels = pixels(picture, scene, one, other)
+    places = {key: to_pixels(place[:: 720 // 30]) for key, place in scene.places.items()}
+    drawn = [corner[:-1] for corners in picture.ends("body") for corner in corners]
+    for body in scene.bodies:
+        for point in body.outline if len(body.outline) > 1 else ():
+            assert min(abs(corner - places[point]).max() for corner in drawn) < ROUNDED
+
+
+def test_the_arrow_ends_on_the_curve_of_the_force_and_is_in_its_direction() -> None:
+    found, scene, arrow = analyzed("yamashita-1")
+    picture = Picture(animated_svg(scene, title="", frames=40, arrow=arrow))
+    (shaft,), (head,) = picture.ends("force"), picture.ends("head")
+    force = np.conj(found.forces.shaking_force.value[:: 720 // 40])
+    reach = (head[0] - shaft[0])[:-1]
+    per_newton = abs(reach[0]) / abs(force[0])
+    np.testing.assert_allclose(reach, force * per_newton, atol=2 * ROUNDED)
+    assert abs(shaft[1] - head[0]).max() < 13  # it ends within its head
+
+
+def test_a_spring_hangs_between_its_ends() -> None:
+    _, scene, _ = analyzed("spring-balanced-crank")
+    picture = Picture(animated_svg(scene, title="", frames=40))
+    to_pixels = pixels(picture, scene, "A", "D")
+    (spring,) = picture.ends("spring")
+    for end, name in zip((spring[0], spring[-1]), scene.springs[0], strict=True):
+        place = to_pixels(scene.places[name][:: 720 // 40])
+        assert abs(end[:-1] - place).max() < 0.3  # its stretch has four decimals
+
+
+def test_blocks_stay_in_their_slots() -> None:
+    _, scene, _ = analyzed("scotch-yoke")
+    picture = Picture(animated_svg(scene, title="", frames=40))
+    slot, *blocks = (box.mean(axis=0) for box in picture.ends("slot") + picture.ends("block"))
+    outline = picture.ends("slot")[0]
+    half = [abs(outline[k + 1] - outline[k]) / 2 for k in (0, 1)]
+    way = (outline[1] - outline[0]) / abs(outline[1] - outline[0])
+    aside = (blocks[0] - slot) / way
+    assert abs(aside.imag).max() < ROUNDED
+    assert np.all(abs(aside.real) < half[0])
+
+
+def test_wheels_of_many_turns_turn_on_and_end_as_they_began() -> None:
+    _, scene, _ = prepared(three_turns(720))
+    text = animated_svg(scene, title="", frames=40, seconds=2.0)
+    picture = Picture(text)
+    assert "animation-duration:6s" in text
+    for times, *_, angle, _ in picture.moves.values():
+        assert times[0] == 0 and times[-1] == 100 and len(times) == 3 * 40 + 1
+        whole = (angle[-1] - angle[0]) / 360
+        assert whole == pytest.approx(round(whole), abs=1e-3)
+        assert abs(np.diff(angle)).max() < 60
+    assert max(abs(angle[-1] - angle[0]) for _, _, _, angle, _ in picture.moves.values()) >= 3 * 360
+
+
+def test_part_of_a_turn_goes_there_and_back() -> None:
+    motion = eq.move(eq.load("yamashita-1"), np.radians(np.linspace(20, 140, 121)))
+    text = animated_svg(Scene.of(motion), title="", frames=60, seconds=3)
+    assert "animation-direction:alternate" in text
+    assert "animation-duration:1s" in text
+    place = next(iter(Picture(text).moves.values()))
+    assert len(place[0]) == 21
+
+
+def test_pictures_on_one_page_do_not_disturb_each_other() -> None:
+    texts = []
+    for name in ("yamashita-1", "yamashita-2"):
+        _, scene, arrow = analyzed(name, 90)
+        texts.append(animated_svg(scene, title='<"one" & two>', traced=["P"], arrow=arrow))
+        assert texts[-1] == animated_svg(scene, title='<"one" & two>', traced=["P"], arrow=arrow)
+    marks = []
+    for text in texts:
+        root = ElementTree.fromstring(text)
+        assert not any(element.get("id") for element in root.iter())
+        assert root.findtext(f"{NAME}title") == '<"one" & two>'
+        assert root.get("role") == "img"
+        assert "<script" not in text and text.count("http") == 1  # the name of SVG itself
+        (mark,) = set(re.findall(r"@keyframes (e\w+)-", text))
+        marks.append(mark)
+        style = root.findtext(f"{NAME}style") or ""
+        rules = re.sub(r"@keyframes .*|@media[^{]*\{", "", style)
+        assert all(mark in rule for rule in re.findall(r"[^{}]+(?=\{)", rules))
+        for media in ("prefers-reduced-motion:reduce", "print"):
+            assert re.search(rf"@media \(?{media}\)?\{{\.{mark} \.m\{{animation:none\}}\}}", style)
+    assert len(set(marks)) == 2
+
+
+def test_a_six_bar_is_small_and_speaks_the_language_of_the_reader() -> None:
+    _, scene, arrow = analyzed("watt-six-bar")
+    with speaking("ja"):
+        text = animated_svg(scene, title="ワット", arrow=arrow)
+    assert len(text.encode()) < 60_000
+    assert "起振力" in text
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        ({"traced": ["Q"]}, "no point is called 'Q'; there are"),
+        ({"traced": ["A"]}, "'A' is a point of the frame, which has no path; give another"),
+        ({"seconds": 0.0}, "got 0 s for a turn; give more than 0 s, and at most 600 s"),
+        ({"width": 4000}, "got a width of 4000 pixels; give 100 to 3840"),
+    ],
+)
+def test_what_cannot_be_drawn_is_told(options: dict[str, object], told: str) -> None:
+    _, scene, _ = analyzed("yamashita-1", 90)
+    with pytest.raises(UsageError, match=re.escape(told)):
+        animated_svg(scene, title="", **options)
+
+
+def test_one_crank_angle_does_not_move() -> None:
+    scene = Scene.of(eq.move(eq.load("yamashita-1"), [0.3]))
+    with pytest.raises(UsageError, match="got one crank angle"):
+        animated_svg(scene, title="")
