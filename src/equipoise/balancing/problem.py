@@ -104,8 +104,14 @@ class Problem:
     @staticmethod
     def value_of(machine: Machine, objective: Objective) -> float:
         """Value of an objective for a machine, read off the machine itself."""
+        found = Problem.signals_of(machine, objective)
+        return max(measured(signal, objective.measure) for signal in found)
+
+    @staticmethod
+    def signals_of(machine: Machine, objective: Objective) -> list[Array]:
+        """Signals (N,) of a machine whose largest measure an objective is."""
         signals = _signals(Effects(machine, ()), objective, Near(machine))
-        return max(measured(signal.start, objective.measure) for signal in signals)
+        return [signal.start for signal in signals]
 
     def cost_of(self, machine: Machine) -> float:
         """What is to become small, for a machine; 1 for each unit of weight before."""

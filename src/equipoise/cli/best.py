@@ -7,7 +7,8 @@ import sys
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.app import MANY, OUT, SIGNED, STORE, app
-from equipoise.cli.options import check_belonging, check_result_file, whole
+from equipoise.cli.options import check_belonging, check_folder, check_result_file, whole
+from equipoise.cli.results import Kind, draw
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -32,6 +33,8 @@ def best(
     design: Annotated[str | None, SIGNED] = None,
     json: bool = False,
     csv: str | None = None,
+    plot: str | None = None,
+    format: Kind | None = None,
 ) -> None:
     """The best designs of a store, of those that keep every limit; of several aims, the trade-offs.
 
@@ -54,17 +57,24 @@ def best(
         Print one JSON object in SI units, and nothing else.
     csv
         Write the designs to this file, in SI units.
+    plot
+        Draw the designs into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
     """
     from equipoise.io.stored import machine_of
     from equipoise.studies import best as of_stores
     from equipoise.studies.store import open_store
 
     check_belonging("--out", out, design=design)
+    check_belonging("--plot", plot, format=format)
     opened = open_store(store)
     number = None if design is None else whole("--design", design, 0, opened.size - 1)
     many = of_stores.COUNT if count is None else whole("--count", count, 1, MOST_TOLD)
     if csv is not None:
         check_result_file("--csv", csv, [], [] if out is None else [out])
+    if plot is not None:
+        check_folder("--plot", plot)
     if out is not None:
         _check_out(opened, out)
     ways: Any = dict.fromkeys(by or ()) | dict.fromkeys(largest or (), "largest")
@@ -73,6 +83,8 @@ def best(
     model = None if out is None else machine_of(opened, chosen)
     if csv is not None:
         _write(found, opened, csv)
+    if plot is not None:
+        _draw(found, opened, plot, format or "svg")
     _show(found, opened, json)
     if model is not None and out is not None:
         _save(model, opened, chosen, out)
@@ -98,6 +110,14 @@ def _write(found: Best, store: Store, path: str) -> None:
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     write_designs(path, found.designs.tolist(), columns, store.units)
+
+
+def _draw(found: Best, store: Store, folder: str, kind: Kind) -> None:
+    from equipoise.cli.designs import title_of
+    from equipoise.io.study_units import units_in
+    from equipoise.plotting.studies import best_drawings
+
+    draw(best_drawings(found, title_of(store), units_in(store)), folder, kind)
 
 
 def _show(found: Best, store: Store, json: bool) -> None:

@@ -5,7 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.app import OUT, SIGNED, STUDY, app
-from equipoise.cli.options import check_belonging, check_result_file, naming, whole
+from equipoise.cli.options import (
+    check_belonging,
+    check_folder,
+    check_result_file,
+    naming,
+    whole,
+)
+from equipoise.cli.results import Kind, draw
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -15,6 +22,7 @@ if TYPE_CHECKING:
     from equipoise.studies.search import Searched
     from equipoise.studies.study import Study
 
+Own = tuple["np.ndarray[Any, Any]", "np.ndarray[Any, Any]"]
 MOST_SEED = 2**32 - 1
 
 
@@ -30,6 +38,8 @@ def search(
     design: Annotated[str | None, SIGNED] = None,
     json: bool = False,
     csv: str | None = None,
+    plot: str | None = None,
+    format: Kind | None = None,
 ) -> None:
     """Look for the best designs of a study; of several aims, those that no other beats.
 
@@ -51,15 +61,22 @@ def search(
         Print one JSON object in SI units, and nothing else.
     csv
         Write the designs to this file, in SI units.
+    plot
+        Draw the designs, and how the search went, into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
     """
     from equipoise.io.studies import load_study
     from equipoise.io.study_units import units_of
 
     check_belonging("--out", out, design=design)
+    check_belonging("--plot", plot, format=format)
     asked = load_study(study)
     number = 0 if design is None else whole("--design", design, 0, 100_000)
     if csv is not None:
         check_result_file("--csv", csv, [study], [] if out is None else [out])
+    if plot is not None:
+        check_folder("--plot", plot)
     if out is not None:
         from equipoise.cli.designs import check_model_out
 
@@ -71,7 +88,12 @@ def search(
         most = len(found.values) - 1
         if number > most:
             raise UsageError(f"--design: got {number}; give a whole number from 0 to {most}")
-        _give(found, units, json, csv)
+        own = _own(found.study) if plot is not None or not json else None
+        if plot is not None:
+            from equipoise.plotting.studies import searched_drawings
+
+            draw(searched_drawings(found, units, own), plot, format or "svg")
+        _give(found, units, own, json, csv)
     if out is not None:
         _save(found, number, out)
 
@@ -105,7 +127,9 @@ def _found(study: Study, units: dict[str, Unit], options: dict[str, int]) -> Sea
         )
 
 
-def _give(found: Searched, units: dict[str, Unit], json: bool, csv: str | None) -> None:
+def _give(
+    found: Searched, units: dict[str, Unit], own: Own | None, json: bool, csv: str | None
+) -> None:
     if csv is not None:
         from equipoise.cli.designs import si_units, write_designs
         from equipoise.terminal.designs import columns_of
@@ -120,10 +144,10 @@ def _give(found: Searched, units: dict[str, Unit], json: bool, csv: str | None) 
     else:
         from equipoise.terminal.search import print_searched
 
-        print_searched(found, units, _own(found.study))
+        print_searched(found, units, own)
 
 
-def _own(study: Study) -> tuple[np.ndarray[Any, Any], np.ndarray[Any, Any]] | None:
+def _own(study: Study) -> Own | None:
     """Values and figures of the model itself, for comparison; None where it cannot be computed."""
     import numpy as np
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 from equipoise.cli.app import SIGNED, STUDY, app
-from equipoise.cli.options import naming, whole
+from equipoise.cli.options import check_belonging, check_folder, naming, whole
+from equipoise.cli.results import Kind, draw
 from equipoise.errors import ModelError, UsageError
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ def tolerance(
     *,
     designs: Annotated[str | None, SIGNED] = None,
     json: bool = False,
+    plot: str | None = None,
+    format: Kind | None = None,
 ) -> None:
     """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
 
@@ -35,10 +38,17 @@ def tolerance(
         Machines that are drawn, instead of as many as the study has.
     json
         Print one JSON object in SI units, and nothing else.
+    plot
+        Draw the scatter of figures and what causes it into this folder.
+    format
+        With --plot: kind of the pictures, svg if not given.
     """
     from equipoise.io.studies import load_study
     from equipoise.io.study_units import units_of
 
+    check_belonging("--plot", plot, format=format)
+    if plot is not None:
+        check_folder("--plot", plot)
     asked = load_study(study)
     if designs is not None:
         number = whole("--designs", designs, 1, MOST_DESIGNS)
@@ -52,6 +62,10 @@ def tolerance(
             if designs is None or error.where != "sampling.designs":
                 raise
             raise UsageError(f"--designs: {error.what}") from error
+    if plot is not None:
+        from equipoise.plotting.studies import tolerance_drawings
+
+        draw(tolerance_drawings(found, units), plot, format or "svg")
     if json:
         from equipoise.io.output import json_text
 

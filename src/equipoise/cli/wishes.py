@@ -99,15 +99,16 @@ def plan_of(
 
 
 def _freed(machine: Machine, plan: Balance, freed: Freed) -> Balance:
+    from equipoise.balancing.usual import pin_of
     from equipoise.mechanism.balance import AddedMass, CenterMove, Phases
 
     masses = []
     if freed.crank_counterweight:
         drive = machine.drive.link
-        masses.append(AddedMass(drive, _pin(machine, drive), _weight(machine, drive, freed)))
+        masses.append(AddedMass(drive, pin_of(machine, drive), _weight(machine, drive, freed)))
     for link in freed.counterweight or ():
         _check_link("--counterweight", machine, link)
-        masses.append(AddedMass(link, _pin(machine, link), _weight(machine, link, freed)))
+        masses.append(AddedMass(link, pin_of(machine, link), _weight(machine, link, freed)))
     for link in freed.move_cm or ():
         _check_link("--move-cm", machine, link)
     return replace(
@@ -128,14 +129,9 @@ def _check_link(option: str, machine: Machine, link: str) -> None:
         raise UsageError(f"{option}: {unknown(link, machine.links, 'link')}")
 
 
-def _pin(machine: Machine, link: str) -> str:
-    """The link's point in the frame; its first point where it has none."""
-    points = machine.links[link].points
-    return next((name for name in points if name in machine.frame), next(iter(points)))
-
-
 def _weight(machine: Machine, link: str, freed: Freed) -> Weight:
     """A weight of the given shape; in a room as large as the link where nothing else holds it."""
+    from equipoise.balancing.usual import reach_of
     from equipoise.mechanism.balance import MATERIALS, Weight
     from equipoise.mechanism.checks import unknown
 
@@ -154,15 +150,8 @@ def _weight(machine: Machine, link: str, freed: Freed) -> Weight:
             raise UsageError(f"--material: {unknown(freed.material, MATERIALS, 'material')}")
         given["density"] = MATERIALS[freed.material]
     if "radius" not in given and "mass" not in given:
-        given["radius"] = _reach(machine, link)
+        given["radius"] = reach_of(machine, link)
     return Weight(**given)
-
-
-def _reach(machine: Machine, link: str) -> float:
-    """Distance of a link's farthest point from its pin in the frame, m."""
-    points = machine.links[link].points
-    center = complex(*points[_pin(machine, link)])
-    return max(abs(complex(*point) - center) for point in points.values()) or 0.05
 
 
 def _geared(machine: Machine, freed: Freed) -> tuple[Any, ...]:

@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Periodic
 from equipoise.structures.body import MISSING
 from equipoise.structures.branches import Progress, follow_speeds
 from equipoise.structures.choice import chosen_model, left_out, steady_speed, usual_step
@@ -270,37 +271,49 @@ def _gathered(
 
 
 def _curve(name: str, answers: list[Response | None], first: Response) -> GaugeCurve:
-    orders = max(a.gauges[name].displacement.amplitudes.shape[-1] for a in answers if a is not None)
-    columns = np.full((6, len(answers)), np.nan)
-    sizes = np.full((len(answers), orders), np.nan)
-    for k, answer in enumerate(answers):
-        if answer is not None:
-            gauge = answer.gauges[name]
-            signals = (gauge.displacement, gauge.velocity, gauge.acceleration)
-            columns[:, k] = [
-                value for s in signals for value in (float(s.peak_to_peak), float(s.vibration_rms))
-            ]
-            found = gauge.displacement.sizes
-            sizes[k] = np.pad(found, (0, orders - len(found)))
+    gauges = [None if answer is None else answer.gauges[name] for answer in answers]
+    columns, sizes = [], np.empty(0)
+    for kind in ("displacement", "velocity", "acceleration"):
+        there, signal = _together([None if g is None else getattr(g, kind) for g in gauges])
+        columns += [_spread(there, signal.peak_to_peak), _spread(there, signal.vibration_rms)]
+        if kind == "displacement":
+            sizes = _spread(there, signal.sizes)
     keys = [f"{quantity}{figure}" for quantity in QUANTITIES for figure in TOLD]
     curves = dict(zip(keys, columns, strict=True))
     return GaugeCurve(**curves, harmonics=sizes, rotation=first.gauges[name].rotation)
 
 
 def _mount_curve(name: str, answers: list[Response | None], first: Response) -> MountCurve:
-    columns = np.full((len(MOUNT), len(answers)), np.nan)
-    for k, answer in enumerate(answers):
-        if answer is not None:
-            mount = answer.mounts[name]
-            force = mount.force
-            columns[:, k] = (
-                mount.largest - mount.smallest,
-                float(force.vibration_rms),
-                mount.whole,
-                mount.lifts_off,
-            )
-    curves = dict(zip(MOUNT, columns, strict=True))
+    mounts = [None if answer is None else answer.mounts[name] for answer in answers]
+    there, force = _together([None if mount is None else mount.force for mount in mounts])
+    found = [mount for mount in mounts if mount is not None]
+    smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in found])
+    values = (
+        force.extreme(1)[0] - smallest,
+        force.vibration_rms,
+        np.array([mount.whole for mount in found]),
+        np.array([mount.lifts_off for mount in found]),
+    )
+    curves = dict(zip(MOUNT, (_spread(there, value) for value in values), strict=True))
     return MountCurve(**curves, torsional=first.mounts[name].torsional)
+
+
+def _together(signals: list[Periodic | None]) -> tuple[Array, Periodic]:
+    """Where (S,) there are signals, and these as one, amplitudes (there, K + 1)."""
+    there = np.array([signal is not None for signal in signals])
+    found = [signal for signal in signals if signal is not None]
+    count = max(signal.amplitudes.shape[-1] for signal in found)
+    amplitudes = np.zeros((len(found), count), complex)
+    for row, signal in zip(amplitudes, found, strict=True):
+        row[: signal.amplitudes.shape[-1]] = signal.amplitudes
+    return there, Periodic(amplitudes, found[0].turns)
+
+
+def _spread(there: Array, values: Array) -> Array:
+    """Values (there, ...) at their places among all speeds (S, ...), NaN at the others."""
+    found = np.full((len(there), *values.shape[1:]), np.nan)
+    found[there] = values
+    return found
 
 
 def _tops(speed: Array, values: Array) -> list[tuple[float, float]]:

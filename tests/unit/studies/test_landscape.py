@@ -1,0 +1,166 @@
+"""An objective over two numbers, against balancing, single machines and Grashof's rule."""
+
+from __future__ import annotations
+
+from math import degrees, pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError
+from equipoise.studies.landscape import Landscape, landscape
+
+RIPPLE = eq.Objective("shaking_force.y", "ripple")
+"""U of Yamashita, Ichikawa and Mori (63), times the mass."""
+COUPLER = "links.coupler.center_of_mass"
+WEIGHT = "counterweights.crank"
+
+
+def over_coupler(count: int = 13) -> Landscape:
+    """Their Fig. 9."""
+    over = {
+        f"{COUPLER}.x": np.linspace(-0.06, 0.06, count),
+        f"{COUPLER}.y": np.linspace(-0.04, 0.08, count),
+    }
+    return landscape(eq.Template.load("yamashita-2"), over, RIPPLE)
+
+
+def over_counterweight(count: int = 13) -> Landscape:
+    """Their Fig. 12."""
+    over = {
+        f"{WEIGHT}.radius": np.linspace(0.0, 0.07, count),
+        f"{WEIGHT}.direction": np.linspace(0.0, 2 * pi, count),
+    }
+    return landscape(eq.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
+
+
+def lowest(found: Landscape) -> tuple[float, float]:
+    row, column = np.unravel_index(np.nanargmin(found.values), found.values.shape)
+    return found.x[column], found.y[row]
+
+
+def test_fig_9_has_its_lowest_place_where_balancing_has_it() -> None:
+    found = over_coupler()
+    balanced = eq.balance(eq.load("balance-coupler"))
+    best = balanced.machine.links["coupler"].center_of_mass
+    ((before, after),) = balanced.objectives.values()
+    assert found.best == pytest.approx(best, abs=1e-7)
+    assert (found.least, found.before) == pytest.approx((after, before), rel=1e-9)
+    assert found.start == pytest.approx((-0.045, -0.020))
+    assert lowest(found) == pytest.approx(best, abs=0.01), "a step is 10 mm"
+    assert np.min(found.values) >= found.least
+
+
+def test_fig_12_has_its_lowest_place_where_the_paper_and_balancing_have_it() -> None:
+    found = over_counterweight()
+    radius, direction = found.best
+    assert (1e3 * radius, degrees(direction) - 83) == pytest.approx((35.70, 111.02), abs=0.005)
+    ((_, after),) = eq.balance(eq.load("balance-crank")).objectives.values()
+    assert found.least == pytest.approx(after, rel=1e-9)
+    assert lowest(found) == pytest.approx(found.best, abs=0.27), "steps of 6 mm and 30 deg"
+    assert found.start is None
+
+
+def test_each_point_is_what_an_analysis_of_that_machine_gives() -> None:
+    """The quick way by inertial parameters, against machines one by one."""
+    found = over_counterweight(5)
+    crank = eq.load("yamashita-1").links["crank"]
+    assert crank.mass is not None and crank.center_of_mass is not None and crank.inertia is not None
+    place = found.x[2] * np.exp(1j * found.y[1])
+    mass = crank.mass + 1.145
+    center = (crank.mass * complex(*crank.center_of_mass) + 1.145 * place) / mass
+    own = crank.inertia + crank.mass * abs(center - complex(*crank.center_of_mass)) ** 2
+    machine = eq.load("yamashita-1").with_link(
+        "crank",
+        mass=mass,
+        center_of_mass=(center.real, center.imag),
+        inertia=own + 1.145 * abs(center - place) ** 2,
+    )
+    force = eq.analyze(machine, 720).forces.shaking_force.y
+    assert found.values[1, 2] == pytest.approx(np.std(force), rel=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("name", "objective"),
+    [
+        ("lee-kim-b", eq.Objective("shaking_moment", "peak", about="O4")),
+        ("lee-kim-b", eq.Objective("joints.A", "peak", orders=(1, 2))),
+        ("four-row-transplanter", eq.Objective("shaking_force", "rms")),
+        ("spring-balanced-crank", eq.Objective("drive_torque", "area")),
+    ],
+)
+def test_quick_and_slow_way_agree(name: str, objective: eq.Objective) -> None:
+    from equipoise.balancing.problem import Problem
+
+    model = eq.Template.load(name)
+    over = {"links.coupler.mass": [0.3, 0.5, 0.9], "links.rocker.inertia": [1e-5, 4e-4]}
+    found = landscape(model, over, objective)
+    for row, inertia in enumerate(found.y):
+        for column, mass in enumerate(found.x):
+            machine: Any = model.machine(dict(zip(found.paths, (mass, inertia), strict=True)))
+            value = Problem.value_of(machine, objective)
+            assert found.values[row, column] == pytest.approx(value, rel=1e-9)
+
+
+def test_what_cannot_turn_has_no_value() -> None:
+    """Against Grashof: the crank turns where shortest and longest are less than the others."""
+    over = {
+        "links.crank.points.B.x": np.linspace(0.011, 0.081, 8),
+        "links.coupler.points.C.x": np.linspace(0.041, 0.151, 8),
+    }
+    found = landscape(eq.Template.load("yamashita-1"), over, eq.Objective("shaking_force"))
+    for row, coupler in enumerate(found.y):
+        for column, crank in enumerate(found.x):
+            bars = sorted([crank, coupler, 0.08, 0.088])
+            turns = bars[0] + bars[3] < bars[1] + bars[2] and crank == bars[0]
+            assert np.isnan(found.values[row, column]) != turns
+
+
+BAD: dict[str, tuple[dict[str, Any], str, dict[str, float]]] = {
+    "one number": ({"links.crank.mass": [1, 2]}, "give two paths", {}),
+    "unknown number": (
+        {"links.crank.mas": [1, 2], "links.rocker.mass": [1, 2]},
+        "did you mean 'links.crank.mass'",
+        {},
+    ),
+    "unknown link": (
+        {"counterweights.cran.mass": [1, 2], "links.rocker.mass": [1, 2]},
+        "did you mean 'crank'",
+        {},
+    ),
+    "falling": ({"links.crank.mass": [2, 1], "links.rocker.mass": [1, 2]}, "rising", {}),
+    "below nothing": (
+        {"counterweights.crank.mass": [-1, 2], "links.rocker.mass": [1, 2]},
+        "give 0 or more",
+        {},
+    ),
+    "set too": (
+        {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]},
+        "is set too",
+        {"links.crank.mass": 1.0},
+    ),
+    "never turns": (
+        {"links.crank.points.B.x": [1, 2], "links.rocker.mass": [1, 2]},
+        "no linkage turns",
+        {},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_what_cannot_be_drawn_is_told(name: str) -> None:
+    over, words, given = BAD[name]
+    with pytest.raises(EquipoiseError, match=words):
+        landscape(eq.Template.load("yamashita-1"), over, RIPPLE, given)
+
+
+def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
+    over: Any = {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]}
+    with pytest.raises(EquipoiseError, match="did you mean 'shaking_force'"):
+        landscape(eq.Template.load("yamashita-1"), over, eq.Objective("shaking_forc"))
+    with pytest.raises(EquipoiseError, match=r"Template\.of\(machine\)"):
+        landscape(eq.load("yamashita-1"), over, RIPPLE)  # type: ignore[arg-type]
+    with pytest.raises(EquipoiseError, match="this is a tool"):
+        landscape(eq.Template.load("pole-saw"), over, RIPPLE)
