@@ -107,6 +107,11 @@ OTHER_SCRIPTS = (
 """Fonts, where a computer has them, for signs that Matplotlib's own font lacks."""
 
 
+def font_folder() -> str:
+    """Where the fonts are that everybody has who has Matplotlib."""
+    return f"{matplotlib.get_data_path()}/fonts/ttf"
+
+
 @cache
 def _families() -> list[str]:
     installed = {font.name for font in font_manager.fontManager.ttflist}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
 from string import Formatter
 from threading import Thread
@@ -16,6 +17,7 @@ SOURCES = Path(equipoise.__file__).parent
 TRANSLATED = sorted(set(LANGUAGES) - {"en"})
 
 
+@cache
 def said() -> set[str]:
     """First arguments of `say` and `to_say` in the whole package; each has to be a plain text."""
     found = set()

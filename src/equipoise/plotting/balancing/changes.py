@@ -177,9 +177,10 @@ def _keys(drawn: list[Mark]) -> list[Any]:
     """What the signs are that the picture has."""
     kinds = {one.kind for one in drawn}
     found: list[Any] = []
-    for kind, name in NAMES.items():
+    for kind, text in NAMES.items():
         if kind not in kinds:
             continue
+        name = say(text)
         if kind == "mass":
             look: Any = {"facecolor": MAIN, "alpha": FILL, "linewidth": 0}
             found.append(Patch(label=name, **look))

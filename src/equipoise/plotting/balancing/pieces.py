@@ -83,7 +83,7 @@ def _pieces(placed: Placed, change: Change) -> Iterator[Mark]:
     center = MM * placed.at(link, complex(*values["center"]))
     for piece in values["pieces"]:
         place = MM * placed.at(link, complex(*piece["place"]))
-        text = f"{grams(piece['mass'])} on {short(link, SHORT)}"
+        text = say("{mass} on {link}", mass=grams(piece["mass"]), link=short(link, SHORT))
         outline, holes, edge = _shape(placed, link, piece, center, place)
         yield Mark("mass", outline, holes, edge, text, _way(place - center))
 

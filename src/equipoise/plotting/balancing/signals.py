@@ -66,7 +66,7 @@ def signal_figures(found: Balanced) -> dict[str, Figure]:
 
 def _told(found: Balanced) -> str:
     """What is shown of a signal, in words."""
-    of_one = say("one row") + ", " if len(found.original.rows) > 1 else ""
+    of_one = say("of one row") + ", " if len(found.original.rows) > 1 else ""
     speed = told_speed(found.original.drive.speed)
     return of_one + say("before and after, at {speed}", speed=speed)
 

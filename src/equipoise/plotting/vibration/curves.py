@@ -163,8 +163,9 @@ def resonance_names(axes: Axes, resonances: Sequence[Resonance]) -> None:
         ends = ([speed, x], [1, 1 + 0.09 / height])
         transform = axes.get_xaxis_transform()
         axes.plot(*ends, color=FAINT, linewidth=0.6, clip_on=False, transform=transform)
+    words = {"order": say("order"), "mode": say("mode")}
     for key, foot in feet.items():
-        axes.text(low - 0.1 * inch, foot, key, ha="right", color=LINES, **look)
+        axes.text(low - 0.1 * inch, foot, words[key], ha="right", color=LINES, **look)
 
 
 def fraction(order: float) -> str:

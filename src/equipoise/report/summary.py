@@ -1,0 +1,264 @@
+"""The summary of a linkage in plain words: what shakes, how much, why, and what helps most."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, pi, sin
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.report.changes import told
+from equipoise.report.document import Answer, Tile
+from equipoise.report.findings import Findings
+from equipoise.report.naming import CAUSES, objective_named, output_named, scaled
+from equipoise.report.numbers import PER_RPM, angle, brief, capital, change, percent
+from equipoise.report.outcomes import planting_told, vibration_told
+from equipoise.report.shaking import Shaking, shares
+from equipoise.signals import Figures
+from equipoise.words import say
+
+SMALL = 0.005
+"""Share of a link or cause below which it is not named."""
+LEADING = 0.5
+"""Share of the mean square from which one order is told as the whole."""
+STRETCHED, ROUND = 0.8, 0.6
+"""Share of the mean square along one direction: from where, and up to where, it is called so."""
+WORSE, MOST_WORSE = 0.1, 3
+
+
+def answers(found: Findings) -> Iterator[Answer]:
+    """The summary, a question at a time; what the file does not tell is left out."""
+    if found.analysis.solved is None:
+        missing = say("Forces are not computed, because masses of links are missing.")
+        yield Answer(say("What shakes"), (missing,))
+    else:
+        shaking = Shaking.of(found)
+        yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
+        yield Answer(say("Why"), tuple(_why(found)))
+        if helps := tuple(_helps(found)):
+            yield Answer(say("What helps most"), helps)
+    if vibration := tuple(vibration_told(found)):
+        yield Answer(say("What that does to the support"), vibration)
+    if planting := tuple(planting_told(found)):
+        yield Answer(say("Planting"), planting)
+
+
+def tiles(found: Findings) -> Iterator[Tile]:
+    """The figures that are seen at once."""
+    analysis = found.analysis
+    speed = abs(analysis.motion.speed) / PER_RPM
+    yield Tile(say("crank speed"), brief(speed), "rpm", found.machine.drive.link)
+    if analysis.solved is None:
+        return
+    size = Shaking.of(found).size
+    several = len(found.machine.rows) > 1
+
+    def of_one(what: str) -> str:
+        return say("one row: {what}", what=what) if several else what
+
+    yield Tile(say("shaking force, peak"), brief(size.peak), "N", _at(size.peak_at))
+    moment, torque = analysis.summary["shaking_moment"], analysis.summary["drive_torque"]
+    least = analysis.summary["frame_moment"].peak
+    yield Tile(
+        of_one(say("shaking moment, peak")), brief(moment.peak, least), "N m", _at(moment.peak_at)
+    )
+    yield Tile(of_one(say("drive torque, peak")), brief(torque.peak), "N m", _at(torque.peak_at))
+    name, largest = _largest_joint(found)
+    if name:
+        label = say("largest joint force")
+        yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=name))
+    if found.balanced is not None:
+        name, (before, after) = next(iter(found.balanced.objectives.items()))
+        told = change(before, after).removesuffix(" %")
+        yield Tile(say("by balancing"), told, "%", _objective(found, name))
+
+
+def _at(crank_angle: float) -> str:
+    return say("at crank angle {angle}°", angle=angle(crank_angle))
+
+
+def _largest_joint(found: Findings) -> tuple[str, Figures]:
+    summary = found.analysis.summary
+    joints = {
+        name: one
+        for name, one in summary.items()
+        if name.startswith("joints.") and not name.endswith(".moment")
+    }
+    if not joints:
+        return "", summary["shaking_force"]
+    name = max(joints, key=lambda name: joints[name].peak)
+    return name.removeprefix("joints."), joints[name]
+
+
+# -- what shakes, and why --------------------------------------------------------------------------
+
+
+def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
+    size, rows = shaking.size, len(found.machine.rows)
+    speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
+    told = {"speed": speed, "peak": brief(size.peak), "rms": brief(size.rms)}
+    told["angle"] = angle(size.peak_at)
+    summary = found.analysis.summary
+    if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
+        yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
+    else:
+        if rows > 1:
+            yield say(
+                "At {speed} rpm the {rows} rows together shake their frame with a force of up to "
+                "{peak} N ({rms} N RMS), largest at a crank angle of {angle}°.",
+                rows=rows,
+                **told,
+            )
+        else:
+            yield say(
+                "At {speed} rpm the linkage shakes its frame with a force of up to {peak} N "
+                "({rms} N RMS), largest at a crank angle of {angle}°.",
+                **told,
+            )
+        if shaking.over_weight:
+            ratio = brief(shaking.over_weight)
+            yield say("That is {ratio} times the weight of its links.", ratio=ratio)
+        yield _directed(shaking)
+        yield _ordered(found, shaking)
+    moment, scale = summary["shaking_moment"], summary["frame_moment"].peak
+    if brief(moment.peak, scale) == "0":
+        yield say("There is no shaking moment about the drive pivot.")
+        return
+    reached = {"peak": brief(moment.peak), "rms": brief(moment.rms)}
+    if rows > 1:
+        yield say(
+            "The shaking moment of one row about its drive pivot reaches {peak} N m "
+            "({rms} N m RMS).",
+            **reached,
+        )
+    else:
+        yield say(
+            "The shaking moment about the drive pivot reaches {peak} N m ({rms} N m RMS).",
+            **reached,
+        )
+
+
+def _directed(shaking: Shaking) -> str:
+    way, share = shaking.direction
+    if share <= ROUND:
+        return say("It acts in all directions alike, turning with the crank.")
+    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
+        return say("It acts mostly up and down.")
+    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
+        return say("It acts mostly to and fro.")
+    return say("It acts mostly along a direction of {angle}° from the x axis.", angle=angle(way))
+
+
+def _ordered(found: Findings, shaking: Shaking) -> str:
+    order, share = shaking.loudest
+    frequency = brief(order * abs(found.analysis.motion.speed) / (2 * pi))
+    told = {"share": percent(share), "frequency": frequency}
+    if order == 1 and share >= LEADING:
+        return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **told)
+    return say(
+        "Its largest part, {share} % of the mean square, comes {order} times a turn, at "
+        "{frequency} Hz.",
+        order=f"{order:.4g}",
+        **told,
+    )
+
+
+def _why(found: Findings) -> Iterator[str]:
+    split, summary = found.analysis.forces.split, found.analysis.summary
+    if summary["shaking_force"].rms > 0:
+        by_link = shares(split.by_link("shaking_force"))
+        parts = [
+            say("{name} {share} %", name=name, share=percent(share))
+            for name, share in by_link.items()
+            if abs(share) >= SMALL
+        ]
+        yield say("The shaking force comes from: {parts}.", parts=", ".join(parts))
+        against = [name for name, share in by_link.items() if share <= -SMALL]
+        if against:
+            yield say("A minus means that the link works against the others.")
+    torque = summary["drive_torque"]
+    if torque.rms > 0:
+        by_cause = shares(
+            {name: part - np.mean(part) for name, part in split.by_cause("drive_torque").items()}
+        )
+        causes = [
+            say("{name} {share} %", name=say(CAUSES[name]), share=percent(share))
+            for name, share in by_cause.items()
+            if abs(share) >= SMALL
+        ]
+        swing = {"low": brief(torque.min, torque.peak), "high": brief(torque.max, torque.peak)}
+        swing["parts"] = ", ".join(causes)
+        if len(found.machine.rows) > 1:
+            yield say(
+                "The drive torque of one row swings between {low} and {high} N m; that comes "
+                "from: {parts}.",
+                **swing,
+            )
+        else:
+            yield say(
+                "The drive torque swings between {low} and {high} N m; that comes from: {parts}.",
+                **swing,
+            )
+
+
+# -- what helps ------------------------------------------------------------------------------------
+
+
+def _objective(found: Findings, name: str) -> str:
+    balanced = found.balanced
+    assert balanced is not None
+    one = next(one for one in balanced.plan.objectives if one.name == name)
+    return objective_named(one, len(found.machine.rows))
+
+
+def _helps(found: Findings) -> Iterator[str]:
+    balanced = found.balanced
+    if balanced is None:
+        return
+    for one in balanced.changes:
+        yield say("{sentence}.", sentence=next(told(one)))
+    units = balanced.units
+    for name, (before, after) in balanced.objectives.items():
+        scale, unit = scaled(units[name])
+        yield say(
+            "{what}: from {before} to {after} {unit} ({change}).",
+            what=capital(_objective(found, name)),
+            before=brief(before * scale),
+            after=brief(after * scale, before * scale),
+            unit=unit,
+            change=change(before, after) or percent(0),
+        )
+    if balanced.gap is not None:
+        yield say("Of all that may be changed here nothing is better; that is proved.")
+    if worse := _worse(found):
+        yield say("In exchange these become larger: {figures}.", figures=", ".join(worse))
+    if balanced.planting_kept:
+        yield say("The planting figures stay as they are.")
+
+
+def _worse(found: Findings) -> list[str]:
+    """Peaks and RMS of outputs that grow by more than a tenth, the most first."""
+    balanced = found.balanced
+    assert balanced is not None
+    grown = {
+        name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
+        for name, old in balanced.before.items()
+        if old > 1e-12 and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
+    }
+    worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
+    rows = len(found.machine.rows)
+    return [
+        say(
+            "{what} by {share} %",
+            what=output_named(name, rows),
+            share=percent(grown[name]),
+        )
+        for name in worst[:MOST_WORSE]
+    ]
+
+
+def check_whole_cycle(found: Findings) -> None:
+    """A report shows whole turns."""
+    if not found.analysis.motion.whole_cycle:
+        raise UsageError("a report needs crank angles over the whole cycle; give a number of them")
