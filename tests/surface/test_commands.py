@@ -31,8 +31,9 @@ from surface.running import (
 
 ROOT = Path(__file__).parents[2]
 COMMANDS = (
-    *["analyze", "balance", "best", "check", "decay", "examples", "export", "exposure", "modes"],
-    *["new", "plant", "respond", "resume", "schema", "search", "sweep", "tolerance", "tool"],
+    *["analyze", "animate", "balance", "best", "check", "decay", "examples", "export"],
+    *["exposure", "modes", "new", "plant", "plot", "report", "respond", "resume", "schema"],
+    *["search", "serve", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -79,6 +80,10 @@ OPTIONS = {
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--json", "--split"],
         *["--csv", "--orders", "--crank-zero"],
     ],
+    "animate": [
+        *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],
+        *["--dark"],
+    ],
     "balance": [
         *["FILE", "--objective", "--limit", "--move-cm", "--crank-counterweight"],
         *["--counterweight", "--geared-counterweight", "--ratio", "--pitch-radius", "--shape"],
@@ -86,7 +91,10 @@ OPTIONS = {
         *["--front", "--points", "--conditions", "--sensitivities", "--crank-zero"],
         *["--arrangements", "--spacing", "--out", "--json", "--csv", "--plot", "--format"],
     ],
-    "best": (["STORE", "--by", "--largest", "--count", "--out", "--design", "--json", "--csv"]),
+    "best": [
+        *["STORE", "--by", "--largest", "--count", "--out", "--design", "--json", "--csv"],
+        *["--plot", "--format"],
+    ],
     "check": ["FILE"],
     "decay": (
         ["--stiffness", "--arm", "--spring-arm", "--confidence", "--json", "--plot", "--format"]
@@ -103,6 +111,11 @@ OPTIONS = {
         *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
         *["--plot", "--format", "--fit", "--out", "--seed"],
     ],
+    "plot": [
+        *["FILE", "--out", "--format", "--only", "--at", "--speed", "--over", "--of", "--set"],
+        "--points",
+    ],
+    "report": ["FILE", "--out", "--language", "--pdf", "--speed"],
     "respond": [
         *["FILE", "--model", "--speed", "--speeds", "--drive", "--transient", "--units"],
         *["--json", "--csv", "--plot", "--format"],
@@ -111,10 +124,11 @@ OPTIONS = {
     "schema": ["--tool", "--study"],
     "search": [
         *["STUDY", "--population", "--generations", "--seed", "--out", "--design", "--json"],
-        "--csv",
+        *["--csv", "--plot", "--format"],
     ],
+    "serve": ["FILE", "--port", "--no-browser"],
     "sweep": ["STUDY", "--out", "--workers", "--cluster", "--json"],
-    "tolerance": ["STUDY", "--designs", "--json"],
+    "tolerance": ["STUDY", "--designs", "--json", "--plot", "--format"],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
         *["--duration", "--vary", "--sensitivities", "--design", "--out", "--units", "--json"],

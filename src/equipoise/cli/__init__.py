@@ -15,6 +15,7 @@ from cyclopts import CycloptsError
 
 from equipoise.cli import (
     analyze,
+    animate,
     balance,
     best,
     decay,
@@ -22,8 +23,11 @@ from equipoise.cli import (
     models,
     modes,
     plant,
+    plot,
+    report,
     respond,
     search,
+    serve,
     sweep,
     tolerance,
     tool,
@@ -33,6 +37,7 @@ from equipoise.errors import EquipoiseError
 
 __all__ = [
     "analyze",
+    "animate",
     "balance",
     "best",
     "decay",
@@ -41,9 +46,12 @@ __all__ = [
     "models",
     "modes",
     "plant",
+    "plot",
+    "report",
     "respond",
     "run",
     "search",
+    "serve",
     "sweep",
     "tolerance",
     "tool",

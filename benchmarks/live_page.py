@@ -1,0 +1,87 @@
+"""How long a user of the live page waits: from a key or a drag to the painted frame.
+
+A Chromium without a window shows 720 crank angles and four charts.  The page marks when an input
+came and when the frame that shows its answer was painted; an input whose place a newer one took is
+answered by the frame of the newer one.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from pathlib import Path
+from statistics import median, quantiles
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+
+from playwright.sync_api import Page
+
+from browser.live import Live
+from support.chromium import chromium, serving
+
+INPUTS = 150
+PAUSE = 30  # ms between inputs: a held key, and half as many moves as a mouse can make
+LIMITS = {"median": 50, "95th percentile": 100}  # ms
+LARGEST = 300_000  # bytes
+MARKS = """name => performance.getEntriesByName(name).map(m => [m.detail.seq, m.startTime])"""
+
+
+def waits(page: Page) -> list[float]:
+    """Milliseconds from each input to the first frame that shows it or a newer one."""
+    painted = sorted(page.evaluate(MARKS, "equipoise:painted"))
+    found = []
+    for seq, came in page.evaluate(MARKS, "equipoise:input"):
+        frame = next((at for shown, at in painted if shown >= seq and at >= came), None)
+        if frame is not None:
+            found.append(frame - came)
+    page.evaluate("performance.clearMarks()")
+    return found
+
+
+def keys(live: Live) -> None:
+    """Move a joint by arrow keys."""
+    live.joint("B").focus()
+    for number in range(INPUTS):
+        live.page.keyboard.press("ArrowRight" if number // 10 % 2 else "ArrowLeft")
+        live.page.wait_for_timeout(PAUSE)
+
+
+def drags(live: Live) -> None:
+    """Drag a joint around a small circle."""
+    x, y = live.spot(live.joint("B"))
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    for number in range(INPUTS):
+        angle = number * math.tau / 40
+        live.page.mouse.move(x - 15 + 15 * math.cos(angle), y + 15 * math.sin(angle))
+        live.page.wait_for_timeout(PAUSE)
+    live.page.mouse.up()
+
+
+def report(what: str, found: list[float]) -> bool:
+    """Print the times; tell whether they are within the limits."""
+    values = {"median": median(found), "95th percentile": quantiles(found, n=20)[-1]}
+    for name, value in values.items():
+        print(f"{what}, {name}: {value:.1f} ms (limit {LIMITS[name]} ms, {len(found)} inputs)")
+    return all(value <= LIMITS[name] for name, value in values.items())
+
+
+def main() -> bool:
+    with serving("yamashita-1") as address, chromium() as browser:
+        page = browser.new_page(viewport={"width": 1280, "height": 900}, reduced_motion="reduce")
+        sizes: list[int] = []
+        page.on("response", lambda answer: sizes.append(len(answer.body())))
+        live = Live.open(page, address)
+        page.wait_for_timeout(1000)
+        print(f"page: {sum(sizes) / 1000:.1f} kB (limit {LARGEST / 1000:.0f} kB)")
+        within = [sum(sizes) <= LARGEST]
+        for what, act in {"arrow keys": keys, "drag": drags}.items():
+            waits(page)
+            act(live)
+            page.wait_for_timeout(500)
+            within.append(report(what, waits(page)))
+    return all(within)
+
+
+if __name__ == "__main__":
+    sys.exit(0 if main() else "The live page is slower or larger than its limits")

@@ -1,0 +1,358 @@
+/** The page as a whole: what it shows, and who tells whom. */
+
+import { Charts } from "./charts";
+import { Conversation } from "./conversation";
+import { h, write } from "./dom";
+import { dropZone, save, tooLarge } from "./files";
+import { Frames } from "./frames";
+import { Hands } from "./hands";
+import { Heading } from "./heading";
+import { helpDialog } from "./help";
+import { Inspector } from "./inspector";
+import { Player } from "./player";
+import type { Asked, FileKind, Hello, State, Wire } from "./protocol";
+import { BalancePanel, Readings } from "./readings";
+import { Board } from "./board";
+import { pressed } from "./shortcuts";
+import { type Grip, Stage } from "./stage";
+import { Theme } from "./theme";
+import { Toolbar } from "./toolbar";
+import { TransportBar } from "./transport";
+
+/** What is shown where nothing was asked for. */
+const FIRST = "yamashita-1";
+
+/** How often numbers and words follow a drag, ms. */
+const SELDOM = 90;
+
+export class App {
+  private readonly root = h("div", { class: "equipoise" });
+  private readonly talk: Conversation;
+  private readonly player = new Player();
+  private readonly theme: Theme;
+  private readonly hands: Hands;
+  private readonly stage: Stage;
+  private readonly board: Board;
+  private readonly charts: Charts;
+  private readonly inspector: Inspector;
+  private readonly readings = new Readings();
+  private readonly balance: BalancePanel;
+  private readonly toolbar: Toolbar;
+  private readonly transport: TransportBar;
+  private readonly help = helpDialog(() => this.hello?.version ?? "");
+  private readonly heading = new Heading();
+  private readonly lost = h("div", { class: "lost", role: "alert", hidden: true });
+  private readonly aside = h("section", { class: "inspector", "aria-label": "Numbers" });
+  private readonly side = h("section", { class: "side", "aria-label": "Charts" });
+  private readonly watcher = new ResizeObserver(() => this.measure());
+  private readonly frames = new Frames({
+    tick: (now) => this.tick(now),
+    painted: () => this.frames.settle(this.held ? SELDOM : 0),
+    settled: () => this.spell(),
+  });
+  private readonly undone: (() => void)[] = [];
+
+  private hello: Hello | null = null;
+  private state: State | null = null;
+  private turned = true;
+  private held = false;
+  private resumes = false;
+  private opened = "";
+
+  constructor(
+    wire: Wire,
+    private readonly el: HTMLElement,
+  ) {
+    this.talk = new Conversation(wire, {
+      hello: (message) => this.greet(message),
+      state: (state) => this.take(state),
+      response: (message, numbers) => this.charts.answered(message, numbers),
+      refused: (message, edit) => this.refuse(message, edit),
+      balanced: (message) => this.balance.show(message),
+      busy: (what) => this.busy(what),
+      file: save,
+      line: (up) => this.line(up),
+    });
+    el.append(this.root);
+    this.theme = new Theme(this.root, () => this.charts.repaint());
+    const page = {
+      talk: this.talk,
+      state: () => this.state,
+      sample: () => this.player.sample,
+      chosen: (grip: Grip) => this.choose(grip),
+      holding: (on: boolean) => this.hold(on),
+      hint: (text: string) => this.board.hint(text),
+    };
+    this.hands = new Hands(page, (dress) => new Stage(dress));
+    this.stage = this.hands.made;
+    this.board = new Board(this.stage, (link) => this.chooseLink(link));
+    this.charts = new Charts(this.theme, (angle) => this.turn(angle));
+    this.inspector = new Inspector(this.talk, (on) => this.hold(on));
+    this.balance = new BalancePanel(
+      () => this.keep(),
+      () => this.takeBack(),
+    );
+    this.transport = new TransportBar(
+      this.player,
+      () => this.toggle(),
+      () => this.crank(),
+    );
+    this.toolbar = new Toolbar({
+      example: (name) => this.open({ type: "open", example: name }),
+      file: (file) => void this.read(file),
+      undo: () => this.step("undo"),
+      redo: () => this.step("redo"),
+      balance: () => this.command({ type: "balance" }),
+      download: (kind, language) => this.download(kind, language),
+      help: () => this.help.showModal(),
+    });
+    this.lay();
+    this.listen();
+    this.talk.ask({ type: "ready" });
+  }
+
+  close(): void {
+    this.frames.close();
+    this.charts.close();
+    this.talk.close();
+    this.theme.close();
+    this.watcher.disconnect();
+    this.undone.forEach((undo) => undo());
+    this.root.remove();
+  }
+
+  private lay(): void {
+    const stage = h("section", { class: "stage", "aria-label": "Linkage and motion" });
+    stage.append(this.heading.about, this.board.root);
+    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    this.side.append(this.charts.root);
+    this.aside.append(this.balance.root, this.inspector.root);
+    this.root.append(
+      this.toolbar.root,
+      this.lost,
+      h("div", { class: "body" }, stage, this.side, this.aside),
+    );
+    this.root.append(
+      dropZone(this.root, (file) => void this.read(file)),
+      this.help,
+    );
+    this.watcher.observe(this.board.root);
+    this.watcher.observe(this.charts.root);
+  }
+
+  private listen(): void {
+    const shortcuts = {
+      board: this.board.root,
+      undo: () => this.step("undo"),
+      redo: () => this.step("redo"),
+      help: () => this.help.showModal(),
+      toggle: () => this.toggle(),
+      turn: (by: number) => this.turn(this.player.angle + by),
+      zoom: (factor: number) => this.stage.zoom(factor),
+      fit: () => this.stage.fit(),
+    };
+    this.root.addEventListener("keydown", (event) => pressed(event, shortcuts));
+    if (!this.full) return;
+    // The page is all there is: undo and help also where nothing has the focus.
+    const key = (event: KeyboardEvent) =>
+      event.target === document.body && pressed(event, shortcuts);
+    document.addEventListener("keydown", key);
+    this.undone.push(() => document.removeEventListener("keydown", key));
+  }
+
+  private get full(): boolean {
+    return this.el.classList.contains("equipoise-page");
+  }
+
+  private greet(hello: Hello): void {
+    const first = !this.hello;
+    this.hello = hello;
+    this.toolbar.offer(hello.examples);
+    if (this.state) this.toolbar.show(this.state);
+    else if (first && !hello.machine) {
+      const names = hello.examples.map(({ name }) => name);
+      const example = names.find((name) => name === FIRST) ?? names[0];
+      if (example) this.open({ type: "open", example });
+    }
+  }
+
+  private take(state: State): void {
+    const other = state.name !== this.state?.name || this.opened !== "";
+    this.opened = "";
+    const angle = this.state ? this.player.angle : 0;
+    this.state = state;
+    this.player.take(state);
+    if (other) {
+      this.player.angle = 0;
+      this.side.scrollTop = this.aside.scrollTop = 0;
+      this.player.suit();
+      this.player.playing =
+        state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
+    } else this.player.angle = angle;
+    if (!state.before) this.balance.hide();
+    this.board.clear(this.held);
+    this.show(state, other);
+  }
+
+  /** A frame comes; tells whether another is wanted. */
+  private tick(now: number): boolean {
+    if (this.player.tick(now) || this.turned) this.point();
+    return this.player.playing;
+  }
+
+  /** Draw a state at once: the next frame then has only to be painted. */
+  private show(state: State, other: boolean): void {
+    this.stage.show(state, other);
+    this.transport.take(state.angles);
+    this.charts.show(state, other);
+    this.point();
+    this.frames.draw(state.seq);
+  }
+
+  /** Bring numbers and words up to date: after painting, and more seldom during a drag. */
+  private spell(): void {
+    const { state } = this;
+    if (!state) return;
+    this.toolbar.show(state);
+    this.readings.show(state);
+    this.inspector.show(state);
+    if (!this.held) {
+      this.theme.update();
+      this.charts.settle();
+    }
+    this.hands.describe();
+    this.hands.accepted();
+    this.heading.show(state);
+  }
+
+  private point(): void {
+    if (!this.state) return;
+    this.turned = false;
+    const k = this.player.sample;
+    this.stage.pose(k);
+    this.transport.point();
+    this.transport.state();
+    this.charts.point(k, this.player.angle);
+  }
+
+  /** The crank is at another angle, or is to turn. */
+  private stir(): void {
+    this.turned = true;
+    if (!this.player.playing) this.frames.settle(SELDOM);
+    this.frames.wake();
+  }
+
+  private measure(): void {
+    this.theme.update();
+    const { clientWidth, clientHeight } = this.board.root;
+    if (clientWidth && clientHeight) this.stage.resize(clientWidth, clientHeight);
+    this.charts.resize(this.charts.root.clientWidth);
+    this.stir();
+  }
+
+  private busy(what: string | null): void {
+    this.toolbar.busy(what);
+    if (what) this.board.say(`${what.slice(0, 1).toUpperCase()}${what.slice(1)} …`, false);
+  }
+
+  private refuse(message: string, edit: boolean): void {
+    this.board.say(message, true);
+    if (edit) this.hands.refused();
+    this.opened = "";
+    if (this.state) this.toolbar.show(this.state);
+  }
+
+  private line(up: boolean): void {
+    this.lost.hidden = up;
+    write(
+      this.lost,
+      up
+        ? ""
+        : "The server does not answer; trying again. If it was ended, start it again and open the address that it prints.",
+    );
+  }
+
+  private open(asked: Asked): void {
+    this.talk.release();
+    this.opened = "asked";
+    this.talk.ask(asked);
+  }
+
+  private async read(file: File): Promise<void> {
+    const problem = tooLarge(file, this.hello?.largest ?? Infinity);
+    if (problem) return this.board.say(problem, true);
+    this.open({ type: "open", name: file.name, text: await file.text() });
+  }
+
+  private command(asked: Asked): void {
+    this.talk.release();
+    this.talk.ask(asked);
+  }
+
+  private step(type: "undo" | "redo"): void {
+    this.talk.release();
+    // What was held until now is a step of its own, which the state does not tell yet.
+    if (this.talk.busy || this.state?.[type]) this.talk.ask({ type });
+  }
+
+  private keep(): void {
+    this.balance.hide();
+    this.command({ type: "compare", on: false });
+  }
+
+  private takeBack(): void {
+    this.balance.hide();
+    this.command({ type: "undo" });
+    this.command({ type: "compare", on: false });
+  }
+
+  private download(kind: FileKind, language: string | undefined): void {
+    this.command({ type: "download", kind, ...(kind === "report" && language && { language }) });
+  }
+
+  private choose(grip: Grip): void {
+    const { scene } = this.state ?? {};
+    if (!scene) return;
+    const frame = grip.kind === "point" && scene.frame.includes(grip.name);
+    const holder = scene.bodies.find((body) => body.points.includes(grip.name))?.name ?? null;
+    const link = grip.kind === "mass" ? grip.name : frame ? "frame" : holder;
+    this.stage.select(new Set([grip.name]), grip.kind === "mass" ? grip.name : null, grip);
+    this.inspector.choose(link, grip.kind === "point" ? grip.name : null);
+    if (grip.kind === "point") this.charts.choose(grip.name);
+  }
+
+  private chooseLink(link: string): void {
+    const body = this.state?.scene.bodies.find((one) => one.name === link);
+    this.stage.select(new Set(body?.points), link, null);
+    this.inspector.choose(link, null);
+  }
+
+  /** While something is held, the crank stands still. */
+  private hold(on: boolean): void {
+    this.held = on;
+    if (on) {
+      this.resumes = this.player.playing;
+      this.player.playing = false;
+    } else if (this.resumes) {
+      this.player.playing = true;
+      this.resumes = false;
+    }
+    this.stir();
+  }
+
+  private toggle(): void {
+    this.talk.release();
+    this.player.playing = !this.player.playing;
+    this.stir();
+  }
+
+  private crank(): void {
+    this.player.playing = false;
+    this.stir();
+  }
+
+  private turn(degrees: number): void {
+    this.player.angle = degrees;
+    this.crank();
+  }
+}

@@ -1,0 +1,94 @@
+/** The sheet that the linkage is drawn on: moving it, zooming, and what is said on it. */
+
+import { h, icon, write } from "./dom";
+import type { Stage } from "./stage";
+
+/** How long a sentence about a mistake stays at least, once nothing is held any more, ms. */
+const READING = 4000;
+
+export class Board {
+  readonly root: HTMLElement;
+  private since = 0;
+  private readonly spoken = h("p", { class: "said", role: "status", "aria-live": "polite" });
+  private readonly hinted = h("p", { class: "hint", "aria-hidden": "true" });
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly chosen: (link: string) => void,
+  ) {
+    const button = (path: string, name: string, onclick: () => void) =>
+      h("button", { type: "button", "aria-label": name, title: name, onclick }, icon(path));
+    const zooms = h(
+      "div",
+      { class: "zooms" },
+      button("M8 3v10M3 8h10", "Zoom in", () => stage.zoom(1.25)),
+      button("M3 8h10", "Zoom out", () => stage.zoom(0.8)),
+      button("M2.5 6V2.5H6M10 2.5h3.5V6M13.5 10v3.5H10M6 13.5H2.5V10", "Show all", () =>
+        stage.fit(),
+      ),
+    );
+    this.root = h(
+      "div",
+      { class: "board" },
+      stage.lines,
+      stage.svg,
+      this.hinted,
+      zooms,
+      this.spoken,
+    );
+    stage.svg.addEventListener("pointerdown", this.press);
+    stage.svg.addEventListener("wheel", this.wheel, { passive: false });
+  }
+
+  /** Something worked: take the last sentence away, but let one about a mistake be read first. */
+  clear(now: boolean): void {
+    const young = performance.now() - this.since < READING;
+    if (now || !young || !this.spoken.classList.contains("bad")) this.say("", false);
+  }
+
+  /** A sentence about what was asked; `bad` where it cannot be. */
+  say(text: string, bad: boolean): void {
+    this.since = performance.now();
+    write(this.spoken, text);
+    this.spoken.classList.toggle("bad", bad && text !== "");
+  }
+
+  /** Where something is that is touched or held. */
+  hint(text: string): void {
+    write(this.hinted, text);
+  }
+
+  private readonly press = (event: PointerEvent): void => {
+    if (event.button || (event.target as Element).closest(".grip")) return;
+    const link = (event.target as Element).closest<SVGElement>(".body")?.dataset.link;
+    const { svg } = this.stage;
+    let [x, y] = [event.clientX, event.clientY];
+    let far = false;
+    const drag = (now: PointerEvent) => {
+      if (!far && Math.hypot(now.clientX - x, now.clientY - y) < 4) return;
+      if (!far) svg.setPointerCapture(event.pointerId);
+      far = true;
+      this.stage.pan(now.clientX - x, now.clientY - y);
+      [x, y] = [now.clientX, now.clientY];
+    };
+    const stop = () => {
+      svg.removeEventListener("pointermove", drag);
+      for (const name of ["pointerup", "pointercancel"] as const)
+        svg.removeEventListener(name, stop);
+      if (!far && link) this.chosen(link);
+    };
+    svg.addEventListener("pointermove", drag);
+    for (const name of ["pointerup", "pointercancel"] as const) svg.addEventListener(name, stop);
+  };
+
+  /** The wheel scrolls where there is something to scroll, else it zooms. */
+  private readonly wheel = (event: WheelEvent): void => {
+    const still =
+      this.root.closest(".equipoise-page") && getComputedStyle(this.root).touchAction === "none";
+    if (!still && !event.ctrlKey) return;
+    event.preventDefault();
+    const box = this.stage.svg.getBoundingClientRect();
+    const factor = Math.exp(-Math.max(-200, Math.min(200, event.deltaY)) / 500);
+    this.stage.zoom(factor, event.clientX - box.left, event.clientY - box.top);
+  };
+}

@@ -1,0 +1,294 @@
+/** All charts beside the linkage. */
+
+import { chooser } from "./chooser";
+import { h } from "./dom";
+import { Plane, type Trace } from "./plane";
+import type { Numbers, ResponseMessage, State } from "./protocol";
+import { Abscissa, both, closed, rounding } from "./signals";
+import { Strip } from "./strip";
+import type { Role, Theme } from "./theme";
+
+const HIGHEST = 10;
+const SPECTRA = {
+  shaking_force: ["Shaking force, by order", "N"],
+  shaking_moment: ["Shaking moment, by order", "N m"],
+  drive_torque: ["Drive torque, by order", "N m"],
+} as const;
+type Spectrum = keyof typeof SPECTRA;
+
+export class Charts {
+  readonly root: HTMLElement;
+  private readonly x = new Abscissa();
+  private readonly squares = h("div", { class: "squares" });
+  private readonly whose = chooser("Forces of", () => this.again());
+  private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
+  private readonly pathOf = chooser("Path of", () => this.again());
+  private readonly jointOf = chooser("Force in joint", () => this.again());
+  private readonly spectrumOf = chooser("Spectrum of", () => this.again());
+  private readonly gaugeOf = chooser("Response of", () => this.answer());
+  private readonly polar = new Plane("Shaking force, polar", true, h("b", {}, "Polar force"));
+  private readonly path = new Plane("Path", false, this.pathOf.label);
+  private readonly force: Strip;
+  private readonly moment: Strip;
+  private readonly torque: Strip;
+  private readonly joint: Strip;
+  private readonly spectrum: Strip;
+  private readonly response: Strip;
+  private readonly sweep: Strip;
+  private readonly strips: Strip[];
+  private state: State | null = null;
+  private heard: [ResponseMessage, Numbers] | null = null;
+  private at = 0;
+  private readonly watcher = new IntersectionObserver((entries) => {
+    for (const { target, isIntersecting } of entries) {
+      const strip = this.strips.find(({ root }) => root === target);
+      if (strip) strip.visible = isIntersecting;
+    }
+  });
+
+  constructor(theme: Theme, picked: (degrees: number) => void) {
+    const over = { xLabel: "°", xStep: (span: number) => (span > 400 ? 180 : 90), picked };
+    const strip = (title: string, height: number, xAxis: boolean, control?: HTMLElement) =>
+      new Strip({ title, height, xAxis, ...over, ...(control && { control }) }, theme);
+    this.force = strip("Shaking force", 88, false);
+    this.moment = strip("Shaking moment", 72, false);
+    this.torque = strip("Drive torque", 92, true);
+    this.joint = strip("Joint force", 100, true, this.jointOf.label);
+    const bars = { title: "Spectrum", height: 104, xAxis: true, bars: true };
+    this.spectrum = new Strip({ ...bars, control: this.spectrumOf.label }, theme);
+    this.response = strip("Response", 110, true, this.gaugeOf.label);
+    this.sweep = new Strip(
+      { title: "Response against speed", height: 110, xAxis: true, quiet: true },
+      theme,
+    );
+    this.strips = [
+      this.force,
+      this.moment,
+      this.torque,
+      this.spectrum,
+      this.joint,
+      this.response,
+      this.sweep,
+    ];
+    this.squares.append(this.polar.root, this.path.root);
+    this.root = h(
+      "div",
+      { class: "charts" },
+      this.whoseRow,
+      this.squares,
+      ...this.strips.map((s) => s.root),
+    );
+    this.response.root.hidden = this.sweep.root.hidden = true;
+    for (const { root } of this.strips) this.watcher.observe(root);
+  }
+
+  close(): void {
+    this.watcher.disconnect();
+  }
+
+  /** Draw what is out of sight too, and tell in words what there is to see. */
+  settle(): void {
+    for (const strip of this.strips) {
+      strip.settle();
+      strip.describe();
+    }
+  }
+
+  resize(width: number): void {
+    if (width < 40) return;
+    for (const strip of this.strips) strip.resize(width);
+    const side = Math.floor((width - 12) / 2);
+    const forces = !this.polar.root.hidden;
+    const height = Math.max(Math.min(side, 216), 150);
+    this.polar.resize(side, height);
+    this.path.resize(forces ? side : width, height);
+  }
+
+  show(state: State, other: boolean): void {
+    this.state = state;
+    if (other) this.heard = null;
+    if (!state.numbers.has("shaking_force") !== this.polar.root.hidden || other)
+      this.arrange(state);
+    if (other) this.offer(state);
+    this.again();
+  }
+
+  /** A state's response came; it is kept while the next is computed. */
+  answered(message: ResponseMessage, numbers: Numbers): void {
+    const first = !this.heard;
+    this.heard = [message, numbers];
+    if (first)
+      this.gaugeOf.offer(
+        message.gauges.map((g) => [g.name, `Response of ${g.label.replace(/_/g, " ")}`]),
+      );
+    this.answer();
+  }
+
+  /** The joint whose force is shown, where there is one of that name. */
+  choose(joint: string): void {
+    if (!this.jointOf.has(joint) && !this.pathOf.has(joint)) return;
+    if (this.jointOf.has(joint)) this.jointOf.value = joint;
+    this.again();
+  }
+
+  point(k: number, degrees: number): void {
+    this.at = k;
+    this.polar.point(k);
+    this.path.point(k);
+    for (const strip of [this.force, this.moment, this.torque, this.joint]) strip.point(degrees, k);
+    const samples = this.heard?.[1].get("response.angle")?.length;
+    if (samples && this.state)
+      this.response.point(degrees, Math.round((k / this.state.angles) * samples) % samples);
+  }
+
+  repaint(): void {
+    for (const strip of this.strips) strip.repaint();
+  }
+
+  private arrange(state: State): void {
+    const forces = state.numbers.has("shaking_force");
+    for (const part of [
+      this.polar,
+      this.force,
+      this.moment,
+      this.torque,
+      this.joint,
+      this.spectrum,
+    ]) {
+      part.root.hidden = !forces;
+    }
+    this.whoseRow.hidden = !state.numbers.has("rows.shaking_force");
+    this.response.root.hidden = this.sweep.root.hidden = true;
+    this.squares.classList.toggle("alone", !forces);
+  }
+
+  private offer(state: State): void {
+    const names = state.numbers.names("place.").map((name) => name.slice(6));
+    const moving = names.filter((name) => !state.scene.frame.includes(name));
+    const first = state.scene.traced ?? [];
+    const points = [...first, ...moving.filter((name) => !first.includes(name))];
+    const ground = state.planting
+      ? [[`ground.${state.planting.tip}`, `${state.planting.tip} over ground`]]
+      : [];
+    this.pathOf.offer([
+      ...(ground as [string, string][]),
+      ...points.map((p): [string, string] => [p, `Path of ${p}`]),
+    ]);
+    const joints = state.numbers.names("joint.").map((name) => name.slice(6));
+    this.jointOf.offer(joints.map((name) => [name, `Force in ${name}`]));
+    this.spectrumOf.offer(Object.entries(SPECTRA).map(([name, [label]]) => [name, label]));
+    this.whose.offer([
+      ["rows.", "Forces of all rows together"],
+      ["", "Forces of one row"],
+    ]);
+    if (this.whoseRow.hidden) this.whose.value = "";
+  }
+
+  private again(): void {
+    const { state } = this;
+    if (!state) return;
+    this.drawPath(state);
+    if (state.numbers.has("shaking_force")) this.drawForces(state);
+    this.point(this.at, (this.at / state.angles) * 360 * state.turns);
+  }
+
+  private drawForces(state: State): void {
+    const x = this.x.of(state.angles, state.turns);
+    const rows = this.whoseRow.hidden ? "" : this.whose.value;
+    const force = `${rows}shaking_force`;
+    const traces: Trace[] = [];
+    const least = rounding(state);
+    const was = state.before ? state.numbers.get(`before.${force}`) : undefined;
+    if (was) traces.push({ points: was, kind: "before", closed: true });
+    const now = state.numbers.get(force);
+    if (now) traces.push({ points: now, kind: "now", closed: true });
+    const every = state.angles / (12 * state.turns);
+    this.polar.show({ title: "Shaking force", unit: "N", factor: 1, traces, every, least });
+    const curve = (name: string, label: string, role: Role, stride = 1, part = 0) => {
+      const found = both(state, name, stride, part);
+      return found ? [{ label, role, ...found }] : [];
+    };
+    const xy = [...curve(force, "x", "main", 2, 0), ...curve(force, "y", "stress", 2, 1)];
+    this.force.show({ x, unit: "N", curves: xy, least });
+    this.moment.show({ x, unit: "N m", curves: curve(`${rows}shaking_moment`, "", "main"), least });
+    this.torque.show({ x, unit: "N m", curves: curve("drive_torque", "", "main"), least });
+    this.joint.show({
+      x,
+      unit: "N",
+      curves: curve(`joint.${this.jointOf.value}`, "", "main"),
+      least,
+    });
+    this.drawSpectrum(state, rows, least);
+  }
+
+  private drawSpectrum(state: State, rows: string, least: number): void {
+    const chosen = this.spectrumOf.value as Spectrum;
+    const [, unit] = SPECTRA[chosen];
+    const most = state.turns > 1 ? HIGHEST / 2 : HIGHEST;
+    const kept = state.orders
+      .map((order, i) => [order, i] as const)
+      .filter(([o]) => o > 0 && o <= most);
+    const column = (name: string) => {
+      const row = state.numbers.get(name);
+      return row && Float64Array.from(kept, ([, i]) => row[i] ?? 0);
+    };
+    const bars = (name: string, label: string, role: Role) => {
+      const values = column(`spectrum.${name}`);
+      const before = state.before ? column(`before.spectrum.${name}`) : undefined;
+      return values ? [{ label, role, values, before }] : [];
+    };
+    const prefix = chosen === "shaking_force" ? rows : "";
+    const curves =
+      chosen === "shaking_force"
+        ? [
+            ...bars(`${prefix}shaking_force.x`, "x", "main"),
+            ...bars(`${prefix}shaking_force.y`, "y", "stress"),
+          ]
+        : bars(chosen, "", "main");
+    this.spectrum.show({ x: Float64Array.from(kept, ([order]) => order), unit, curves, least });
+  }
+
+  private drawPath(state: State): void {
+    const name = this.pathOf.value;
+    // Without speed nothing goes over the ground: then the path is that on the machine.
+    const over = name.startsWith("ground.") && state.numbers.has(name);
+    const points = state.numbers.get(over ? name : `place.${name.replace("ground.", "")}`);
+    if (!points) return;
+    const every = state.angles / (24 * state.turns);
+    const level = over ? state.planting?.surface : undefined;
+    const traces: Trace[] = [{ points, kind: "now", closed: !over }];
+    this.path.show({ title: "Path", unit: "mm", factor: 1000, traces, every, level, least: 1e-6 });
+  }
+
+  private answer(): void {
+    if (!this.heard || !this.state) return;
+    const [message, numbers] = this.heard;
+    const angle = numbers.get("response.angle");
+    const gauge = message.gauges.find((g) => g.name === this.gaugeOf.value) ?? message.gauges[0];
+    const values = gauge && numbers.get(`response.${gauge.name}`);
+    this.response.root.hidden = this.sweep.root.hidden = !values || !angle;
+    if (!gauge || !values || !angle) return;
+    const x = this.x.of(angle.length, this.state.turns);
+    const curve = { label: "", role: "third" as Role, values: thousand(closed(values)) };
+    this.response.show({ x, unit: `m${gauge.unit}`, curves: [curve] });
+    this.drawSweep(message, numbers);
+  }
+
+  private drawSweep(message: ResponseMessage, numbers: Numbers): void {
+    const found =
+      message.sweep?.of.find((g) => g.name === this.gaugeOf.value) ?? message.sweep?.of[0];
+    const speeds = message.sweep && numbers.get(message.sweep.speeds);
+    const values = found && numbers.get(found.array);
+    this.sweep.root.hidden = !values || !speeds;
+    if (!message.sweep || !found || !values || !speeds) return;
+    const rpm = Float64Array.from(speeds, (speed) => (speed * 30) / Math.PI);
+    const curve = { label: "", role: "third" as Role, values: thousand(Float64Array.from(values)) };
+    this.sweep.show({ x: rpm, unit: `m${found.unit} peak to peak, over rpm`, curves: [curve] });
+    this.sweep.point((message.sweep.own * 30) / Math.PI, null);
+  }
+}
+
+/** Displacements in m and rad are told in mm and mrad. */
+function thousand(values: Float64Array): Float64Array {
+  return values.map((value) => value * 1000);
+}

@@ -1,0 +1,40 @@
+/** Files that are dropped on the page, and files that it hands out. */
+
+import { h } from "./dom";
+
+/** Let files be dropped on an element; returns the veil that is over it meanwhile. */
+export function dropZone(root: HTMLElement, dropped: (file: File) => void): HTMLElement {
+  const veil = h(
+    "div",
+    { class: "veil", hidden: true },
+    h("span", {}, "Drop a model file (.toml)"),
+  );
+  for (const name of ["dragenter", "dragover", "dragleave", "drop"] as const) {
+    root.addEventListener(name, (event) => {
+      if (!event.dataTransfer?.types.includes("Files")) return;
+      event.preventDefault();
+      const leaves = name === "dragleave" && !root.contains(event.relatedTarget as Node | null);
+      veil.hidden = name === "drop" || leaves;
+      const [file] = event.dataTransfer.files;
+      if (name === "drop" && file) dropped(file);
+    });
+  }
+  return veil;
+}
+
+/** Why a file is not read, or null. */
+export function tooLarge(file: File, largest: number): string | null {
+  if (file.size <= largest) return null;
+  const [size, most] = [(file.size / 1e6).toFixed(1), (largest / 1e6).toFixed(0)];
+  return `${file.name} has ${size} MB; at most ${most} MB are read: give a model file.`;
+}
+
+/** Hand a file to the browser's own downloads. */
+export function save(name: string, mime: string, bytes: DataView | undefined): void {
+  const part = bytes
+    ? new Uint8Array(bytes.buffer as ArrayBuffer, bytes.byteOffset, bytes.byteLength)
+    : "";
+  const address = URL.createObjectURL(new Blob([part], { type: mime }));
+  h("a", { href: address, download: name }).click();
+  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+}

@@ -1,0 +1,208 @@
+/** Taking hold of joints and centres of mass: by mouse, by touch, by keys. */
+
+import type { Conversation } from "./conversation";
+import { set } from "./dom";
+import { millimetres, round } from "./format";
+import { Gesture } from "./gesture";
+import type { Edit, Pair, State } from "./protocol";
+import { type Grip, keyOf, type Stage } from "./stage";
+
+const ARROWS: Record<string, Pair> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowUp: [0, 1],
+  ArrowDown: [0, -1],
+};
+const COARSE = 10;
+const FINE = 0.1;
+/** A held key pauses no longer than this between two of its events, ms. */
+const PAUSE = 600;
+
+export interface Held {
+  talk: Conversation;
+  state(): State | null;
+  sample(): number;
+  chosen(grip: Grip): void;
+  /** Something is held now, or nothing any more. */
+  holding(on: boolean): void;
+  hint(text: string): void;
+}
+
+export class Hands {
+  private readonly stage: Stage;
+  private gesture: Gesture | null = null;
+  private grip: Grip | null = null;
+  private target: Pair | null = null;
+  private keys = false;
+  /** Of which handle the line below the drawing tells, and what more. */
+  private told: [Grip, string] | null = null;
+
+  constructor(
+    private readonly page: Held,
+    stage: (dress: (grip: Grip, element: SVGGElement) => void) => Stage,
+  ) {
+    this.stage = stage((grip, element) => this.dress(grip, element));
+  }
+
+  get made(): Stage {
+    return this.stage;
+  }
+
+  /** The server could not do it: show where it was tried, and go on from the last good place. */
+  refused(): void {
+    if (!this.gesture || !this.grip) return;
+    this.stage.ghost(this.grip, this.target);
+    if (this.keys) this.target = this.stage.place(this.grip);
+  }
+
+  accepted(): void {
+    if (this.gesture && this.grip) {
+      this.stage.ghost(null, null);
+      this.tell(this.grip, "");
+    } else if (this.told) this.tell(...this.told); // where the last answer has put it
+  }
+
+  /** Say anew where everything is: names of handles for those who hear them. */
+  describe(): void {
+    for (const element of this.stage.grips.values()) {
+      const place = this.stage.place(gripOf(element));
+      if (!place) continue;
+      const [x, y] = [millimetres(place[0]), millimetres(place[1])];
+      set(element, {
+        "aria-valuetext": `x ${x} mm, y ${y} mm`,
+        "aria-valuenow": (place[0] * 1000).toFixed(2),
+      });
+    }
+  }
+
+  private dress(grip: Grip, element: SVGGElement): void {
+    const label = nameOf(grip);
+    set(element, {
+      role: "slider",
+      "aria-label": label,
+      "aria-roledescription":
+        grip.kind === "point" ? "joint that can be moved" : "centre of mass that can be moved",
+      "data-kind": grip.kind,
+      "data-name": grip.name,
+    });
+    element.addEventListener("pointerdown", (event) => this.press(event, grip, element));
+    // Browsers do not heed `touch-action` on every part of a drawing: a finger on a joint must not scroll.
+    element.addEventListener("touchstart", (event) => event.preventDefault(), { passive: false });
+    element.addEventListener("keydown", (event) => this.key(event, grip));
+    element.addEventListener("focus", () => this.focus(grip));
+    element.addEventListener("blur", () => this.blur());
+    element.addEventListener("pointerenter", () => !this.gesture && this.tell(grip, ""));
+    element.addEventListener("pointerleave", () => !this.gesture && this.hush());
+  }
+
+  private focus(grip: Grip): void {
+    this.page.chosen(grip);
+    const step = this.step();
+    this.tell(grip, `arrow keys ${millimetres(step)} mm, Shift × ${COARSE}, Alt ÷ ${1 / FINE}`);
+  }
+
+  private blur(): void {
+    if (this.keys) this.gesture?.end();
+    this.hush();
+  }
+
+  private hush(): void {
+    this.told = null;
+    this.page.hint("");
+  }
+
+  private tell(grip: Grip, more: string): void {
+    const place = this.stage.place(grip);
+    if (!place) return;
+    const where = `${nameOf(grip)}: ${millimetres(place[0])}, ${millimetres(place[1])} mm`;
+    this.told = [grip, more];
+    this.page.hint(more ? `${where} · ${more}` : where);
+  }
+
+  private begin(grip: Grip, keys: boolean): void {
+    if (this.gesture && this.grip && keyOf(this.grip) === keyOf(grip) && this.keys === keys) return;
+    this.page.talk.release();
+    [this.grip, this.keys] = [grip, keys];
+    this.target = this.stage.place(grip);
+    this.page.holding(true);
+    const what =
+      grip.kind === "point" ? `move ${grip.name}` : `move centre of mass of ${grip.name}`;
+    const gesture: Gesture = new Gesture(this.page.talk, what, () => {
+      if (this.gesture !== gesture) return;
+      this.gesture = this.grip = null;
+      this.stage.ghost(null, null);
+      this.page.holding(false);
+    });
+    this.gesture = gesture;
+  }
+
+  private move(to: Pair, stamp: number): void {
+    const { grip, gesture } = this;
+    if (!grip || !gesture) return;
+    this.target = to;
+    const at = this.page.sample();
+    const edit: Edit =
+      grip.kind === "point" ? { move: grip.name, to, at } : { move_mass: grip.name, to, at };
+    gesture.move([edit], stamp);
+  }
+
+  private press(event: PointerEvent, grip: Grip, element: SVGGElement): void {
+    if (event.button) return;
+    event.preventDefault();
+    event.stopPropagation();
+    element.focus({ preventScroll: true });
+    element.setPointerCapture(event.pointerId);
+    const start = this.stage.place(grip);
+    if (!start) return;
+    const [px, py] = this.stage.view.px(...start);
+    const [offX, offY] = [px - event.clientX, py - event.clientY];
+    let moved = false;
+    const drag = (now: PointerEvent) => {
+      if (now.pointerId !== event.pointerId) return;
+      if (!moved && Math.hypot(now.clientX - event.clientX, now.clientY - event.clientY) < 2)
+        return;
+      if (!moved) this.begin(grip, false);
+      moved = true;
+      this.move(this.stage.view.metres(now.clientX + offX, now.clientY + offY), now.timeStamp);
+    };
+    const stop = (now: PointerEvent) => {
+      if (now.pointerId !== event.pointerId) return;
+      element.removeEventListener("pointermove", drag);
+      for (const name of ["pointerup", "pointercancel"] as const)
+        element.removeEventListener(name, stop);
+      if (moved) this.gesture?.end();
+    };
+    element.addEventListener("pointermove", drag);
+    for (const name of ["pointerup", "pointercancel"] as const)
+      element.addEventListener(name, stop);
+  }
+
+  private key(event: KeyboardEvent, grip: Grip): void {
+    if (event.key === "Escape" || event.key === "Enter") return this.gesture?.end();
+    const way = ARROWS[event.key];
+    if (!way || event.ctrlKey || event.metaKey) return;
+    event.preventDefault();
+    event.stopPropagation();
+    this.begin(grip, true);
+    const place = this.target ?? this.stage.place(grip);
+    if (!place) return;
+    const step = this.step() * (event.shiftKey ? COARSE : event.altKey ? FINE : 1);
+    this.move([place[0] + way[0] * step, place[1] + way[1] * step], event.timeStamp);
+    this.gesture?.endSoon(PAUSE);
+  }
+
+  /** A round length, about a 300th of the machine. */
+  private step(): number {
+    const box = this.page.state()?.scene.box ?? [0, 0, 1, 1];
+    return round(Math.max(box[2] - box[0], box[3] - box[1]) / 300);
+  }
+}
+
+export function nameOf(grip: Grip): string {
+  return grip.kind === "point" ? `Joint ${grip.name}` : `Centre of mass of ${grip.name}`;
+}
+
+function gripOf(element: SVGElement): Grip {
+  const { kind, name } = element.dataset;
+  return { kind: kind as Grip["kind"], name: name as string };
+}

@@ -1,0 +1,276 @@
+/** A curve in a plane with equal scales: the shaking force's polar diagram, paths of points. */
+
+import { h, s, set, write } from "./dom";
+import { degrees, multiples, plain, round, shown, signed } from "./format";
+
+export interface Trace {
+  /** x and y in turn. */
+  points: Float32Array;
+  kind: "now" | "before" | "other";
+  closed: boolean;
+}
+
+export interface Plot {
+  title: string;
+  unit: string;
+  /** What one unit of the numbers is in the unit shown: 1000 for m in mm. */
+  factor: number;
+  traces: Trace[];
+  /** Samples between marks along the curve "now", and the crank angle at the first sample. */
+  every: number;
+  /** A horizontal line, with the ground below it. */
+  level?: number | undefined;
+  /** What is smaller than this is rounding. */
+  least: number;
+}
+
+const EDGE = 18;
+
+/** An SVG picture, `polar` with circles and an arrow from the origin. */
+export class Plane {
+  readonly root: HTMLElement;
+  private readonly svg = s("svg", { class: "plane", "aria-hidden": "true" });
+  private readonly grid = s("path", { class: "grid" });
+  private readonly axes = s("path", { class: "axes" });
+  private readonly ground = s("rect", { class: "soil" });
+  private readonly texts = s("g", { class: "texts" });
+  private readonly curves = s("g", { class: "curves" });
+  private readonly marks = s("path", { class: "marks" });
+  private readonly numbers = s("g", { class: "texts" });
+  private readonly arrow = s("path", { class: "arrow" });
+  private readonly dot = s("circle", { class: "dot", r: 3.5 });
+  private readonly reading = h("span", { class: "legend" });
+  private plot: Plot | null = null;
+  private size: [number, number] = [0, 0];
+  private scale = 1;
+  private middle: [number, number] = [0, 0];
+  /** Where numbers of crank angles stand. */
+  private named: [number, number][] = [];
+
+  constructor(
+    title: string,
+    private readonly polar: boolean,
+    control?: HTMLElement,
+  ) {
+    this.svg.append(this.ground, this.grid, this.axes, this.texts);
+    this.svg.append(this.curves, this.marks, this.numbers, this.arrow, this.dot);
+    this.root = h(
+      "figure",
+      { class: "strip square", "aria-label": title },
+      h("figcaption", {}, control ?? h("b", {}, title), this.reading),
+      this.svg,
+    );
+  }
+
+  show(plot: Plot): void {
+    this.plot = plot;
+    this.draw();
+  }
+
+  resize(width: number, height: number): void {
+    if (width === this.size[0] && height === this.size[1]) return;
+    this.size = [width, height];
+    set(this.svg, { width, height, viewBox: `0 0 ${width} ${height}` });
+    this.draw();
+  }
+
+  /** Show where the curve is at sample k. */
+  point(k: number): void {
+    const points = this.now();
+    if (!points || !this.plot) return;
+    const [x, y] = [points[2 * k] ?? NaN, points[2 * k + 1] ?? NaN];
+    if (!Number.isFinite(x)) return;
+    const [px, py] = this.place(x, y);
+    set(this.dot, { cx: px.toFixed(1), cy: py.toFixed(1) });
+    const { factor, unit } = this.plot;
+    if (this.polar) {
+      const [ox, oy] = this.place(0, 0);
+      set(this.arrow, {
+        d: `M${ox.toFixed(1)} ${oy.toFixed(1)}L${px.toFixed(1)} ${py.toFixed(1)}`,
+      });
+      const turn = Math.round(degrees(Math.atan2(y, x)));
+      write(this.reading, `${shown(Math.hypot(x, y) * factor, 3)} ${unit} ∠ ${plain(turn)}°`);
+    } else {
+      const places = (this.size[0] / this.scale) * factor > 60 ? 0 : 1;
+      const [across, up] = [x, y].map((value) => signed((value * factor).toFixed(places)));
+      write(this.reading, `${across}, ${up}`);
+    }
+  }
+
+  private now(): Float32Array | undefined {
+    return this.plot?.traces.find((trace) => trace.kind === "now")?.points;
+  }
+
+  private place(x: number, y: number): [number, number] {
+    const [width, height] = this.size;
+    return [
+      width / 2 + (x - this.middle[0]) * this.scale,
+      height / 2 - (y - this.middle[1]) * this.scale,
+    ];
+  }
+
+  /** Whether a number has room there. */
+  private inside(x: number, y: number): boolean {
+    const [width, height] = this.size;
+    return x > 12 && x < width - 12 && y > 12 && y < height - 6;
+  }
+
+  private fit(plot: Plot): void {
+    let [x0, y0, x1, y1] = this.polar ? [0, 0, 0, 0] : [Infinity, Infinity, -Infinity, -Infinity];
+    for (const { points } of plot.traces) {
+      for (let i = 0; i + 1 < points.length; i += 2) {
+        const [x, y] = [points[i] as number, points[i + 1] as number];
+        if (x < x0) x0 = x;
+        if (x > x1) x1 = x;
+        if (y < y0) y0 = y;
+        if (y > y1) y1 = y;
+      }
+    }
+    if (!Number.isFinite(x0 + x1)) [x0, y0, x1, y1] = [-1, -1, 1, 1];
+    // Where there is nothing but rounding, a picture of one unit shows a point.
+    const small = Math.max(x1 - x0, y1 - y0) < plot.least ? 1 / plot.factor : 0;
+    [x0, y0, x1, y1] = [x0 - small, y0 - small, x1 + small, y1 + small];
+    const [width, height] = this.size;
+    // Limits move in steps, so that the picture does not breathe while something is dragged.
+    const step = round(Math.max(x1 - x0, y1 - y0, 1e-12) / 16);
+    [x0, y0] = [Math.floor(x0 / step) * step, Math.floor(y0 / step) * step];
+    [x1, y1] = [Math.ceil(x1 / step) * step, Math.ceil(y1 / step) * step];
+    this.middle = [(x0 + x1) / 2, (y0 + y1) / 2];
+    const room = [Math.max(width - 2 * EDGE, 1), Math.max(height - 2 * EDGE, 1)] as const;
+    this.scale = Math.min(room[0] / Math.max(x1 - x0, 1e-12), room[1] / Math.max(y1 - y0, 1e-12));
+  }
+
+  private draw(): void {
+    const { plot } = this;
+    if (!plot || !this.size[0]) return;
+    this.fit(plot);
+    this.texts.replaceChildren();
+    this.along(plot);
+    const [width, height] = this.size;
+    this.texts.append(s("text", { x: width - 4, y: height - 4, "text-anchor": "end" }, plot.unit));
+    if (this.polar) this.circles(plot);
+    else this.lines(plot);
+    const kept = this.curves.children;
+    plot.traces.forEach((trace, i) => {
+      const path = kept[i] ?? this.curves.appendChild(s("path"));
+      set(path, { class: `curve ${trace.kind}`, d: this.path(trace) });
+    });
+    while (kept.length > plot.traces.length) kept[kept.length - 1]?.remove();
+  }
+
+  private path(trace: Trace): string {
+    const { points } = trace;
+    const step = Math.max(Math.round(points.length / 720), 1) * 2;
+    let d = "";
+    for (let i = 0; i + 1 < points.length; i += step) {
+      const [x, y] = this.place(points[i] as number, points[i + 1] as number);
+      d += `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`;
+    }
+    return d && trace.closed ? `${d}Z` : d;
+  }
+
+  /** Dots at equal steps of the crank; in the polar diagram with numbers at its quarters. */
+  private along(plot: Plot): void {
+    const points = this.now();
+    this.numbers.replaceChildren();
+    this.named = [];
+    let d = "";
+    const count = points ? points.length / 2 : 0;
+    for (let i = 0; points && plot.every > 0 && i * plot.every < count; i++) {
+      const k = Math.round(i * plot.every);
+      const [x, y] = this.place(points[2 * k] as number, points[2 * k + 1] as number);
+      d += `M${x.toFixed(1)} ${y.toFixed(1)}h0`;
+      if (this.polar && i % 3 === 0 && i < 12) this.crank(x, y, i * 30);
+    }
+    set(this.marks, { d });
+  }
+
+  /** The crank angle beside its mark, away from the origin, unless another is there already. */
+  private crank(x: number, y: number, angle: number): void {
+    const [ox, oy] = this.place(0, 0);
+    const away = Math.hypot(x - ox, y - oy) || 1;
+    const [dx, dy] = [(x - ox) / away, (y - oy) / away];
+    const [width, height] = this.size;
+    const px = Math.min(Math.max(x + dx * 16, 16), width - 16);
+    const py = Math.min(Math.max(y + dy * 12, 8), height - 8);
+    if (this.named.some(([nx, ny]) => Math.abs(nx - px) < 28 && Math.abs(ny - py) < 12)) return;
+    this.named.push([px, py]);
+    const at = {
+      class: "crank",
+      x: px.toFixed(1),
+      y: (py + 4).toFixed(1),
+      "text-anchor": "middle",
+    };
+    this.numbers.append(s("text", at, `${angle}°`));
+  }
+
+  private circles(plot: Plot): void {
+    const [ox, oy] = this.place(0, 0);
+    const [width, height] = this.size;
+    const reach = Math.hypot(Math.max(ox, width - ox), Math.max(oy, height - oy));
+    const step = round((34 / this.scale) * plot.factor) / plot.factor;
+    const radii = multiples(step, step, reach / this.scale).map((radius) => radius * this.scale);
+    const [ux, uy] = this.freest(radii.slice(0, 3));
+    let d = "";
+    for (const r of radii) {
+      d += `M${ox + r} ${oy}A${r} ${r} 0 1 0 ${ox - r} ${oy}A${r} ${r} 0 1 0 ${ox + r} ${oy}`;
+      const [x, y] = [ox + ux * r, oy + uy * r];
+      if (this.inside(x, y)) this.text(x, y + 4, (r / this.scale) * plot.factor);
+    }
+    set(this.grid, { d });
+    set(this.axes, { d: `M0 ${oy}H${width}M${ox} 0V${height}` });
+  }
+
+  /** The direction from the origin in which numbers on circles are farthest from the curve. */
+  private freest(radii: number[]): [number, number] {
+    const points = this.now() ?? new Float32Array(0);
+    const step = Math.max(Math.floor(points.length / 144), 1) * 2;
+    const [ox, oy] = this.place(0, 0);
+    let best: [number, number] = [1, 0];
+    let most = -Infinity;
+    for (let turn = 22.5; turn < 360; turn += 45) {
+      const [ux, uy] = [Math.cos((turn * Math.PI) / 180), -Math.sin((turn * Math.PI) / 180)];
+      const [r0] = radii;
+      const shown = r0 !== undefined && this.inside(ox + ux * r0, oy + uy * r0);
+      let least = shown ? Infinity : -1000;
+      for (let i = 0; i + 1 < points.length; i += step) {
+        const [x, y] = this.place(points[i] as number, points[i + 1] as number);
+        for (const r of radii)
+          least = Math.min(least, Math.hypot(ox + ux * r - x, oy + uy * r - y));
+      }
+      for (const [x, y] of this.named) {
+        for (const r of radii)
+          least = Math.min(least, Math.hypot(ox + ux * r - x, oy + uy * r - y) - 12);
+      }
+      if (least > most + 2) [best, most] = [[ux, uy], least];
+    }
+    return best;
+  }
+
+  private lines(plot: Plot): void {
+    const [width, height] = this.size;
+    const step = round((34 / this.scale) * plot.factor) / plot.factor;
+    const [reachX, reachY] = [width / 2 / this.scale, height / 2 / this.scale];
+    let d = "";
+    for (const x of multiples(step, this.middle[0] - reachX, this.middle[0] + reachX)) {
+      const [px] = this.place(x, 0);
+      d += `M${px.toFixed(1)} 0V${height}`;
+      if (px > 40 && px < width - 34) this.text(px, height - 4, x * plot.factor);
+    }
+    for (const y of multiples(step, this.middle[1] - reachY, this.middle[1] + reachY)) {
+      const [, py] = this.place(0, y);
+      d += `M0 ${py.toFixed(1)}H${width}`;
+      if (py > 8 && py < height - 14) this.text(3, py - 2, y * plot.factor, "start");
+    }
+    set(this.grid, { d });
+    const level = plot.level === undefined ? height : this.place(0, plot.level)[1];
+    const top = Math.min(Math.max(level, 0), height);
+    set(this.ground, { x: 0, y: top.toFixed(1), width, height: (height - top).toFixed(1) });
+    set(this.axes, { d: level < height ? `M0 ${level.toFixed(1)}H${width}` : "" });
+  }
+
+  private text(x: number, y: number, value: number, anchor = "middle"): void {
+    const at = { x: x.toFixed(1), y: y.toFixed(1), "text-anchor": anchor };
+    this.texts.append(s("text", at, plain(value)));
+  }
+}

@@ -1,0 +1,61 @@
+/** The clock of the crank: which sample is shown now. */
+
+import type { State } from "./protocol";
+
+/** Parts of the true speed at which the linkage may be seen to turn. */
+export const RATES = [1, 0.5, 0.2, 0.1, 0.05, 0.02, 0.01] as const;
+
+/** A turn that takes at least this long can be followed by eye, s. */
+const SLOW = 2.4;
+
+export class Player {
+  playing = false;
+  rate = 0.1;
+  /** Crank angle since the first sample, as a part of the whole cycle. */
+  private part = 0;
+  private count = 1;
+  private turns = 1;
+  private speed = 0;
+  private last: number | null = null;
+
+  /** Take the machine's samples and speed; the crank stays where it is. */
+  take(state: State): void {
+    [this.count, this.turns, this.speed] = [state.angles, state.turns, state.speed];
+  }
+
+  /** The fastest rate at which a turn can still be followed. */
+  suit(): void {
+    const turn = (2 * Math.PI) / Math.max(Math.abs(this.speed), 1e-6);
+    this.rate = RATES.find((rate) => turn / rate >= SLOW) ?? 0.01;
+  }
+
+  get sample(): number {
+    return Math.round(this.part * this.count) % this.count;
+  }
+
+  set sample(k: number) {
+    this.part = (((k % this.count) + this.count) % this.count) / this.count;
+  }
+
+  /** Crank angle of the sample, degrees from the first. */
+  get angle(): number {
+    return (this.sample / this.count) * 360 * this.turns;
+  }
+
+  set angle(degrees: number) {
+    this.sample = Math.round((degrees / (360 * this.turns)) * this.count);
+  }
+
+  /** Let time pass; tells whether another sample is to be shown. */
+  tick(now: number): boolean {
+    const before = this.sample;
+    const passed = this.last === null ? 0 : Math.min((now - this.last) / 1000, 0.1);
+    this.last = this.playing ? now : null;
+    if (!this.playing) return false;
+    // A machine that stands still can be turned by hand, and so it is here.
+    const turns = this.speed ? (this.rate * this.speed) / (2 * Math.PI) : 1 / SLOW;
+    const part = this.part + (passed * turns) / this.turns;
+    this.part = part - Math.floor(part);
+    return this.sample !== before;
+  }
+}

@@ -1,0 +1,196 @@
+/** What the page and the server say to each other. Lengths in m, angles in rad, all else in SI. */
+
+export type Pair = [number, number];
+
+export type Edit =
+  | { set: string; text: string }
+  | { set: string; value: number }
+  | { move: string; to: Pair; at: number }
+  | { move_mass: string; to: Pair; at: number };
+
+export type FileKind = "model" | "csv" | "report";
+
+export type Asked =
+  | { type: "ready" }
+  | { type: "open"; example: string }
+  | { type: "open"; name: string; text: string }
+  | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
+  | { type: "undo" | "redo" | "balance" }
+  | { type: "compare"; on: false }
+  | { type: "download"; kind: FileKind; language?: string };
+
+export interface Example {
+  name: string;
+  title: string;
+}
+
+export interface Hello {
+  type: "hello";
+  version: string;
+  examples: Example[];
+  /** Most bytes of a model file. */
+  largest: number;
+  /** Whether the server holds a machine already. */
+  machine?: boolean;
+}
+
+export interface Field {
+  path: string;
+  group: string;
+  label: string;
+  value: number;
+  text: string;
+  unit: string;
+  min?: number | null;
+  max?: number | null;
+  step?: number | null;
+}
+
+export interface Body {
+  name: string;
+  points: string[];
+  outline: string[];
+}
+
+export interface Scene {
+  frame: string[];
+  bodies: Body[];
+  pins: string[];
+  wheels: { link: string; center: string; radius: number }[];
+  guides: { name: string; point: string }[];
+  springs: [string, string][];
+  mass_centers: string[];
+  box: [number, number, number, number];
+  movable: string[];
+  traced?: string[];
+}
+
+export interface Figure {
+  name: string;
+  label: string;
+  unit: string;
+  value: number;
+  before?: number | null;
+}
+
+export type Arrays = Record<string, [offset: number, length: number]>;
+
+export interface StateMessage {
+  type: "state";
+  seq: number;
+  name: string;
+  title: string;
+  description: string;
+  undo: string | null;
+  redo: string | null;
+  angles: number;
+  turns: number;
+  speed: number;
+  has_forces: boolean;
+  missing: string[];
+  fields: Field[];
+  scene: Scene;
+  arrays: Arrays;
+  figures: Figure[];
+  orders: number[];
+  notes: string[];
+  before: boolean;
+  planting?: { tip: string; surface: number } | null;
+}
+
+export interface Gauge {
+  name: string;
+  label: string;
+  unit: string;
+}
+
+export interface ResponseMessage {
+  type: "response";
+  seq: number;
+  gauges: Gauge[];
+  arrays: Arrays;
+  sweep?: { speeds: string; own: number; of: (Gauge & { array: string })[] } | null;
+}
+
+export interface Change {
+  label: string;
+  unit: string;
+  before: number;
+  after: number;
+}
+
+export interface Balanced {
+  type: "balanced";
+  seq: number;
+  changes: string[];
+  /** What was to become small. */
+  aims: Change[];
+  figures: Change[];
+  proof: string;
+}
+
+export interface Refused {
+  type: "refused";
+  seq: number;
+  message: string;
+  path?: string | null;
+}
+
+export type Told =
+  | Hello
+  | StateMessage
+  | ResponseMessage
+  | Balanced
+  | Refused
+  | { type: "busy"; seq?: number; what: string }
+  | { type: "file"; seq: number; name: string; mime: string }
+  /** Said by the page's own transport, never by a server. */
+  | { type: "lost" | "back" };
+
+/** Numbers of a message, by name. */
+export class Numbers {
+  private readonly floats: Float32Array;
+
+  constructor(
+    private readonly arrays: Arrays,
+    buffer: DataView | undefined,
+  ) {
+    this.floats = buffer ? floats(buffer) : new Float32Array(0);
+  }
+
+  has(name: string): boolean {
+    return name in this.arrays;
+  }
+
+  get(name: string): Float32Array | undefined {
+    const found = this.arrays[name];
+    return found && this.floats.subarray(found[0], found[0] + found[1]);
+  }
+
+  names(prefix: string): string[] {
+    return Object.keys(this.arrays).filter((name) => name.startsWith(prefix));
+  }
+}
+
+/** A machine as the page shows it: the message, and its arrays. */
+export interface State extends StateMessage {
+  numbers: Numbers;
+}
+
+/** Notebooks may hand over bytes that start anywhere; arrays of floats need multiples of four. */
+function floats(view: DataView): Float32Array {
+  const length = view.byteLength >> 2;
+  if (view.byteOffset % 4 === 0)
+    return new Float32Array(view.buffer as ArrayBuffer, view.byteOffset, length);
+  const bytes = new Uint8Array(view.buffer as ArrayBuffer, view.byteOffset, length * 4);
+  return new Float32Array(bytes.slice().buffer);
+}
+
+/** The part of anywidget's model that the page uses; `connect` gives one over a WebSocket. */
+export interface Wire {
+  send(content: object): void;
+  on(event: "msg:custom", heard: Heard): void;
+  off(event: "msg:custom", heard: Heard): void;
+}
+
+export type Heard = (content: Told, buffers: DataView[]) => void;

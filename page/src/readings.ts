@@ -1,0 +1,175 @@
+/** Figures of what shakes, and what balancing made of them. */
+
+import { h, write } from "./dom";
+import { percent, shown } from "./format";
+import type { Balanced, Change, Figure, State } from "./protocol";
+
+interface Line {
+  label: string;
+  unit: string;
+  rms?: Figure;
+  peak?: Figure;
+}
+
+/** A table of RMS and peak, a line for each signal. */
+export class Readings {
+  readonly root = h("div", { class: "readings" });
+  private shape = "";
+  private cells = new Map<string, { value: HTMLElement; before: HTMLElement | null }>();
+
+  show(state: State): void {
+    const lines = [...byLine(state.figures).values()];
+    const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.before]);
+    if (shape !== this.shape) this.build(lines, state, shape);
+    // Forces that cancel leave rounding behind.
+    const least = 1e-9 * Math.max(...state.figures.map((figure) => figure.value ?? 0));
+    for (const figure of state.figures) {
+      const cell = this.cells.get(figure.name);
+      if (!cell) continue;
+      write(cell.value, shown(figure.value < least ? 0 : (figure.value ?? NaN), 4));
+      if (cell.before && typeof figure.before === "number") {
+        const same =
+          Math.abs(figure.value - figure.before) <= 5e-4 * Math.abs(figure.before) + least;
+        write(
+          cell.before,
+          same ? "" : `${shown(figure.before, 4)} · ${percent(figure.before, figure.value)}`,
+        );
+      }
+    }
+  }
+
+  private build(lines: Line[], state: State, shape: string): void {
+    this.shape = shape;
+    this.cells.clear();
+    this.root.classList.toggle("compared", state.before);
+    if (!lines.length) {
+      return this.root.replaceChildren(h("p", { class: "quiet" }, "Motion only, no forces."));
+    }
+    const cell = (figure: Figure | undefined) => {
+      if (!figure) return h("td");
+      const value = h("span", { class: "value" });
+      const before = state.before ? h("span", { class: "was" }) : null;
+      this.cells.set(figure.name, { value, before });
+      return h("td", {}, value, before);
+    };
+    const head = h(
+      "tr",
+      {},
+      ...["", "RMS", "peak", ""].map((t, i) => h(i ? "th" : "td", i ? { scope: "col" } : {}, t)),
+    );
+    head.lastElementChild?.replaceWith(h("td"));
+    const rows = lines.map((line) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, line.label),
+        cell(line.rms),
+        cell(line.peak),
+        h("td", { class: "unit" }, unbroken(line.unit)),
+      ),
+    );
+    const caption = h(
+      "caption",
+      { class: "unseen" },
+      state.before ? "Figures, and what they were before" : "Figures",
+    );
+    this.root.replaceChildren(
+      h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)),
+    );
+  }
+}
+
+function byLine(figures: Figure[]): Map<string, Line> {
+  const lines = new Map<string, Line>();
+  for (const figure of figures) {
+    const dot = figure.name.lastIndexOf(".");
+    const [signal, measure] = [figure.name.slice(0, dot), figure.name.slice(dot + 1)];
+    const label = capital(figure.label.replace(/, (RMS|peak)$/, ""));
+    const line = lines.get(signal) ?? { label, unit: figure.unit };
+    if (measure === "peak") line.peak = figure;
+    else line.rms = figure;
+    lines.set(signal, line);
+  }
+  return lines;
+}
+
+/** A unit that stays on one line. */
+function unbroken(unit: string): string {
+  return unit.replace(/ /g, "\u00a0");
+}
+
+export function capital(text: string): string {
+  return text.slice(0, 1).toUpperCase() + text.slice(1);
+}
+
+/** What balancing found: before and after, what was changed, and whether it is proven. */
+export class BalancePanel {
+  readonly root = h("section", {
+    class: "balance",
+    "aria-label": "Balancing",
+    hidden: true,
+    tabindex: -1,
+  });
+
+  constructor(
+    private readonly keep: () => void,
+    private readonly takeBack: () => void,
+  ) {}
+
+  show(found: Balanced): void {
+    const whole = found.figures.filter((figure) => MAIN.test(figure.label));
+    const changed = whole.filter(
+      ({ before, after }) => Math.abs(after - before) > 5e-4 * Math.abs(before),
+    );
+    const rest = (changed.length ? changed : whole).filter(
+      ({ label }) => !found.aims.some((aim) => aim.label === label),
+    );
+    const main = [...found.aims, ...rest];
+    const others = found.figures.filter(({ label }) => !main.some((one) => one.label === label));
+    this.root.replaceChildren(
+      h("h2", {}, "Balanced"),
+      h("ul", {}, ...found.changes.map((change) => h("li", {}, change))),
+      h(
+        "div",
+        { class: "buttons" },
+        h("button", { type: "button", class: "strong", onclick: () => this.keep() }, "Keep"),
+        h("button", { type: "button", onclick: () => this.takeBack() }, "Take back"),
+      ),
+      comparison(main),
+      ...(others.length
+        ? [h("details", {}, h("summary", {}, "All other figures"), comparison(others))]
+        : []),
+      h("p", { class: "quiet" }, found.proof),
+    );
+    this.root.hidden = false;
+    this.root.focus({ preventScroll: true });
+    this.root.scrollIntoView({ block: "nearest" });
+  }
+
+  hide(): void {
+    this.root.hidden = true;
+  }
+}
+
+/** The figures that come first: of whole signals on the frame, and of the mass that it takes. */
+const MAIN = /^(mass\b.*|(?!.*(\b[xy], |joint)).*, (RMS|peak))$/;
+
+function comparison(figures: Change[]): HTMLTableElement {
+  const rows = figures.map(({ label, unit, before, after }) =>
+    h(
+      "tr",
+      {},
+      h(
+        "th",
+        { scope: "row" },
+        capital(label),
+        h("span", { class: "unit" }, ` ${unbroken(unit)}`),
+      ),
+      h("td", {}, shown(before, 4)),
+      h("td", { class: "after" }, shown(after, 4)),
+      h("td", { class: after > before * 1.0005 ? "worse" : "better" }, percent(before, after)),
+    ),
+  );
+  const head = ["before", "after", "change"].map((text) => h("th", { scope: "col" }, text));
+  return h("table", {}, h("thead", {}, h("tr", {}, h("td"), ...head)), h("tbody", {}, ...rows));
+}

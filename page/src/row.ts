@@ -1,0 +1,179 @@
+/** One number of the machine: typed, stepped by keys, or moved by its slider. */
+
+import type { Conversation } from "./conversation";
+import { fresh, h, set, write } from "./dom";
+import { Gesture } from "./gesture";
+import type { Field } from "./protocol";
+import { bare, compact, unitOf, written } from "./quantities";
+
+const STEPS = 1000;
+/** A held key pauses no longer than this between two of its events, ms. */
+const PAUSE = 600;
+
+export class Row {
+  readonly root: HTMLElement;
+  private readonly input: HTMLInputElement;
+  private readonly slider: HTMLInputElement | null = null;
+  private readonly error = h("p", {
+    class: "error",
+    id: fresh("error"),
+    role: "alert",
+    hidden: true,
+  });
+  private gesture: Gesture | null = null;
+  private exact = "";
+  private typing = false;
+
+  constructor(
+    private field: Field,
+    slider: boolean,
+    private readonly talk: Conversation,
+    private readonly holding: (on: boolean) => void,
+  ) {
+    const name = `${field.group} ${field.label}`;
+    this.input = h("input", {
+      type: "text",
+      class: "number",
+      "aria-label": name,
+      "data-path": field.path,
+      autocomplete: "off",
+      autocapitalize: "off",
+      spellcheck: "false",
+      inputmode: "text",
+    });
+    this.input.addEventListener("focus", () => this.focus());
+    this.input.addEventListener("input", () => {
+      this.typing = true;
+      this.input.dataset.typed = "";
+    });
+    this.input.addEventListener("blur", () => this.commit());
+    this.input.addEventListener("keydown", (event) => this.key(event));
+    if (slider) this.slider = this.makeSlider(`${name} slider`);
+    const axis = field.path.slice(-1);
+    const label = slider
+      ? h("span", { class: "name", "aria-hidden": "true" }, field.label)
+      : h("span", { class: "axis", "aria-hidden": "true" }, axis);
+    this.root = h(
+      "div",
+      { class: slider ? "row" : "half" },
+      label,
+      this.slider,
+      this.input,
+      this.error,
+    );
+  }
+
+  show(field: Field): void {
+    this.field = field;
+    if (this.exact !== field.text) {
+      this.exact = field.text;
+      this.input.title = field.text;
+      if (!this.typing) this.input.value = this.focused ? field.text : compact(field.text);
+      if (!this.typing) this.complain(null);
+    }
+    if (this.slider && !this.gesture) this.place(this.slider);
+  }
+
+  private get focused(): boolean {
+    return (this.input.getRootNode() as Document | ShadowRoot).activeElement === this.input;
+  }
+
+  private focus(): void {
+    if (!this.typing) this.input.value = this.exact;
+    this.input.select();
+  }
+
+  private key(event: KeyboardEvent): void {
+    if (event.key === "Enter") this.commit();
+    else if (event.key === "Escape") {
+      event.stopPropagation();
+      this.revert();
+    } else if ((event.key === "ArrowUp" || event.key === "ArrowDown") && !event.altKey) {
+      event.preventDefault();
+      this.nudge((event.key === "ArrowUp" ? 1 : -1) * (event.shiftKey ? 10 : 1), event.timeStamp);
+    }
+  }
+
+  private revert(): void {
+    this.typing = false;
+    delete this.input.dataset.typed;
+    this.complain(null);
+    this.input.value = this.focused ? this.exact : compact(this.exact);
+  }
+
+  private commit(): void {
+    this.gesture?.end();
+    const text = this.input.value.trim().replace(/−/g, "-");
+    if (!this.typing || text === this.exact || text === "") return this.revert();
+    this.talk.release();
+    const { path } = this.field;
+    const edits = [{ set: path, text: bare(text) ? `${text} ${unitOf(this.exact)}`.trim() : text }];
+    this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal) => {
+      if (refusal === null) this.typing = false;
+      this.complain(refusal);
+      if (refusal === null) this.revert();
+    });
+  }
+
+  /** The last digit that is shown, up or down. */
+  private nudge(by: number, stamp: number): void {
+    this.typing = false;
+    const { min, max, step, value } = this.field;
+    const size =
+      step ?? (typeof min === "number" && typeof max === "number" ? (max - min) / STEPS : 0);
+    if (size) this.attempt(value + by * size, stamp);
+    this.gesture?.endSoon(PAUSE);
+  }
+
+  private attempt(value: number, stamp: number): void {
+    if (!this.gesture) {
+      this.talk.release();
+      this.holding(true);
+      this.gesture = new Gesture(this.talk, this.label, () => {
+        this.gesture = null;
+        this.holding(false);
+      });
+    }
+    this.gesture.move(
+      [{ set: this.field.path, text: written(value, this.exact, this.field.value) }],
+      stamp,
+    );
+  }
+
+  private get label(): string {
+    return `${this.field.group} ${this.field.label}`;
+  }
+
+  private makeSlider(name: string): HTMLInputElement {
+    const slider = h("input", { type: "range", min: 0, max: STEPS, step: 1, "aria-label": name });
+    slider.addEventListener("input", (event) => {
+      const { min, max } = this.field;
+      const part = Number(slider.value) / STEPS;
+      this.attempt((min ?? 0) + part * ((max ?? 1) - (min ?? 0)), event.timeStamp);
+      slider.style.setProperty("--part", String(part));
+    });
+    // Keys tell of each step that it is the last one; a pointer tells when it lets go.
+    slider.addEventListener("change", () => this.gesture?.endSoon(PAUSE));
+    for (const name of ["pointerup", "blur"])
+      slider.addEventListener(name, () => this.gesture?.end());
+    return slider;
+  }
+
+  private place(slider: HTMLInputElement): void {
+    const { min, max, value } = this.field;
+    const [low, high] = [min ?? 0, max ?? 1];
+    const part = high > low ? (value - low) / (high - low) : 0;
+    slider.value = String(Math.round(part * STEPS));
+    slider.style.setProperty("--part", part.toFixed(3));
+    set(slider, { "aria-valuetext": compact(this.field.text) });
+  }
+
+  private complain(message: string | null): void {
+    this.error.hidden = message === null;
+    write(this.error, message ?? "");
+    set(this.input, {
+      "aria-invalid": message !== null && "true",
+      "aria-describedby": message !== null && this.error.id,
+    });
+  }
+}

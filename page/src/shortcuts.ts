@@ -1,0 +1,45 @@
+/** Keys that hold on the whole page, and those that hold on the drawing. */
+
+export interface Shortcuts {
+  board: HTMLElement;
+  undo(): void;
+  redo(): void;
+  help(): void;
+  toggle(): void;
+  /** Turn the crank by some degrees. */
+  turn(by: number): void;
+  zoom(factor: number): void;
+  fit(): void;
+}
+
+export function pressed(event: KeyboardEvent, page: Shortcuts): void {
+  const target = event.target as HTMLElement;
+  const typing = target instanceof HTMLInputElement && target.type === "text";
+  if (event.ctrlKey || event.metaKey) {
+    // A text that is being typed has its own undo.
+    if (!(typing && target.dataset.typed !== undefined)) step(event, page);
+  } else if (!typing && event.key === "?") page.help();
+  else if (!event.altKey && page.board.contains(target) && !(target instanceof HTMLButtonElement)) {
+    draw(event, page);
+  }
+}
+
+function step(event: KeyboardEvent, page: Shortcuts): void {
+  const key = event.key.toLowerCase();
+  if (key !== "z" && key !== "y") return;
+  event.preventDefault();
+  if (event.shiftKey || key === "y") page.redo();
+  else page.undo();
+}
+
+function draw(event: KeyboardEvent, page: Shortcuts): void {
+  const { key } = event;
+  if (key === " ") page.toggle();
+  else if (key === ",") page.turn(-1);
+  else if (key === ".") page.turn(1);
+  else if (key === "+" || key === "=") page.zoom(1.25);
+  else if (key === "-") page.zoom(0.8);
+  else if (key === "0") page.fit();
+  else return;
+  event.preventDefault();
+}

@@ -1,0 +1,168 @@
+/** The bar at the top: what to look at, undo and redo, balancing, downloads, help. */
+
+import { h, icon, set } from "./dom";
+import type { Example, FileKind, State } from "./protocol";
+
+const ICONS = {
+  undo: "M5.5 3 2.5 6l3 3M3 6h6.5a3.5 3.5 0 0 1 0 7H6",
+  redo: "M10.5 3l3 3-3 3M13 6H6.5a3.5 3.5 0 0 0 0 7H10",
+  balance: "M8 2.5v11M4.5 13.5h7M2.5 5h11M4 5 2 9.5h4zM12 5l-2 4.5h4z",
+  save: "M8 2v7.5M4.800 6.7 8 9.900l3.200-3.200M2.5 13.5h11",
+  keys: "M1.5 4h13v8.5h-13zM4 6.5h.01M6.7 6.5h.01M9.400 6.5h.01M12 6.5h.01M4.5 10h7",
+  open: "M2 12.5v-9h4l1.5 2H14v7z",
+};
+
+const LANGUAGES = { en: "English", ja: "日本語", ko: "한국어" };
+
+export interface Commands {
+  example(name: string): void;
+  file(file: File): void;
+  undo(): void;
+  redo(): void;
+  balance(): void;
+  download(kind: FileKind, language?: string): void;
+  help(): void;
+}
+
+export class Toolbar {
+  readonly root: HTMLElement;
+  private readonly examples: HTMLSelectElement;
+  private readonly undo: HTMLButtonElement;
+  private readonly redo: HTMLButtonElement;
+  private readonly balance: HTMLButtonElement;
+  private readonly own = h("option", { value: "" }, "");
+  private readonly menu: HTMLDetailsElement;
+
+  constructor(commands: Commands) {
+    this.examples = h("select", {
+      "aria-label": "Example",
+      onchange: () => commands.example(this.examples.value),
+    });
+    const file = h("input", {
+      type: "file",
+      hidden: true,
+      accept: ".toml",
+      "aria-label": "Model file",
+      tabindex: -1,
+    });
+    file.addEventListener("change", () => {
+      const [chosen] = file.files ?? [];
+      file.value = "";
+      if (chosen) commands.file(chosen);
+    });
+    const open = button("Choose file", "open", () => file.click());
+    this.undo = button("", "undo", () => commands.undo(), "Undo");
+    this.redo = button("", "redo", () => commands.redo(), "Redo");
+    this.balance = button("Balance", "balance", () => commands.balance());
+    this.menu = downloads(commands);
+    const help = button("", "keys", () => commands.help(), "Keys");
+    this.root = h(
+      "header",
+      { class: "bar" },
+      h("span", { class: "mark" }, "equipoise"),
+      this.examples,
+      open,
+      file,
+      h("span", { class: "gap" }),
+      h("span", { class: "together" }, this.undo, this.redo),
+      this.balance,
+      this.menu,
+      help,
+    );
+  }
+
+  offer(examples: Example[]): void {
+    this.examples.replaceChildren(
+      ...examples.map(({ name, title }) => h("option", { value: name, title }, name)),
+    );
+  }
+
+  show(state: State): void {
+    const known = [...this.examples.options].some((option) => option.value === state.name);
+    if (known) this.own.remove();
+    else {
+      this.own.textContent = state.name;
+      this.own.value = state.name;
+      this.examples.prepend(this.own);
+    }
+    if (this.examples.value !== state.name) this.examples.value = state.name;
+    label(this.undo, "Undo", state.undo);
+    label(this.redo, "Redo", state.redo);
+    this.balance.disabled = !state.has_forces;
+  }
+
+  busy(what: string | null): void {
+    set(this.root, { "data-busy": what });
+    this.balance.classList.toggle("working", what !== null);
+  }
+}
+
+function downloads(commands: Commands): HTMLDetailsElement {
+  const language = h(
+    "select",
+    { "aria-label": "Language of the report" },
+    ...Object.entries(LANGUAGES).map(([code, name]) =>
+      h("option", { value: code, lang: code }, name),
+    ),
+  );
+  const menu: HTMLDetailsElement = h("details", { class: "menu" });
+  const item = (text: string, kind: FileKind) =>
+    h(
+      "button",
+      {
+        type: "button",
+        onclick: () => {
+          menu.open = false;
+          commands.download(kind, language.value);
+        },
+      },
+      text,
+    );
+  menu.append(
+    h(
+      "summary",
+      { "aria-label": "Download", title: "Download" },
+      icon(ICONS.save),
+      h("span", { class: "word" }, "Download"),
+    ),
+    h(
+      "div",
+      { class: "sheet" },
+      item("Download model", "model"),
+      item("Download CSV", "csv"),
+      h("div", { class: "line" }, item("Download report", "report"), language),
+    ),
+  );
+  menu.addEventListener("keydown", (event) => {
+    if (event.key !== "Escape" || !menu.open) return;
+    event.stopPropagation();
+    menu.open = false;
+    menu.querySelector("summary")?.focus();
+  });
+  menu.addEventListener("focusout", (event) => {
+    if (!menu.contains(event.relatedTarget as Node | null) && event.relatedTarget)
+      menu.open = false;
+  });
+  return menu;
+}
+
+function button(
+  text: string,
+  picture: keyof typeof ICONS,
+  onclick: () => void,
+  name = text,
+): HTMLButtonElement {
+  const word = text ? h("span", { class: "word" }, text) : null;
+  return h(
+    "button",
+    { type: "button", "aria-label": name, title: name, onclick },
+    icon(ICONS[picture]),
+    word,
+  );
+}
+
+/** What a step would do is told to the eye and to the ear; a step that is not there is disabled. */
+function label(element: HTMLButtonElement, name: string, what: string | null): void {
+  element.disabled = what === null;
+  set(element, { title: what ? `${name}: ${what}` : name, "aria-description": what ?? null });
+}

@@ -1,0 +1,82 @@
+/** Playing, pausing, turning the crank by hand. */
+
+import { h, icon, set, write } from "./dom";
+import { signed } from "./format";
+import { type Player, RATES } from "./player";
+
+const PLAY = "M4.5 2.5v11l8.5-5.5z";
+const PAUSE = "M4 2.5h2.5v11H4zM9.5 2.5H12v11H9.5z";
+
+export class TransportBar {
+  readonly root: HTMLElement;
+  private readonly play: HTMLButtonElement;
+  private readonly slider: HTMLInputElement;
+  private readonly told = h("output", { class: "angle" });
+  private readonly rates: HTMLSelectElement;
+  private shown = false;
+
+  constructor(
+    private readonly player: Player,
+    toggle: () => void,
+    turned: () => void,
+  ) {
+    this.play = h("button", { type: "button", class: "play", onclick: toggle }, icon(PLAY));
+    this.slider = h("input", {
+      type: "range",
+      min: 0,
+      max: 359,
+      step: 1,
+      "aria-label": "Crank angle",
+    });
+    this.slider.addEventListener("input", () => {
+      player.sample = Number(this.slider.value);
+      turned();
+    });
+    this.rates = h(
+      "select",
+      { "aria-label": "Speed of playing", title: "Speed of playing, of the true speed" },
+      ...RATES.map((rate) =>
+        h("option", { value: rate }, rate === 1 ? "true speed" : `1/${Math.round(1 / rate)} speed`),
+      ),
+    );
+    this.rates.addEventListener("change", () => (player.rate = Number(this.rates.value)));
+    this.root = h(
+      "div",
+      { class: "transport", role: "group", "aria-label": "Motion" },
+      this.play,
+      this.slider,
+      this.told,
+      this.rates,
+    );
+    this.state();
+  }
+
+  /** The samples or the rate are others. */
+  take(count: number): void {
+    set(this.slider, { max: count - 1 });
+    this.rates.value = String(this.player.rate);
+  }
+
+  /** Playing or not. */
+  state(): void {
+    const { playing } = this.player;
+    if (this.shown === playing && this.play.hasAttribute("aria-label")) return;
+    this.shown = playing;
+    set(this.play, {
+      "aria-label": playing ? "Pause" : "Play",
+      title: playing ? "Pause (Space)" : "Play (Space)",
+    });
+    this.play.replaceChildren(icon(playing ? PAUSE : PLAY));
+  }
+
+  point(): void {
+    const text = `${signed(this.player.angle.toFixed(1))}°`;
+    write(this.told, text);
+    this.slider.value = String(this.player.sample);
+    this.slider.style.setProperty(
+      "--part",
+      (this.player.sample / Math.max(Number(this.slider.max), 1)).toFixed(3),
+    );
+    set(this.slider, { "aria-valuetext": `${this.player.angle.toFixed(1)} degrees` });
+  }
+}

@@ -1,0 +1,116 @@
+/** How uPlot draws curves and bars; numbers on the scales are not its own. */
+
+import uPlot from "uplot";
+import type { Role, Theme } from "./theme";
+
+export interface Curve {
+  label: string;
+  role: Role;
+  values: Float64Array;
+  before?: Float64Array | undefined;
+}
+
+export interface Content {
+  /** Values of x; the same array as long as nothing about it changed. */
+  x: Float64Array;
+  unit: string;
+  curves: Curve[];
+  /** What is smaller than this is rounding, and shown as zero. */
+  least?: number;
+}
+
+export interface Look {
+  title: string;
+  height: number;
+  xAxis: boolean;
+  xLabel?: string;
+  /** Distance of marks on x: 90 for degrees. */
+  xStep?: (span: number) => number;
+  bars?: boolean;
+  /** No values at the cursor in the heading. */
+  quiet?: boolean;
+  /** Told where on x was pressed. */
+  picked?: (x: number) => void;
+  control?: HTMLElement;
+}
+
+/** Room around the plot, pixels. */
+export const LEFT = 46;
+export const RIGHT = 16;
+export const TOP = 6;
+export const BELOW = 22;
+export const NARROW = 4;
+
+/** What depends on the values of the moment. */
+interface Ways {
+  range(): [number, number];
+  levels(): number[];
+  marks(low: number, high: number): number[];
+}
+
+export function optionsOf(
+  look: Look,
+  theme: Theme,
+  curves: Curve[],
+  width: number,
+  ways: Ways,
+): uPlot.Options {
+  const none = (_u: uPlot, splits: number[]) => splits.map(() => null);
+  const axis = {
+    grid: { stroke: () => theme.colours.grid, width: 1 },
+    ticks: { show: false },
+    border: { show: false },
+    values: none,
+  };
+  const across = { size: look.xAxis ? BELOW : 0, gap: 6 };
+  return {
+    width,
+    height: look.height,
+    pxAlign: false,
+    legend: { show: false },
+    cursor: { show: false },
+    padding: [TOP, RIGHT, look.xAxis ? 0 : NARROW, 0],
+    scales: {
+      x: {
+        time: false,
+        range: (_u, low, high) => (look.bars ? [low - 0.5, high + 0.5] : [low, high]),
+      },
+      y: { range: () => ways.range() },
+    },
+    axes: [
+      { ...axis, ...across, splits: (_u, _i, low, high) => ways.marks(low, high) },
+      { ...axis, size: LEFT, gap: 4, splits: () => ways.levels() },
+    ],
+    series: [{}, ...curves.flatMap((curve, i) => series(curve, look, theme, i, curves.length))],
+    hooks: { drawAxes: [(u) => zero(u, theme.colours.axis, ways.range())] },
+  };
+}
+
+/** A curve, behind it what it was before: pale and dashed, or the outline of a bar. */
+function series(curve: Curve, look: Look, theme: Theme, i: number, count: number): uPlot.Series[] {
+  const stroke = () => theme.colours[curve.role];
+  const base: uPlot.Series = { stroke, width: 1.6, points: { show: false } };
+  if (!look.bars) {
+    const before: uPlot.Series = { ...base, width: 1.2, dash: [3, 3], alpha: 0.65 };
+    return curve.before ? [before, base] : [base];
+  }
+  const align = count === 1 ? 0 : i ? 1 : -1;
+  const paths = uPlot.paths.bars?.({ size: [0.7 / count, 26], align });
+  const bars: uPlot.Series = { ...base, width: 0, fill: stroke, ...(paths && { paths }) };
+  const before: uPlot.Series = { ...bars, width: 1, fill: "transparent", alpha: 0.8 };
+  return curve.before ? [before, bars] : [bars];
+}
+
+/** The line of zero, a little stronger than the grid. */
+function zero(u: uPlot, colour: string, [low, high]: [number, number]): void {
+  if (low > 0 || high < 0) return;
+  const y = Math.round(u.valToPos(0, "y", true)) + 0.5;
+  u.ctx.save();
+  u.ctx.strokeStyle = colour;
+  u.ctx.lineWidth = 1;
+  u.ctx.beginPath();
+  u.ctx.moveTo(u.bbox.left, y);
+  u.ctx.lineTo(u.bbox.left + u.bbox.width, y);
+  u.ctx.stroke();
+  u.ctx.restore();
+}

@@ -1,0 +1,52 @@
+/** From metres to pixels and back: what of the plane the stage shows. */
+
+import type { Pair } from "./protocol";
+
+const MARGIN = 0.05;
+
+export class View {
+  width = 0;
+  height = 0;
+  /** Pixels a metre. */
+  scale = 1;
+  private center: Pair = [0, 0];
+
+  /** Show a box with some room around it, the more below and left for the scales there. */
+  fit(box: readonly [number, number, number, number]): void {
+    const [x0, y0, x1, y1] = box;
+    const [w, h] = [Math.max(x1 - x0, 1e-9), Math.max(y1 - y0, 1e-9)];
+    const room = Math.min(this.width, this.height) * MARGIN + 20;
+    const [freeX, freeY] = [
+      Math.max(this.width - 2 * room, 20),
+      Math.max(this.height - 2 * room, 20),
+    ];
+    this.scale = Math.min(freeX / w, freeY / h);
+    this.center = [(x0 + x1) / 2, (y0 + y1) / 2];
+  }
+
+  px(x: number, y: number): Pair {
+    return [
+      this.width / 2 + (x - this.center[0]) * this.scale,
+      this.height / 2 - (y - this.center[1]) * this.scale,
+    ];
+  }
+
+  metres(px: number, py: number): Pair {
+    return [
+      this.center[0] + (px - this.width / 2) / this.scale,
+      this.center[1] - (py - this.height / 2) / this.scale,
+    ];
+  }
+
+  /** Zoom so that what is at a pixel stays there. */
+  zoom(factor: number, px = this.width / 2, py = this.height / 2): void {
+    const [x, y] = this.metres(px, py);
+    this.scale *= factor;
+    const [nowX, nowY] = this.metres(px, py);
+    this.center = [this.center[0] + x - nowX, this.center[1] + y - nowY];
+  }
+
+  pan(dx: number, dy: number): void {
+    this.center = [this.center[0] - dx / this.scale, this.center[1] + dy / this.scale];
+  }
+}

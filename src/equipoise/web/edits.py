@@ -1,0 +1,206 @@
+"""Edits: from a design and what a page does to it to a new design.
+
+What is dragged at a crank angle keeps the pose that every link has there: a point gets new
+coordinates in each link that has it, so that all other points stand still.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError, MotionError, UsageError
+from equipoise.io.units import parse
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine, Position, Vector
+from equipoise.mechanism.motion import Motion
+from equipoise.pipeline import analyze
+from equipoise.results import LEAST_ANGLES, Analysis
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from equipoise.web.messages import Change, Drag, Setting
+
+ANGLES, MOST_SAMPLES = 720, 2880
+"""Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
+OTHER_SIDE = {"left": "right", "right": "left", "forward": "backward", "backward": "forward"}
+THERE = 1e-6
+"""Of the size of the machine: how near a dragged point has to come to where it was put."""
+
+Goals = dict[str, tuple[int, complex]]
+"""Points that are dragged: the sample at which each is to be at a place, m."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solved:
+    """A design with what it does."""
+
+    design: Design
+    analysis: Analysis
+
+    @property
+    def motion(self) -> Motion:
+        return self.analysis.motion
+
+
+def solved(design: Design) -> Solved:
+    """Compute a design; the errors are those of `pipeline.analyze`."""
+    turns = assemble(design.machine).cycle.turns
+    count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
+    return Solved(design, analyze(design.machine, count))
+
+
+def movable(machine: Machine) -> list[str]:
+    """Points that can be dragged: a link of one point goes where its neighbours take it."""
+    names = dict.fromkeys(machine.frame)
+    for link in machine.links.values():
+        if len(link.points) > 1:
+            names |= dict.fromkeys(link.points)
+    return list(names)
+
+
+def edited(base: Solved, changes: Iterable[Change]) -> Solved:
+    """Change a design and compute it.
+
+    Raises
+    ------
+    EquipoiseError : an edit cannot be made, or the machine cannot be computed with it.
+    """
+    design, goals = base.design, Goals()
+    for change in changes:
+        if isinstance(change, Setting):
+            design = _set(design, change)
+        elif change.of_mass:
+            design = _mass_moved(base, design, change)
+        else:
+            design = _moved(base, design, change)
+            goals[change.name] = (change.at, change.to)
+    return _assembled(design, goals)
+
+
+def _set(design: Design, change: Setting) -> Design:
+    """A number set to a value, or to what was typed."""
+    fields = fields_of(design)
+    field = fields.get(change.path)
+    if field is None:
+        raise UsageError(unknown(change.path, fields, "number of this machine"))
+    value = change.to
+    if isinstance(value, str):
+        value = parse(value.strip(), field.dimension)
+    return field.put(design, value)
+
+
+def _moved(base: Solved, design: Design, change: Drag) -> Design:
+    """A point dragged to a place of the frame."""
+    machine, motion, to = design.own, base.motion, change.to
+    if change.name not in movable(machine):
+        raise UsageError(unknown(change.name, movable(machine), "point that can be moved"))
+    _check_sample(motion, change)
+    frame, links = dict(machine.frame), dict(machine.links)
+    if change.name in frame:
+        frame[change.name] = (to.real, to.imag)
+    for name, link in links.items():
+        if change.name in link.points and len(link.points) > 1:
+            place = _local(motion, name, change.at, to)
+            links[name] = replace(link, points={**link.points, change.name: place})
+    position = _position(motion, change) if machine.position is not None else None
+    return design.with_machine(replace(machine, frame=frame, links=links, position=position))
+
+
+def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:
+    """The centre of mass of a link, with its counterweight, dragged to a place of the frame."""
+    machine = design.own
+    having = [name for name, link in machine.links.items() if link.has_mass]
+    if change.name not in having:
+        raise UsageError(unknown(change.name, having, "link with a mass"))
+    _check_sample(base.motion, change)
+    place = complex(*_local(base.motion, change.name, change.at, change.to))
+    center = design.own_center(change.name, place)
+    moved = machine.with_link(change.name, center_of_mass=(center.real, center.imag))
+    return design.with_machine(moved)
+
+
+def _check_sample(motion: Motion, change: Drag) -> None:
+    count = len(motion.crank_angle)
+    if not 0 <= change.at < count:
+        raise UsageError(f"at: got {change.at}; there are the crank angles 0 to {count - 1}")
+
+
+def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:
+    """A place of the frame (m) in the axes of a link, where it is at a sample."""
+    machine = motion.machine
+    anchor = motion.linkage.anchors[link]
+    origin = motion.points[anchor].place[at]
+    turned = (place - origin) * np.exp(-1j * motion.links[link].angle[at])
+    x, y = machine.links[link].points[anchor]
+    return x + float(turned.real), y + float(turned.imag)
+
+
+def _position(motion: Motion, change: Drag | None = None) -> Position:
+    """Where the machine is, for the start of Newton's method: with a point that is dragged.
+
+    Gears hold the place that their teeth have at crank angle 0, which is then the only one to ask.
+    """
+    at = 0 if change is None or motion.machine.gears else change.at
+    places = {name: point.place[at] for name, point in motion.points.items()}
+    if change is not None and at == change.at:
+        places[change.name] = change.to
+    points = {name: (float(place.real), float(place.imag)) for name, place in places.items()}
+    angles = {name: float(link.angle[at]) for name, link in motion.links.items()}
+    return Position(float(motion.crank_angle[at]), points, angles)
+
+
+def settled(found: Solved) -> Solved:
+    """The same, with its rough position where the machine now is, if it has one."""
+    machine = found.design.own
+    if machine.position is None:
+        return found
+    placed = replace(machine, position=_position(found.motion))
+    return Solved(found.design.with_machine(placed), found.analysis)
+
+
+def _assembled(design: Design, goals: Goals) -> Solved:
+    """Compute a design in which dragged points come to where they were put.
+
+    One that is dragged across a line of its dyad needs that dyad on its other side.  One that comes
+    there on neither side, such as a block's beside its line, comes as near as it can.
+    """
+    try:
+        found = solved(design)
+    except MotionError:
+        other = _turned_over(design, goals)
+        if other is None:
+            raise
+        return other
+    return found if _reaches(found, goals) else _turned_over(design, goals) or found
+
+
+def _turned_over(design: Design, goals: Goals) -> Solved | None:
+    """The design with one dyad on its other side, if the points then come where they were put."""
+    for joint, side in design.own.assembly.items() if goals else ():
+        assembly = {**design.own.assembly, joint: OTHER_SIDE[side]}
+        try:
+            found = solved(design.with_machine(replace(design.own, assembly=assembly)))
+        except EquipoiseError:
+            continue
+        if _reaches(found, goals):
+            return found
+    return None
+
+
+def _reaches(found: Solved, goals: Goals) -> bool:
+    points = found.motion.points
+    return all(
+        at < len(points[name].place)
+        and abs(points[name].place[at] - to) <= THERE * _size(found.design.own)
+        for name, (at, to) in goals.items()
+    )
+
+
+def _size(machine: Machine) -> float:
+    """Size of the machine as a whole, m."""
+    bodies = (machine.frame, *(link.points for link in machine.links.values()))
+    places = [abs(complex(*place)) for points in bodies for place in points.values()]
+    return max(places) or 1.0

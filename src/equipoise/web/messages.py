@@ -1,0 +1,167 @@
+"""What a page may ask, checked: nothing that it sends is trusted."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite
+from typing import Any, NoReturn
+
+from equipoise.errors import UsageError
+from equipoise.io.files import LARGEST
+from equipoise.io.unit_problems import described
+from equipoise.mechanism.checks import HUGE
+
+KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "download")
+SLOW = ("balance", "download")
+"""Those that take more than a moment."""
+MOST_EDITS = 100
+LONGEST_LABEL = 200
+LARGEST_MESSAGE = 3 * LARGEST
+"""Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A number that is set: to the text that was typed, or to a value in SI units."""
+
+    path: str
+    to: str | float
+
+
+@dataclass(frozen=True)
+class Drag:
+    """A point, or the centre of mass of a link, that is dragged.
+
+    name : of the point, or of the link.  of_mass : whether it is a centre of mass.
+    to : place in the frame, m.  at : sample of the crank angle at which it is there.
+    """
+
+    name: str
+    of_mass: bool
+    to: complex
+    at: int
+
+
+Change = Setting | Drag
+
+
+@dataclass(frozen=True)
+class Message:
+    """One thing that a page asks.
+
+    kind : one of `KINDS`.  seq : number that the answer carries.  values : as JSON has them.
+    """
+
+    kind: str
+    seq: int | None
+    values: Mapping[str, Any]
+
+    def text(self, key: str, usual: str | None = None) -> str:
+        """A text of the message."""
+        value = self.values.get(key, usual)
+        if not isinstance(value, str):
+            _wrong(f"{self.kind}: {key}", value, "a text")
+        return value
+
+    def flag(self, key: str, usual: bool) -> bool:
+        """A yes or no of the message."""
+        value = self.values.get(key, usual)
+        if not isinstance(value, bool):
+            _wrong(f"{self.kind}: {key}", value, "true or false")
+        return value
+
+    @property
+    def label(self) -> str:
+        """What an edit is called in undo and redo."""
+        text = "".join(sign for sign in self.text("label", "edit") if sign.isprintable())
+        return text[:LONGEST_LABEL] or "edit"
+
+    def changes(self) -> list[Change]:
+        """The edits of a message of the kind `edit`.
+
+        Raises
+        ------
+        UsageError : one of them is not as it should be.
+        """
+        edits = self.values.get("edits")
+        if not isinstance(edits, list) or not 0 < len(edits) <= MOST_EDITS:
+            _wrong("edit: edits", edits, f"a list of 1 to {MOST_EDITS} edits")
+        return [_change(edit) for edit in edits]
+
+    @property
+    def preview(self) -> bool:
+        """Whether a newer edit makes this one needless."""
+        return self.kind == "edit" and self.values.get("commit") is False
+
+
+def read(text: str) -> Message:
+    """Read a message from JSON.
+
+    Raises
+    ------
+    UsageError : it is no message.
+    """
+    if len(text) > LARGEST_MESSAGE:
+        size = f"{len(text) / 1e6:.0f} MB; at most {LARGEST / 1e6:.0f} MB"
+        raise UsageError(f"the message has {size} are read: give a model file")
+    try:
+        return message_of(json.loads(text))
+    except (ValueError, RecursionError) as error:  # ValueError: no JSON, or endless digits
+        raise UsageError("the message is no JSON that a page would send") from error
+
+
+def message_of(values: object) -> Message:
+    """Check a message that has been read from JSON.
+
+    Raises
+    ------
+    UsageError : it is no message.
+    """
+    if not isinstance(values, dict):
+        _wrong("the message", values, 'an object such as {"type": "undo"}')
+    kind, seq = values.get("type"), values.get("seq")
+    if seq is not None and (isinstance(seq, bool) or not isinstance(seq, int) or abs(seq) > HUGE):
+        _wrong("seq", seq, "a whole number")
+    if kind not in KINDS:
+        _wrong("type", kind, f"one of {', '.join(KINDS)}")
+    return Message(kind, seq, values)
+
+
+def _change(edit: object) -> Change:
+    if not isinstance(edit, dict):
+        _wrong("an edit", edit, 'an object such as {"set": "drive.speed", "text": "193 rpm"}')
+    given = [kind for kind in ("set", "move", "move_mass") if kind in edit]
+    if len(given) != 1 or not isinstance(edit[given[0]], str):
+        _wrong("an edit", edit, "one of set, move and move_mass, with a name")
+    kind, name = given[0], edit[given[0]]
+    if kind == "set":
+        return Setting(name, _typed(edit))
+    at = edit.get("at", 0)
+    if isinstance(at, bool) or not isinstance(at, int):
+        _wrong("at", at, "the number of a crank angle")
+    to = edit.get("to")
+    if not isinstance(to, list) or len(to) != 2:
+        _wrong("to", to, "x and y in m")
+    return Drag(name, kind == "move_mass", complex(_number("to", to[0]), _number("to", to[1])), at)
+
+
+def _typed(edit: Mapping[str, Any]) -> str | float:
+    """What is to be set: a text such as ``"71.5 mm"``, or a value in SI units."""
+    if isinstance(edit.get("text"), str):
+        text: str = edit["text"]
+        return text
+    return _number("value", edit.get("value"))
+
+
+def _number(what: str, value: object) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        _wrong(what, value, "a number in SI units")
+    if not abs(value) <= HUGE or not isfinite(value):
+        _wrong(what, value, "a number of usual size in SI units")
+    return float(value)
+
+
+def _wrong(what: str, value: object, wanted: str) -> NoReturn:
+    raise UsageError(f"{what}: got {described(value)}; give {wanted}")

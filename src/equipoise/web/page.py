@@ -1,0 +1,165 @@
+"""One page on its WebSocket: messages in, replies out, computing beside the event loop."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import struct
+import sys
+import traceback
+from collections import deque
+from collections.abc import Iterator
+from concurrent.futures import Executor
+from typing import TYPE_CHECKING
+
+from equipoise.errors import UsageError
+from equipoise.web.messages import SLOW, Message, read
+from equipoise.web.session import Reply, Session, refused
+
+if TYPE_CHECKING:
+    from starlette.websockets import WebSocket
+
+MOST_WAITING, MOST_QUESTIONS = 100, 3
+PAUSE = 0.2
+"""s without a message, after which what takes longer is told too."""
+BUSY = "questions that take long are still being answered; wait for them"
+MISTAKE = "this went wrong inside the program, and nothing was changed; please report it"
+FLOODED = "too many messages at once; load the page again"
+POLICY_VIOLATION, TRY_LATER = 1008, 1013
+
+
+class Page:
+    """A page that is open.
+
+    quick, slow : threads that compute; what takes long has its own, so that dragging goes on.
+    """
+
+    def __init__(
+        self, socket: WebSocket, session: Session, quick: Executor, slow: Executor
+    ) -> None:
+        self.socket, self.session, self.quick, self.slow = socket, session, quick, slow
+        self.waiting: deque[Message | UsageError] = deque()
+        self.come = asyncio.Event()
+        self.closed = False
+        self.last: Message | None = None
+        self.questions: asyncio.Queue[Message] = asyncio.Queue(MOST_QUESTIONS)
+        self.more: asyncio.Task[None] | None = None
+
+    async def run(self) -> None:
+        """Answer until the page is closed."""
+        await self.socket.accept()
+        reader, worker = asyncio.create_task(self._read()), asyncio.create_task(self._work())
+        try:
+            await self._send(self.session.hello())
+            while (message := await self._next()) is not None:
+                await self._take(message)
+        finally:
+            self.closed = True
+            for task in (reader, worker, self.more):
+                if task is not None:
+                    task.cancel()
+
+    # -- what comes in -----------------------------------------------------------------------------
+
+    async def _read(self) -> None:
+        """Take messages in; an edit that is only tried makes way for a newer one."""
+        while not self.closed:
+            event = await self.socket.receive()
+            if event["type"] != "websocket.receive":
+                break
+            message = _message(event.get("text"))
+            if self.waiting and _makes_way(self.waiting[-1], message):
+                self.waiting.pop()
+            self.waiting.append(message)
+            self.come.set()
+            if len(self.waiting) > MOST_WAITING:
+                await self.socket.close(POLICY_VIOLATION, FLOODED)
+                break
+        self.closed = True
+        self.come.set()
+
+    async def _next(self) -> Message | UsageError | None:
+        while not self.waiting and not self.closed:
+            self.come.clear()
+            await self.come.wait()
+        return None if self.closed else self.waiting.popleft()
+
+    # -- what goes out -----------------------------------------------------------------------------
+
+    async def _take(self, message: Message | UsageError) -> None:
+        if isinstance(message, UsageError):
+            await self._send(refused(None, message))
+        elif message.kind not in SLOW:
+            self.last = message
+            await self._answer(self.session.receive(message), message.seq, self.quick)
+            if _done(self.more):
+                self.more = asyncio.create_task(self._tell_more())
+        elif self.questions.full():
+            await self._send(refused(message.seq, UsageError(BUSY)))
+        else:
+            self.questions.put_nowait(message)
+
+    async def _work(self) -> None:
+        """Answer what takes long, one after the other, beside what does not."""
+        while True:
+            message = await self.questions.get()
+            await self._answer(self.session.receive(message), message.seq, self.slow)
+
+    async def _tell_more(self) -> None:
+        """What takes too long to be told at every move of a drag."""
+        while not self.closed and self.session.has_more:
+            last = self.last
+            await asyncio.sleep(PAUSE)
+            if not self.waiting and self.last is last:
+                await self._answer(self.session.tell_more(), None, self.slow)
+
+    async def _answer(self, replies: Iterator[Reply], seq: int | None, pool: Executor) -> None:
+        """Send replies as they are computed; a mistake of the program must not end the page."""
+        loop = asyncio.get_running_loop()
+        try:
+            while (reply := await loop.run_in_executor(pool, next, replies, None)) is not None:
+                await self._send(reply)
+        except Exception as error:  # whatever it is, the last good state is still there
+            traceback.print_exception(error, file=sys.stderr)
+            await self._send(refused(seq, UsageError(f"{MISTAKE} ({type(error).__name__})")))
+
+    async def _send(self, reply: Reply) -> None:
+        if not self.closed:
+            await self.socket.send_bytes(packed(reply))
+
+
+async def turn_away(socket: WebSocket, why: str) -> None:
+    """Tell a page that it cannot be served."""
+    await socket.accept()
+    await socket.send_bytes(packed(refused(None, UsageError(why))))
+    await socket.close(TRY_LATER, why)
+
+
+def packed(reply: Reply) -> bytes:
+    """A reply as one message: length of the header, header in JSON, then the block.
+
+    Zeros fill the header up, so that the block begins at a multiple of four bytes.
+    """
+    header = json.dumps(reply.content, ensure_ascii=False, allow_nan=False).encode()
+    filling = bytes(-len(header) % 4)
+    return b"".join([struct.pack("<I", len(header)), header, filling, reply.buffer])
+
+
+def _message(text: str | None) -> Message | UsageError:
+    if text is None:
+        return UsageError("the message is no text; give JSON")
+    try:
+        return read(text)
+    except UsageError as error:
+        return error
+
+
+def _makes_way(older: Message | UsageError, newer: Message | UsageError) -> bool:
+    """Whether an edit that waits was only tried, and another comes."""
+    if isinstance(older, UsageError) or isinstance(newer, UsageError):
+        return False
+    return older.preview and newer.kind == "edit"
+
+
+def _done(task: asyncio.Task[None] | None) -> bool:
+    return task is None or task.done()

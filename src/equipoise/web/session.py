@@ -1,0 +1,248 @@
+"""One page: what it asks, and what it is answered.  It knows nothing of how messages travel."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from threading import Lock
+from typing import Any
+
+from equipoise import __version__
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.io.files import LARGEST, printable
+from equipoise.io.models import examples, load, loads
+from equipoise.io.opening import kind_of_text, opened
+from equipoise.web.balanced import balanced, balanced_design, balanced_told
+from equipoise.web.design import Design
+from equipoise.web.downloads import downloaded
+from equipoise.web.edits import Solved, edited, settled, solved
+from equipoise.web.fields import Scale, fields_of
+from equipoise.web.history import History, Step
+from equipoise.web.messages import Message
+from equipoise.web.more import more
+from equipoise.web.shaken import response_of
+from equipoise.web.state import state_of
+
+LONGEST = 800
+"""Signs of a sentence."""
+TOOLS = "this is the file of a hand-held tool; `equipoise report` and `equipoise plot` show those"
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What a page is sent: values for JSON, and a block of 32-bit floats or of a file."""
+
+    content: dict[str, Any]
+    buffer: bytes = b""
+
+
+@dataclass
+class Session:
+    """The state of one page.
+
+    history : of its designs.  found : the one that is, computed.
+    preview : what it is while something is dragged; each one starts from `found`.
+    before : with which it is compared, if with any.
+    scale : of the sliders.  more_told : the design of which `tell_more` has told.
+    lock : held while a design takes the place of another, since balancing has a thread of its own.
+    """
+
+    history: History | None = None
+    found: Solved | None = None
+    preview: Solved | None = None
+    before: Solved | None = None
+    scale: Scale | None = None
+    more_told: Solved | None = None
+    lock: Lock = field(default_factory=Lock)
+
+    def receive(self, message: Message) -> Iterator[Reply]:
+        """Answer a message; what takes long comes last, and may be left unasked."""
+        try:
+            yield from getattr(self, f"_{message.kind}")(message)
+        except EquipoiseError as error:
+            yield refused(message.seq, error)
+
+    # -- what a page may ask -----------------------------------------------------------------------
+
+    def _ready(self, message: Message) -> Iterator[Reply]:
+        yield self.hello()
+        if self.found is not None:
+            yield from self._shown(message.seq)
+
+    def _open(self, message: Message) -> Iterator[Reply]:
+        if "example" in message.values:
+            design = opened_example(message.text("example"))
+        else:
+            design = opened_text(message.text("name", "machine.toml"), message.text("text"))
+        self.open(design)
+        yield from self._shown(message.seq)
+
+    def _edit(self, message: Message) -> Iterator[Reply]:
+        commit, problem = message.flag("commit", True), None
+        with self.lock:
+            base, found = self._current(), None
+            try:
+                found = edited(base, message.changes())
+            except EquipoiseError as error:
+                problem = error
+            if found is None and commit:  # the last place of a drag at which it could be
+                found = self.preview
+            if found is not None and commit:
+                found = settled(found)
+                self._go(self._past.then(found.design, message.label), found)
+            elif found is not None:
+                self.preview = found
+        if problem is not None:
+            yield refused(message.seq, problem)
+        if found is not None:
+            yield from self._shown(message.seq)
+
+    def _undo(self, message: Message) -> Iterator[Reply]:
+        with self.lock:
+            self._go(self._past.undone())
+        yield from self._shown(message.seq)
+
+    def _redo(self, message: Message) -> Iterator[Reply]:
+        with self.lock:
+            self._go(self._past.redone())
+        yield from self._shown(message.seq)
+
+    def _compare(self, message: Message) -> Iterator[Reply]:
+        first = self._past.first
+        self.before = solved(first) if message.flag("on", False) else None
+        yield from self._shown(message.seq)
+
+    def _balance(self, message: Message) -> Iterator[Reply]:
+        base = self._current()
+        yield Reply({"type": "busy", "seq": message.seq, "what": "balancing"})
+        found = balanced(base.design.machine)
+        after = solved(balanced_design(base.design, found))
+        with self.lock:
+            if self.found is not base:
+                raise UsageError("the machine was changed while it was balanced; balance it again")
+            self._go(self._past.then(after.design, "balance"), after)
+            self.before = base
+        yield Reply({"type": "balanced", "seq": message.seq, **balanced_told(found)})
+        yield from self._shown(message.seq)
+
+    def _download(self, message: Message) -> Iterator[Reply]:
+        language = message.text("language", "en")
+        content, data = downloaded(self._current(), message.text("kind"), language)
+        yield Reply({"type": "file", "seq": message.seq, **content}, data)
+
+    # -- its state ---------------------------------------------------------------------------------
+
+    def hello(self) -> Reply:
+        """The first thing that a page is told."""
+        return Reply(
+            {
+                "type": "hello",
+                "version": __version__,
+                "examples": [{"name": name, "title": title} for name, title in titles().items()],
+                "largest": LARGEST,
+                "machine": self.found is not None,
+            }
+        )
+
+    def open(self, design: Design) -> None:
+        """Begin with a design; what was done before is forgotten."""
+        found = solved(design)
+        with self.lock:
+            self.scale = Scale.of(design)
+            self._go(History(Step(design, "")), found)
+            self.before = None
+
+    @property
+    def has_more(self) -> bool:
+        """Whether there is more to tell of the design, which takes longer."""
+        return self.found is not None and self.shown is not self.more_told
+
+    def tell_more(self) -> Iterator[Reply]:
+        """What takes too long to be told at every move of a drag; ends when the design changes."""
+        found = self.more_told = self.shown
+        for content, data in more(found, lambda: self.shown is not found):
+            yield Reply({"seq": None, **content}, data)
+
+    @property
+    def shown(self) -> Solved:
+        """What the page sees: what is dragged, or the design that is."""
+        return self.preview or self._current()
+
+    @property
+    def _past(self) -> History:
+        self._current()
+        assert self.history is not None
+        return self.history
+
+    def _current(self) -> Solved:
+        if self.found is None:
+            raise UsageError("no machine is open; pick an example, or drop a model file")
+        return self.found
+
+    def _go(self, history: History, found: Solved | None = None) -> None:
+        """Show where a history has come to; nothing has changed where that cannot be computed."""
+        self.found = found or solved(history.now.design)
+        self.history, self.preview = history, None
+        if self.before is not None and self.before.design is history.now.design:
+            self.before = None  # nothing differs from itself
+
+    def _shown(self, seq: int | None) -> Iterator[Reply]:
+        """The design that is shown, and how its support is shaken."""
+        yield self._state(seq)
+        shaken = response_of(self.shown.design.machine)
+        if shaken is not None:
+            content, data = shaken
+            yield Reply({"type": "response", "seq": seq, **content}, data)
+
+    def _state(self, seq: int | None) -> Reply:
+        assert self.scale is not None
+        found, history = self.shown, self._past
+        content, data = state_of(found, self.before)
+        fields = [self.scale.told(one) for one in fields_of(found.design).values()]
+        told = {"undo": history.undo, "redo": history.redo, "fields": fields}
+        return Reply({"type": "state", "seq": seq, **told, **content}, data)
+
+
+def refused(seq: int | None, error: Exception) -> Reply:
+    """Say why something cannot be done."""
+    content: dict[str, Any] = {"type": "refused", "seq": seq, "message": _shortened(str(error))}
+    if isinstance(error, ModelError) and error.where:
+        content["path"] = error.where
+    return Reply(content)
+
+
+def _shortened(sentence: str) -> str:
+    text = " ".join(sentence.split())
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 200]} ... {text[-190:]}"
+
+
+@cache
+def titles() -> dict[str, str]:
+    """Titles of the bundled machines by name."""
+    return examples("linkage")
+
+
+def opened_example(name: str) -> Design:
+    """A bundled machine."""
+    if name not in titles():
+        raise UsageError(f"there is no example of the name {printable(name)!r}")
+    return Design(name, load(name))
+
+
+def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
+    """A machine from its file, with the tables beside it, or an example."""
+    file = opened(path_or_name)
+    if kind_of_text(file.text) == "tool":
+        raise ModelError("", TOOLS, file.source)
+    machine = loads(file.text, file.source, file.folder)
+    return Design(printable(os.path.basename(path_or_name)), machine)
+
+
+def opened_text(name: str, text: str) -> Design:
+    """A machine from the text of a model file."""
+    shown = printable(name)
+    if kind_of_text(text) == "tool":
+        raise ModelError("", TOOLS, shown)
+    return Design(shown, loads(text.removeprefix("\ufeff"), shown))

@@ -1,0 +1,87 @@
+"""How the support of a machine is shaken, as a page is sent it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError
+from equipoise.mechanism.model import Machine
+from equipoise.structures.forced import respond
+from equipoise.structures.response import Response
+from equipoise.structures.sweep import sweep_speed
+from equipoise.web.state import Block
+
+Values = dict[str, Any]
+AROUND, SPEEDS = (0.2, 2.0), 60
+"""Ends of the range of speeds, over the machine's own, and how many besides those at resonances."""
+SAMPLES = 360
+"""In a turn."""
+
+
+def response_of(machine: Machine) -> tuple[Values, bytes] | None:
+    """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
+
+    Where there is no steady state, no gauges and a note that says so.
+    """
+    if machine.support is None or not all(link.has_mass for link in machine.links.values()):
+        return None
+    block = Block()
+    try:
+        found = respond(machine)
+    except EquipoiseError as error:
+        return {"gauges": [], "arrays": {}, "notes": [str(error)]}, b""
+    return _told(found, block), block.data
+
+
+def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Values, bytes] | None:
+    """The same with the response over speeds around the machine's own.
+
+    progress : as of `sweep_speed`; what it raises ends the work.
+    """
+    try:
+        found = respond(machine)
+        slow, fast = (share * found.speed for share in AROUND)
+        curves = sweep_speed(machine, slow, fast, speeds=SPEEDS, progress=progress)
+    except EquipoiseError:  # of which `response_of` has told
+        return None
+    block = Block()
+    content = _told(found, block)
+    block.add("sweep.speed", curves.speed)
+    of = []
+    for name, curve in curves.gauges.items():
+        unit = "rad" if curve.rotation else "m"
+        label = f"{name}, peak to peak"
+        array = f"sweep.{name}"
+        block.add(array, curve.peak_to_peak)
+        of.append({"name": name, "label": label, "unit": unit, "array": array})
+    resonances = [{"speed": one.speed, "order": one.order} for one in curves.resonances]
+    content["sweep"] = {
+        "speeds": "sweep.speed",
+        "of": of,
+        "own": found.speed,
+        "resonances": resonances,
+    }
+    content["arrays"] = block.told
+    return content, block.data
+
+
+def _told(found: Response, block: Block) -> Values:
+    """Displacements against the crank angle, which runs as the crank does."""
+    count = SAMPLES * found.turns
+    block.add("response.angle", np.arange(count) * (2 * np.pi / SAMPLES))
+    gauges = []
+    for name, gauge in found.gauges.items():
+        values = gauge.displacement.samples(count)
+        block.add(f"response.{name}", values)
+        gauges.append(
+            {
+                "name": name,
+                "label": name,
+                "unit": "rad" if gauge.rotation else "m",
+                "peak_to_peak": float(np.ptp(values)),
+            }
+        )
+    return {"gauges": gauges, "arrays": block.told, "notes": list(found.notes)}

@@ -1,0 +1,260 @@
+"""What a page is sent of a machine: plain values, and arrays in one block of 32-bit floats."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from math import isfinite
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.row_outputs import Rows
+from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.tip import surface_of
+from equipoise.results import Analysis
+from equipoise.scene import Scene
+from equipoise.signals import Periodic
+from equipoise.web.edits import Solved, movable
+
+Array = np.ndarray[Any, Any]
+Values = dict[str, Any]
+
+MOST_ORDER = 20
+"""Highest order of the spectra."""
+SPECTRA = ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque")
+LABELS = {
+    "shaking_force": ("shaking force", "N"),
+    "shaking_force.x": ("shaking force, x", "N"),
+    "shaking_force.y": ("shaking force, y", "N"),
+    "shaking_moment": ("shaking moment", "N m"),
+    "drive_torque": ("drive torque", "N m"),
+    "rows.shaking_force": ("all rows, shaking force", "N"),
+    "rows.shaking_moment": ("all rows, shaking moment", "N m"),
+    "rows.roll_moment": ("all rows, roll moment", "N m"),
+    "rows.yaw_moment": ("all rows, yaw moment", "N m"),
+    "rows.drive_torque": ("all rows, drive torque", "N m"),
+}
+"""Signals of which figures are told."""
+OF_ROWS = ("shaking_force", "shaking_moment", "roll_moment", "yaw_moment", "drive_torque")
+
+
+@dataclass
+class Block:
+    """Arrays one behind the other, as 32-bit floats, and where each begins."""
+
+    places: dict[str, tuple[int, int]] = field(default_factory=dict)
+    parts: list[Array] = field(default_factory=list)
+    size: int = 0
+
+    def add(self, name: str, values: Array) -> None:
+        """Add real (N,) values, or complex ones as (2 N,): x and y in turn."""
+        flat = np.ascontiguousarray(values)
+        if np.iscomplexobj(flat):
+            flat = flat.view(float)
+        with np.errstate(over="ignore"):  # what no drawing could show
+            self.parts.append(flat.astype("<f4"))
+        self.places[name] = (self.size, flat.size)
+        self.size += flat.size
+
+    @property
+    def told(self) -> dict[str, list[int]]:
+        """Offset and length of each array, in numbers."""
+        return {name: list(place) for name, place in self.places.items()}
+
+    @property
+    def data(self) -> bytes:
+        """All arrays, little-endian."""
+        return b"".join(part.tobytes() for part in self.parts)
+
+
+def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
+    """Everything that a page draws of a machine.
+
+    before : with which it is compared, if with any.
+    """
+    analysis, block = found.analysis, Block()
+    machine, motion = analysis.machine, analysis.motion
+    scene = Scene.of(motion)
+    block.add("crank_angle", scene.crank_angle)
+    for name, place in scene.places.items():
+        block.add(f"place.{name}", place)
+    for name, place in scene.mass_centers.items():
+        block.add(f"mass_center.{name}", place)
+    for name, link in motion.links.items():
+        block.add(f"angle.{name}", link.angle)
+    for guide in scene.guides:
+        block.add(f"guide.{guide.name}", guide.way)
+    signals = signals_of(analysis)
+    _add_signals(block, signals, analysis)
+    old = None
+    if before is not None:
+        old = signals_of(before.analysis)
+        _add_signals(block, old, before.analysis, "before.")
+    content: Values = {
+        "name": found.design.name,
+        "title": machine.title,
+        "description": machine.description,
+        "angles": len(scene.crank_angle),
+        "turns": motion.turns,
+        "speed": motion.speed,
+        "has_forces": analysis.solved is not None,
+        "missing": [name for name, link in machine.links.items() if not link.has_mass],
+        "scene": _scene(scene, movable(machine), _traced(scene)),
+        "figures": [*_figures(signals, old)],
+        "orders": _orders(analysis),
+        "notes": [massless(machine)] if analysis.solved is None else [],
+        "before": before is not None,
+        **_ground(found, scene, block),
+    }
+    content["arrays"] = block.told
+    return content, block.data
+
+
+def signals_of(analysis: Analysis) -> dict[str, Array]:
+    """Signals over the crank angle (N,), complex for vectors; none where masses are missing."""
+    found = analysis.solved
+    if found is None:
+        return {}
+    signals = {
+        "shaking_force": found.shaking_force.value,
+        "shaking_moment": found.shaking_moment,
+        "drive_torque": found.drive_torque,
+    }
+    signals |= {f"joint.{name}": joint.size for name, joint in found.joints.items()}
+    return signals | _together(analysis)
+
+
+def _together(analysis: Analysis) -> dict[str, Array]:
+    """The same of all rows together, where there are several and they turn."""
+    machine, motion = analysis.machine, analysis.motion
+    if len(machine.rows) < 2 or motion.speed == 0:
+        return {}
+    rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
+    count, signals = len(motion.crank_angle), {}
+    for output in OF_ROWS:
+        read = rows.signals(Objective(output))
+        parts = Periodic(read.total(phases)[0], read.turns).samples(count)
+        signals[f"rows.{output}"] = parts[0] + 1j * parts[1] if len(parts) > 1 else parts[0]
+    return signals
+
+
+def _add_signals(
+    block: Block, signals: dict[str, Array], analysis: Analysis, prefix: str = ""
+) -> None:
+    if prefix and signals:
+        block.add(f"{prefix}crank_angle", analysis.crank_angle)
+    for name, values in signals.items():
+        block.add(f"{prefix}{name}", values)
+    for name, sizes in _spectra(analysis, signals):
+        block.add(f"{prefix}spectrum.{name}", sizes)
+
+
+def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[str, Array]]:
+    """Amplitude at each order that is shown, by name."""
+    if analysis.solved is None:
+        return
+    turns = analysis.motion.turns
+    for name in SPECTRA:
+        yield name, _sizes(analysis.by_order[name])
+    whole = signals.get("rows.shaking_force")
+    if whole is not None:
+        yield "rows.shaking_force.x", _sizes(Periodic.of(whole.real, turns))
+        yield "rows.shaking_force.y", _sizes(Periodic.of(whole.imag, turns))
+
+
+def _sizes(signal: Periodic) -> Array:
+    sizes = np.zeros(MOST_ORDER * signal.turns + 1)
+    kept = signal.sizes[: len(sizes)]
+    sizes[: len(kept)] = kept
+    return sizes
+
+
+def _orders(analysis: Analysis) -> list[float]:
+    if analysis.solved is None:
+        return []
+    turns = analysis.motion.turns
+    return [number / turns for number in range(MOST_ORDER * turns + 1)]
+
+
+def _rms(values: Array) -> float:
+    return float(np.sqrt(np.mean(np.abs(values) ** 2)))
+
+
+def _peak(values: Array) -> float:
+    return float(np.max(np.abs(values)))
+
+
+MEASURES = {"rms": ("RMS", _rms), "peak": ("peak", _peak)}
+
+
+def _figures(signals: dict[str, Array], old: dict[str, Array] | None) -> Iterator[Values]:
+    """RMS and peak of each signal, with what they were before."""
+    parts = _with_parts(signals)
+    olds, several = {} if old is None else _with_parts(old), "rows.shaking_force" in signals
+    for name, (label, unit) in LABELS.items():
+        if name not in parts:
+            continue
+        values, was = parts[name], olds.get(name)
+        of_one = "one row, " if several and not name.startswith("rows.") else ""
+        for measure, (shown, of) in MEASURES.items():
+            entry = {
+                "name": f"{name}.{measure}",
+                "label": f"{of_one}{label}, {shown}",
+                "unit": unit,
+                "value": _plain(of(values)),
+            }
+            yield entry if was is None else entry | {"before": _plain(of(was))}
+
+
+def _with_parts(signals: dict[str, Array]) -> dict[str, Array]:
+    """Signals with the components of the shaking force beside it."""
+    force = signals.get("shaking_force")
+    if force is None:
+        return signals
+    return {**signals, "shaking_force.x": force.real, "shaking_force.y": force.imag}
+
+
+def _plain(value: float) -> float | None:
+    """A number that JSON can hold."""
+    return value if isfinite(value) else None
+
+
+def _scene(scene: Scene, handles: Sequence[str], traced: Sequence[str]) -> Values:
+    low, high = scene.box
+    return {
+        "frame": list(scene.frame),
+        "bodies": [
+            {"name": body.name, "points": list(body.points), "outline": list(body.outline)}
+            for body in scene.bodies
+        ],
+        "pins": sorted(scene.pins),
+        "wheels": [
+            {"link": wheel.link, "center": wheel.center, "radius": wheel.radius}
+            for wheel in scene.wheels
+        ],
+        "guides": [{"name": guide.name, "point": guide.point} for guide in scene.guides],
+        "springs": [list(ends) for ends in scene.springs],
+        "mass_centers": list(scene.mass_centers),
+        "box": [low.real, low.imag, high.real, high.imag],
+        "movable": list(handles),
+        "traced": list(traced),
+    }
+
+
+def _traced(scene: Scene) -> list[str]:
+    """Points whose paths are shown first: those of links alone, else all that move on a curve."""
+    moving = [name for name in scene.places if name not in scene.frame]
+    return [name for name in moving if name not in scene.pins] or moving
+
+
+def _ground(found: Solved, scene: Scene, block: Block) -> Values:
+    """Path of a planting tip over ground, and the soil that it goes into."""
+    machine = found.analysis.machine
+    planting, speed = machine.planting, found.motion.speed
+    if planting is None or speed == 0:
+        return {}
+    way = planting.forward(speed) / speed * scene.crank_angle
+    block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
+    return {"planting": {"tip": planting.tip, "surface": surface_of(machine)}}

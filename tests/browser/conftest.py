@@ -1,0 +1,92 @@
+"""A Chromium, a server as a user starts it, and a page of it for each test.
+
+Where there is no Chromium or no bundle the tests are skipped, and fail if EQUIPOISE_BROWSER is
+``required``.  A test fails too if its page reports an error or asks for anything beyond the server.
+A picture of each page at the end of its test is kept in ``build/screenshots``.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import runpy
+from collections.abc import Callable, Iterator
+
+import pytest
+from playwright.sync_api import Browser, BrowserContext, Page, expect
+
+from browser.live import ROOT, SCREENSHOTS, Live
+from support.chromium import chromium, path_of_chromium, serving
+
+SECONDS = 15
+"""The longest that anything may take on a busy machine."""
+
+
+def unavailable(reason: str) -> None:
+    """Skip, or fail where the tests of the browser are demanded."""
+    if os.environ.get("EQUIPOISE_BROWSER") == "required":
+        pytest.fail(reason)
+    pytest.skip(reason)
+
+
+@pytest.fixture(scope="session")
+def address() -> Iterator[str]:
+    """The address of a server with a machine."""
+    if not runpy.run_path(str(ROOT / "page" / "bundle.py"))["is_fresh"]():
+        unavailable("there is no bundle of the live page, or an old one: make page")
+    with serving("yamashita-1") as address:
+        yield address
+
+
+@pytest.fixture(scope="module")  # longer, and Playwright's event loop would disturb other tests
+def browser() -> Iterator[Browser]:
+    """A Chromium."""
+    if path_of_chromium() is None:
+        unavailable("there is no Chromium (Debian: apt-get install chromium)")
+    expect.set_options(timeout=SECONDS * 1000)
+    with chromium() as browser:
+        yield browser
+
+
+@pytest.fixture
+def new_page(
+    browser: Browser, address: str, request: pytest.FixtureRequest
+) -> Iterator[Callable[..., Page]]:
+    """Open a page in a context of its own, with Playwright's options of contexts.
+
+    Reduced motion is asked for, so that the linkage stands still at first.
+    """
+    contexts: list[BrowserContext] = []
+    wrong: list[str] = []
+    origin = re.sub(r"/\?.*", "", address)
+    known = (origin, origin.replace("http", "ws", 1), "data:", "blob:")
+
+    def watch(url: str) -> None:
+        if not url.startswith(known):
+            wrong.append(f"asks for {url}")
+
+    def new(**options: object) -> Page:
+        usual = {"viewport": {"width": 1280, "height": 900}, "reduced_motion": "reduce"}
+        context = browser.new_context(**{**usual, **options})
+        context.set_default_timeout(SECONDS * 1000)
+        contexts.append(context)
+        context.on("request", lambda sent: watch(sent.url))
+        context.on("weberror", lambda error: wrong.append(str(error.error)))
+        context.on("console", lambda said: said.type == "error" and wrong.append(said.text))
+        page = context.new_page()
+        page.on("websocket", lambda socket: watch(socket.url))
+        return page
+
+    yield new
+    for number, page in enumerate(page for context in contexts for page in context.pages):
+        name = re.sub(r"[^\w.-]+", "-", request.node.name) + (f"-{number + 1}" if number else "")
+        page.screenshot(path=SCREENSHOTS / f"{name}.png", full_page=True)
+    for context in contexts:
+        context.close()
+    assert not wrong
+
+
+@pytest.fixture
+def live(new_page: Callable[..., Page], address: str) -> Live:
+    """The live page with its machine, 1280 pixels wide."""
+    return Live.open(new_page(), address)

@@ -1,0 +1,113 @@
+"""The live page as a user sees it: handles, fields, buttons, by role and name."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from playwright.sync_api import Locator, Page, expect
+
+import equipoise as eq
+from equipoise import Machine
+
+ROOT = Path(__file__).parents[2]
+SCREENSHOTS = ROOT / "build" / "screenshots"
+AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
+NUMBER = re.compile(r"[-−]?\d+(?:\.\d+)?")
+
+
+@dataclass(frozen=True)
+class Live:
+    """A live page.  Lengths in mm, places on the screen in pixels."""
+
+    page: Page
+
+    @classmethod
+    def open(cls, page: Page, address: str) -> Live:
+        """Open the address and wait for the machine, and for everything to be in its place."""
+        page.goto(address)
+        live = cls(page)
+        expect(live.joint("B")).to_have_attribute("aria-valuetext", re.compile("mm"))
+        page.evaluate("new Promise(done => setTimeout(() => requestAnimationFrame(done), 50))")
+        return live
+
+    # -- parts of it -------------------------------------------------------------------------------
+
+    def button(self, name: str) -> Locator:
+        return self.page.get_by_role("button", name=name)
+
+    def joint(self, name: str) -> Locator:
+        return self.page.get_by_role("slider", name=f"Joint {name}", exact=True)
+
+    def mass(self, link: str) -> Locator:
+        return self.page.get_by_role("slider", name=f"Centre of mass of {link}", exact=True)
+
+    def field(self, name: str) -> Locator:
+        return self.page.get_by_role("textbox", name=name, exact=True)
+
+    def told(self, text: str) -> Locator:
+        """Return what is said of the last question, if the text is in it."""
+        return self.page.get_by_role("status").filter(has_text=text)
+
+    # -- what is read from it ----------------------------------------------------------------------
+
+    def place(self, handle: Locator) -> tuple[float, float]:
+        """Return where the page says that a handle is, mm."""
+        x, y = NUMBER.findall((handle.get_attribute("aria-valuetext") or "").replace("−", "-"))
+        return float(x), float(y)
+
+    def spot(self, handle: Locator) -> tuple[float, float]:
+        """Return where a handle is on the screen, pixels."""
+        box = handle.bounding_box()
+        assert box is not None
+        return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+    def findings(self) -> list[str]:
+        """Return the serious and critical findings of axe."""
+        self.page.evaluate(AXE.read_text(encoding="utf-8"))
+        found = self.page.evaluate("axe.run(document, {resultTypes: ['violations']})")
+        return [
+            f"{one['id']}: {one['help']}: {[node['html'][:200] for node in one['nodes'][:3]]}"
+            for one in found["violations"]
+            if one["impact"] in {"serious", "critical"}
+        ]
+
+    def download(self, name: str) -> tuple[str, str]:
+        """Choose one of the downloads, and return its file's name and text."""
+        self.page.get_by_text("Download", exact=True).click()
+        with self.page.expect_download() as coming:
+            self.button(name).click()
+        return coming.value.suggested_filename, coming.value.path().read_text(encoding="utf-8")
+
+    def machine(self) -> Machine:
+        """Return the machine of the model that the page gives as a file."""
+        return eq.loads(self.download("Download model")[1])
+
+    # -- what is done to it ------------------------------------------------------------------------
+
+    def type(self, field: Locator, text: str) -> None:
+        field.fill(text)
+        field.press("Enter")
+
+    def drag(self, handle: Locator, *ways: tuple[float, float]) -> None:
+        """Drag a handle with the mouse by each of the ways from where it was, and let it go."""
+        x, y = self.spot(handle)
+        mouse = self.page.mouse
+        mouse.move(x, y)
+        mouse.down()
+        for dx, dy in ways:
+            mouse.move(x + dx, y + dy, steps=10)
+            self.page.wait_for_timeout(100)
+        mouse.up()
+
+    def drop(self, name: str, text: str, times: int = 1) -> None:
+        """Drop a file on the page, of a text that is repeated."""
+        make = """([name, text, times]) => {
+            const files = new DataTransfer();
+            files.items.add(new File([text.repeat(times)], name, { type: "application/toml" }));
+            return files;
+        }"""
+        files = self.page.evaluate_handle(make, [name, text, times])
+        for event in ("dragenter", "dragover", "drop"):
+            self.page.locator(".equipoise").dispatch_event(event, {"dataTransfer": files})

@@ -1,0 +1,164 @@
+"""Moving joints and masses, typing numbers, sliders, undo: against the model that results."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, expect
+
+import equipoise as eq
+from browser.live import Live
+
+SHOWN = 0.011
+"""Places are shown to a hundredth of a millimetre."""
+
+
+def others(live: Live) -> dict[str, tuple[float, float]]:
+    return {name: live.place(live.joint(name)) for name in "ADCP"}
+
+
+def at_start(machine: eq.Machine, point: str) -> tuple[float, float]:
+    """Return the place of a point at crank angle 0, mm."""
+    place = eq.analyze(machine).motion.points[point].place[0] * 1e3
+    return place.real, place.imag
+
+
+def test_a_joint_follows_the_mouse_and_all_others_stay(live: Live) -> None:
+    joint, still = live.joint("B"), others(live)
+    x, y = live.spot(joint)
+    live.drag(joint, (-20, -30))
+    expect(live.button("Undo")).to_be_enabled()
+    assert live.spot(joint) == pytest.approx((x - 20, y - 30), abs=1)
+    for name, place in still.items():
+        assert live.place(live.joint(name)) == pytest.approx(place, abs=SHOWN)
+    assert at_start(live.machine(), "B") == pytest.approx(live.place(joint), abs=SHOWN)
+
+
+def test_a_drag_goes_on_where_a_plate_becomes_a_bar(live: Live) -> None:
+    joint = live.joint("B")
+    x, y = live.spot(joint)
+    live.drag(joint, (-15, 15), (-30, 0), (-20, -10))  # across the line from P to C
+    expect(live.button("Undo")).to_be_enabled()
+    assert live.spot(joint) == pytest.approx((x - 20, y - 10), abs=1)
+
+
+def test_a_joint_follows_a_finger(new_page: Callable[..., Page], address: str) -> None:
+    live = Live.open(new_page(has_touch=True), address)
+    joint = live.joint("C")
+    x, y = live.spot(joint)
+    fingers = live.page.context.new_cdp_session(live.page)
+    ways = [("touchStart", 0), *(("touchMove", step) for step in range(1, 7)), ("touchEnd", None)]
+    for kind, step in ways:
+        points = [] if step is None else [{"x": x + 3 * step, "y": y + 2 * step}]
+        fingers.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": points})
+    expect(live.button("Undo")).to_be_enabled()
+    assert live.spot(joint) == pytest.approx((x + 18, y + 12), abs=1)
+
+
+def test_arrow_keys_move_by_steps_that_undo_takes_back_as_one(live: Live) -> None:
+    joint = live.joint("B")
+    x, y = live.place(joint)
+    joint.press("ArrowRight")
+    expect(joint).not_to_have_attribute("aria-valuenow", f"{x:.2f}")
+    step = live.place(joint)[0] - x
+    assert 0 < step < 2
+    for key in ("ArrowRight", "Shift+ArrowUp", "Alt+ArrowLeft"):
+        joint.press(key)
+    joint.press("Enter")  # ends the move
+    moved = (x + 1.9 * step, y + 10 * step)
+    expect(joint).to_have_attribute("aria-valuenow", f"{moved[0]:.2f}")
+    assert live.place(joint) == pytest.approx(moved, abs=SHOWN)
+    live.page.keyboard.press("Control+z")
+    expect(live.button("Undo")).to_be_disabled()
+    assert live.place(joint) == pytest.approx((x, y), abs=SHOWN)
+    live.page.keyboard.press("Control+Shift+z")
+    expect(live.button("Redo")).to_be_disabled()
+    assert live.place(joint) == pytest.approx(moved, abs=SHOWN)
+
+
+def test_a_centre_of_mass_follows_the_mouse(live: Live) -> None:
+    center = live.mass("coupler")
+    still = others(live)
+    live.drag(center, (25, 10))
+    expect(live.button("Undo")).to_be_enabled()
+    machine = live.machine()
+    motion, own = eq.analyze(machine).motion, complex(*machine.links["coupler"].center_of_mass)
+    turned = own * np.exp(1j * motion.links["coupler"].angle[0])
+    place = 1e3 * (motion.points["B"].place[0] + turned)  # B is at the origin of its axes
+    assert (place.real, place.imag) == pytest.approx(live.place(center), abs=SHOWN)
+    assert others(live) == still
+
+
+def test_a_typed_number_is_what_is_computed(live: Live) -> None:
+    field = live.field("crank mass")
+    live.type(field, "0.45 kg")
+    expect(live.button("Undo")).to_be_enabled()
+    expected = eq.analyze(eq.load("yamashita-1").with_link("crank", mass=0.45))
+    force = expected.forces.shaking_force
+    rms = np.sqrt(np.mean(force.x**2 + force.y**2))
+    shown = live.page.get_by_role("row").filter(has_text="haking force").first.get_by_role("cell")
+    assert float(shown.first.inner_text()) == pytest.approx(rms, rel=1e-3)
+    assert live.machine().links["crank"].mass == 0.45
+
+
+def test_a_wrong_unit_is_told_beside_the_number(live: Live) -> None:
+    field = live.field("crank mass")
+    before = field.input_value()
+    live.type(field, "300 mm")
+    expect(field).to_have_attribute("aria-invalid", "true")
+    expect(field).to_have_accessible_description(
+        re.compile("mm is the unit of a length; a mass is wanted")
+    )
+    field.press("Escape")
+    expect(field).not_to_have_attribute("aria-invalid", "true")
+    expect(field).to_have_value(before)
+    expect(live.button("Undo")).to_be_disabled()
+
+
+def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> None:
+    joint, still = live.joint("B"), others(live)
+    x, y = live.spot(joint)
+    live.page.mouse.move(x, y)
+    live.page.mouse.down()
+    live.page.mouse.move(x, y - 30, steps=5)
+    expect(joint).not_to_have_attribute("aria-valuetext", "x 33.50 mm, y 0.00 mm")
+    live.page.mouse.move(x, y - 150, steps=5)
+    expect(live.told("cannot")).to_be_visible()
+    live.page.mouse.up()
+    expect(live.button("Undo")).to_be_enabled()
+    assert others(live) == still
+    assert at_start(live.machine(), "B") == pytest.approx(live.place(joint), abs=SHOWN)
+    live.button("Undo").click()
+    expect(live.button("Undo")).to_be_disabled()
+
+
+def test_a_slider_changes_the_speed(live: Live) -> None:
+    slider = live.page.get_by_role("slider", name="drive speed")
+    before = live.machine().drive.speed
+    slider.press("PageUp")
+    expect(live.button("Undo")).to_be_enabled()
+    after = live.machine().drive.speed
+    assert after > 1.02 * before
+    expect(live.field("drive speed")).to_have_value(f"{after * 30 / np.pi:.5g} rpm")
+
+
+def test_a_phase_of_a_row_changes_the_force_of_all_rows(live: Live) -> None:
+    live.page.get_by_role("combobox", name="Example").select_option("four-row-transplanter")
+    live.type(live.page.get_by_role("textbox", name=re.compile("row 2.*phase")), "90 deg")
+    expect(live.button("Undo")).to_be_enabled()
+    machine = live.machine()
+    force = eq.analyze(machine, 720).forces.shaking_force
+    ahead = [round(np.degrees(row.phase) * 2) for row in machine.rows]  # samples
+    every = sum(np.roll(force.x + 1j * force.y, -samples) for samples in ahead)
+    row = live.page.get_by_role("row").filter(has_text="All rows, shaking force")
+    shown = [float(text) for text in row.get_by_role("cell").all_inner_texts()[:2]]
+    rms, peak = np.sqrt(np.mean(np.abs(every) ** 2)), np.max(np.abs(every))
+    assert shown == pytest.approx([rms, peak], rel=2e-3)
+
+
+def test_the_response_of_a_rig_is_shown(live: Live) -> None:
+    live.page.get_by_role("combobox", name="Example").select_option("yamashita-rig")
+    expect(live.page.get_by_role("combobox", name="Response of")).to_be_visible()

@@ -1,0 +1,60 @@
+"""What everyone can read: findings of axe, narrow screens, dark screens; page and report."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Page, expect
+
+from browser.live import SCREENSHOTS, Live
+from surface.running import equipoise, succeeded
+
+WIDTHS = (1280, 400)
+SCHEMES: tuple[Literal["light", "dark"], ...] = ("light", "dark")
+FITS = "document.documentElement.scrollWidth <= document.documentElement.clientWidth"
+
+CLIPPED = """() => [...document.querySelectorAll(".equipoise *:not(.unseen)")]
+    .filter((part) => part.checkVisibility() && part.clientWidth)
+    .filter((part) => part.matches("input") || getComputedStyle(part).overflowX !== "visible")
+    .filter((part) => part.scrollWidth > part.clientWidth + 1)
+    .map((part) => part.outerHTML.slice(0, 200))"""
+"""What holds more than it shows."""
+
+
+def brightness(page: Page) -> float:
+    """Return how bright the page is as it is seen, 0 to 255."""
+    return float(np.mean(Image.open(io.BytesIO(page.screenshot())).convert("L")))
+
+
+@pytest.mark.parametrize("width", WIDTHS)
+def test_the_page(new_page: Callable[..., Page], address: str, width: int) -> None:
+    live = Live.open(new_page(viewport={"width": width, "height": 900}), address)
+    live.button("Balance").click()
+    expect(live.button("Take back")).to_be_visible()
+    for scheme in SCHEMES:
+        live.page.emulate_media(color_scheme=scheme)
+        live.page.screenshot(path=SCREENSHOTS / f"page-{width}-{scheme}.png", full_page=True)
+        assert live.page.evaluate(FITS)
+        assert live.page.evaluate(CLIPPED) == []
+        assert (brightness(live.page) > 128) == (scheme == "light")
+        assert live.findings() == []
+
+
+def test_a_report(new_page: Callable[..., Page], tmp_path: Path) -> None:
+    path = tmp_path / "report.html"
+    succeeded(equipoise("report", "yamashita-1", "-o", path))
+    page = new_page()
+    page.set_content(path.read_text(encoding="utf-8"))
+    for width, scheme in zip(WIDTHS, SCHEMES, strict=True):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.emulate_media(color_scheme=scheme)
+        page.screenshot(path=SCREENSHOTS / f"report-{width}-{scheme}.png", full_page=True)
+        assert page.evaluate(FITS)
+        assert (brightness(page) > 128) == (scheme == "light")
+        assert Live(page).findings() == []

@@ -1,0 +1,115 @@
+"""The page as a whole: moving, balancing, several at once, by keyboard alone, on a broken line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from playwright.sync_api import Page, WebSocketRoute, expect
+
+import equipoise as eq
+from browser.live import Live
+
+
+def test_the_linkage_moves_as_computed(new_page: Callable[..., Page], address: str) -> None:
+    live = Live.open(new_page(reduced_motion="no-preference"), address)
+    page, start = live.page, live.spot(live.joint("B"))
+    page.wait_for_function(
+        "y => y !== document.querySelector('[data-name=B]').getBoundingClientRect().y",
+        arg=start[1] - 0.5,
+    )
+    live.button("Pause").click()
+    motion = eq.analyze(eq.load("yamashita-1"), 720).motion
+    spots = {}
+    for sample in (0, 200, 500):
+        page.get_by_role("slider", name="Crank angle").fill(str(sample))
+        spots[sample] = {name: complex(*live.spot(live.joint(name))) for name in "ADBCP"}
+    scale = abs(spots[0]["A"] - spots[0]["D"]) / 0.088  # pixels per m
+    for sample, shown in spots.items():
+        for name in "BCP":
+            seen = (shown[name] - shown["A"]).conjugate() / scale
+            assert seen == pytest.approx(motion.points[name].place[sample], abs=1 / scale)
+
+
+def test_all_that_the_page_loads_is_small(new_page: Callable[..., Page], address: str) -> None:
+    page, sizes = new_page(), []
+    page.on("response", lambda answer: sizes.append(len(answer.body())))
+    Live.open(page, address)
+    assert len(sizes) == 3  # page, script, style
+    assert sum(sizes) < 300_000
+
+
+def test_balancing_and_taking_it_back(live: Live) -> None:
+    live.button("Balance").click()
+    panel = live.page.get_by_role("region", name="Balancing")
+    row = panel.get_by_role("row").filter(has_text="Shaking force, RMS")
+    expect(row).to_be_visible()
+    before, after = (float(text) for text in row.get_by_role("cell").all_inner_texts()[:2])
+    assert after < 0.9 * before
+    live.button("Take back").click()
+    expect(panel).to_be_hidden()
+    assert live.machine() == eq.load("yamashita-1")
+    live.button("Balance").click()
+    live.button("Keep").click()
+    expect(panel).to_be_hidden()
+    assert live.machine() != eq.load("yamashita-1")
+
+
+def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:
+    one, other = (Live.open(new_page(), address) for _ in range(2))
+    one.type(one.field("crank mass"), "0.3 kg")
+    other.type(other.field("drive speed"), "100 rpm")
+    expect(one.button("Undo")).to_be_enabled()
+    expect(other.button("Undo")).to_be_enabled()
+    own = eq.load("yamashita-1")
+    assert one.machine() == own.with_link("crank", mass=0.3)
+    assert other.machine().links == own.links
+    assert other.machine().drive.speed == pytest.approx(100 * np.pi / 30)
+
+
+def test_by_keyboard_alone(live: Live) -> None:
+    def go_to(name: str) -> None:
+        for _ in range(200):
+            live.page.keyboard.press("Tab")
+            if name == live.page.evaluate("document.activeElement.getAttribute('aria-label')"):
+                return
+        pytest.fail(f"Tab does not reach {name}")
+
+    keyboard = live.page.keyboard
+    go_to("Example")
+    keyboard.type("watt-six-bar")
+    expect(live.page.get_by_role("heading", name=eq.load("watt-six-bar").title)).to_be_visible()
+    unfocused = live.joint("C").screenshot()
+    go_to("Joint C")
+    assert live.joint("C").screenshot() != unfocused  # the focus is seen
+    keyboard.press("ArrowUp")
+    keyboard.press("Enter")
+    expect(live.button("Undo")).to_be_enabled()
+    go_to("drive speed")
+    keyboard.type("120 rpm\n")
+    expect(live.field("drive speed")).to_have_value("120 rpm")
+    go_to("drive speed slider")
+    keyboard.press("?")
+    expect(live.page.get_by_role("dialog", name="Keys")).to_be_visible()
+    keyboard.press("Escape")
+    expect(live.page.get_by_role("dialog", name="Keys")).to_be_hidden()
+
+
+def test_a_broken_line_is_told_and_nothing_is_lost(
+    new_page: Callable[..., Page], address: str
+) -> None:
+    page, lines = new_page(), []
+
+    def join(line: WebSocketRoute) -> None:
+        lines.append(line)
+        line.connect_to_server()
+
+    page.route_web_socket("**/live*", join)
+    live = Live.open(page, address)
+    live.type(live.field("crank mass"), "0.3 kg")
+    expect(live.button("Undo")).to_be_enabled()
+    lines[-1].close()
+    expect(page.get_by_role("alert").filter(has_text="does not answer")).to_be_visible()
+    expect(page.get_by_role("alert").filter(has_text="does not answer")).to_be_hidden()
+    assert live.machine().links["crank"].mass == 0.3

@@ -1,0 +1,122 @@
+"""What is dragged comes where it is put, and nothing else moves at that crank angle."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.web.edits import movable
+from unit.web.pages import ask, edit, move, opened, refusal
+
+ROUNDED = 1e-6
+"""Of the size of the machine: places travel as 32-bit floats."""
+CASES = [
+    ("yamashita-1", 100),
+    ("watt-six-bar", 7),
+    ("planetary-planting-arm", 60),
+    ("geared-counterweight", 400),
+]
+
+
+@pytest.mark.parametrize(("name", "at"), CASES)
+def test_only_what_is_dragged_moves(name: str, at: int) -> None:
+    session, before = opened(name)
+    low_x, low_y, high_x, high_y = before.content["scene"]["box"]
+    size = abs(complex(high_x - low_x, high_y - low_y))
+    points = before.content["scene"]["movable"]
+    for point in points:
+        goal = before.place(point)[at] + 0.004 * size * (1 + 0.5j)
+        after = edit(session, move(point, goal, at), commit=False)
+        wanted = {one: before.place(one)[at] for one in points} | {point: goal}
+        off = {one: abs(after.place(one)[at] - wanted[one]) / size for one in points}
+        assert max(off.values()) < ROUNDED, (point, off)
+        for body in before.content["scene"]["bodies"]:
+            if len(body["points"]) > 1:  # one of a single point goes where that goes
+                center = f"mass_center.{body['name']}"
+                assert abs(after.vector(center)[at] - before.vector(center)[at]) < ROUNDED * size
+
+
+def test_a_point_dragged_across_its_dyad_changes_the_assembly() -> None:
+    session, before = opened("yamashita-1")
+    at = 30
+    b, c, d = (before.place(name)[at] for name in "BCD")
+    along = (d - b) / abs(d - b)
+    mirrored = b + ((c - b) / along).conjugate() * along
+    after = edit(session, move("C", mirrored, at))
+    assert abs(after.place("C")[at] - mirrored) < 1e-6
+    assert session.shown.design.own.assembly != eq.load("yamashita-1").assembly
+
+
+def test_a_block_slides_on_when_its_pin_is_dragged() -> None:
+    """Along its line it comes where it is put; off the line it stays on it."""
+    session, before = opened("slider-crank-engine")
+    at, line = 50, before.vector("guide." + before.content["scene"]["guides"][0]["name"])[50]
+    point = before.content["scene"]["guides"][0]["point"]
+    goal = before.place(point)[at] + 0.002 * line
+    assert abs(edit(session, move(point, goal, at)).place(point)[at] - goal) < 1e-6
+    beside = edit(session, move(point, goal + 0.002j * line, at)).place(point)
+    across = (beside - beside[0]) / line
+    assert np.max(np.abs(across.imag)) < 1e-6
+
+
+def test_links_of_one_point_are_not_dragged() -> None:
+    machine = eq.Machine(
+        "slotted",
+        eq.Drive("crank", 10.0),
+        {"A": (0.0, 0.0)},
+        {"crank": eq.Link({"A": (0, 0), "B": (1, 0)}), "block": eq.Link({"K": (0, 0)})},
+    )
+    assert movable(machine) == ["A", "B"]
+
+
+def test_a_dragged_centre_of_mass_counts_its_counterweight() -> None:
+    session, before = opened("yamashita-1")
+    edit(
+        session,
+        {"set": "counterweights.crank.mass", "text": "150 g"},
+        {"set": "counterweights.crank.radius", "text": "40 mm"},
+        {"set": "counterweights.crank.direction", "text": "150 deg"},
+    )
+    goal = before.place("A")[90] + (0.004 - 0.003j)
+    after = edit(session, {"move_mass": "crank", "to": [goal.real, goal.imag], "at": 90})
+    assert abs(after.vector("mass_center.crank")[90] - goal) < 1e-8
+    assert session.shown.design.own.links["crank"].mass == pytest.approx(0.199)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"set": "links.crank.mass", "text": "5"}, "the unit is missing"),
+        ({"set": "links.crank.mass", "text": "-5 g"}, "a mass cannot be negative"),
+        ({"set": "links.krank.mass", "text": "5 g"}, "did you mean 'links.crank.mass'"),
+        ({"set": "counterweights.rocker.radius", "value": -1}, "give 0 or more"),
+        ({"set": "drive.speed", "value": 1e31}, "a number of usual size"),
+        ({"move": "Z", "to": [0, 0], "at": 0}, "no point that can be moved is called 'Z'"),
+        ({"move": "B", "to": [0, 0], "at": 720}, "the crank angles 0 to 719"),
+        ({"move": "B", "to": [0, 0], "at": 0}, "A and B lie at the same place"),
+        ({"move": "C", "to": [1, 1], "at": 0}, "the crank cannot turn fully"),
+        ({"move_mass": "frame", "to": [1, 1], "at": 0}, "no link with a mass"),
+    ],
+)
+def test_what_cannot_be_is_refused_and_changes_nothing(
+    change: dict[str, object], told: str
+) -> None:
+    session, _ = opened("yamashita-1")
+    before = session.shown
+    assert told in refusal(ask(session, "edit", seq=3, commit=True, edits=[change]))
+    assert session.shown is before
+
+
+def test_newton_begins_where_the_machine_is() -> None:
+    """Far from the rough position in the file, a triad is still found, and its file read again."""
+    session, before = opened("class-three")
+    point = "C" if "C" in before.content["scene"]["movable"] else "B"
+    for step in range(1, 4):
+        place = session.shown.motion.points[point].place[120]
+        edit(session, move(point, place + 0.002 * step, 120))
+    (model,) = ask(session, "download", kind="model")
+    again = eq.loads(model.buffer.decode())
+    assert again == session.shown.design.machine
+    places = eq.move(again, 720).points[point].place
+    np.testing.assert_allclose(places, session.shown.motion.points[point].place, atol=1e-9)

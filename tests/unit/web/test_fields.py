@@ -1,0 +1,49 @@
+"""The numbers that a page lists: each can be set, and says what it is in one unit."""
+
+from __future__ import annotations
+
+import pytest
+
+import equipoise as eq
+from equipoise.web.fields import Scale, fields_of
+from equipoise.web.session import opened_example
+from unit.web.pages import edit, opened
+
+
+@pytest.mark.parametrize("name", ["yamashita-rig", "transplanter", "spring-balanced-crank",
+                                  "geared-counterweight", "riding-transplanter"])  # fmt: skip
+def test_every_number_can_be_set_and_lies_on_its_slider(name: str) -> None:
+    design = opened_example(name)
+    scale = Scale.of(design)
+    for path, field in fields_of(design).items():
+        low, high = scale.ends(field)
+        assert low <= field.value <= high
+        assert low < high
+        near = field.value + (high - low) / 100
+        changed = fields_of(field.put(design, near))
+        assert changed[path].value == near
+        others = {p: one.value for p, one in changed.items() if p != path}
+        before = {p: fields_of(design)[p].value for p in others}
+        free = {f"counterweights.{field.group}.{key}" for key in ("radius", "direction")}
+        assert {p for p in others if others[p] != before[p]} <= free, path
+
+
+def test_a_number_keeps_its_unit() -> None:
+    session, first = opened("yamashita-1")
+    assert first.field("drive.speed")["text"] == "193 rpm"
+    shown = edit(session, {"set": "drive.speed", "value": 24.253})
+    assert shown.field("drive.speed")["text"] == "231.5991 rpm"
+    assert shown.field("counterweights.crank.direction")["text"] == "180 deg"
+    assert session.shown.design.machine.drive.speed == 24.253
+
+
+def test_names_with_dots_are_names() -> None:
+    machine = eq.load("yamashita-1")
+    links = {f"{name}.x": link for name, link in machine.links.items()}
+    from dataclasses import replace
+
+    from equipoise.web.design import Design
+
+    dotted = replace(machine, links=links, drive=replace(machine.drive, link="crank.x"))
+    field = fields_of(Design("dotted", dotted))["links.crank.x.points.B.x"]
+    assert field.put(Design("", dotted), 0.04).own.links["crank.x"].points["B"] == (0.04, 0.0)

@@ -1,0 +1,97 @@
+"""Whatever a page sends, it is answered with a state or with a sentence."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from equipoise.errors import UsageError
+from equipoise.web.messages import KINDS, read
+from equipoise.web.page import packed
+from equipoise.web.session import Session, opened_example
+
+NUMBERS = (0, 1, -1, 1e-3, -0.02, 0.05, 1e-9, 1e3, 1e29, -1e29, 1e31, 1e308)
+TEXTS = ("0 mm", "5 mm", "-5 mm", "1e20 mm", "3 kg", "0 kg", "100 rpm", "0 rpm", "90 deg",
+         "1e999 mm", "5 kg mm^2", "20 N/m", "", "5")  # fmt: skip
+KEYS = (
+    "type",
+    "seq",
+    "edits",
+    "set",
+    "move",
+    "at",
+    "to",
+    "value",
+    "commit",
+    "name",
+    "example",
+    "on",
+)
+MACHINES = ("yamashita-1", "balance-spring", "planetary-planting-arm", "slider-crank-engine")
+
+junk: st.SearchStrategy[Any] = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.sampled_from(KINDS) | st.text(),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.sampled_from(KEYS), inner),
+    max_leaves=12,
+)
+fuzz = settings(
+    max_examples=60, deadline=None, derandomize=True, database=None,
+    suppress_health_check=list(HealthCheck),
+)  # fmt: skip
+OPENED = {name: opened_example(name) for name in MACHINES}
+
+
+def answered(session: Session, text: str) -> list[dict[str, Any]]:
+    """What is answered, which has to be fit to be sent."""
+    try:
+        message = read(text)
+    except UsageError:
+        return []
+    replies = [*session.receive(message)]
+    assert all(packed(reply) for reply in replies)
+    for reply in replies:
+        told = reply.content.get("message", "-")
+        assert 0 < len(told) < 1000
+        assert told.isprintable()
+    return [reply.content for reply in replies]
+
+
+@given(junk | st.fixed_dictionaries({"type": st.sampled_from(KINDS)}, optional={"edits": junk}))
+@fuzz
+def test_random_messages(message: Any) -> None:
+    session = Session()
+    session.open(OPENED["yamashita-1"])
+    answered(session, json.dumps(message))
+
+
+@given(st.sampled_from(MACHINES), st.data())
+@fuzz
+def test_random_edits(name: str, data: st.DataObject) -> None:
+    session, draw = Session(), data.draw
+    session.open(OPENED[name])
+    (_, shown) = answered(session, '{"type": "ready"}')
+    for _ in range(draw(st.integers(1, 3))):
+        field = draw(st.sampled_from(shown["fields"]))["path"]
+        to = [draw(st.sampled_from(NUMBERS)), draw(st.sampled_from(NUMBERS))]
+        at = draw(st.sampled_from((0, 100, 719, 720)))
+        change = draw(
+            st.sampled_from(
+                [
+                    {"set": field, "value": to[0]},
+                    {"set": field, "text": draw(st.sampled_from(TEXTS))},
+                    {"move": draw(st.sampled_from(shown["scene"]["movable"])), "to": to, "at": at},
+                    {
+                        "move_mass": draw(st.sampled_from(shown["scene"]["mass_centers"])),
+                        "to": to,
+                        "at": at,
+                    },
+                ]
+            )
+        )
+        edit = {"type": "edit", "commit": draw(st.booleans()), "edits": [change]}
+        replies = answered(session, json.dumps(edit))
+        assert replies[0]["type"] in {"state", "refused"}
+        shown = next((one for one in replies if one["type"] == "state"), shown)

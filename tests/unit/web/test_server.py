@@ -1,0 +1,231 @@
+"""The server as other programs and pages meet it: who is let in, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import socket
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+from websockets.sync.client import ClientConnection, connect
+
+from equipoise.balancing.balanced import Balanced
+from equipoise.errors import UsageError
+from equipoise.mechanism.model import Machine
+from equipoise.web import server as served_module
+from equipoise.web import session as session_module
+from equipoise.web.balanced import balanced
+from equipoise.web.guard import HOST, ORIGIN, POLICY, TOKEN
+from equipoise.web.page import MOST_WAITING
+from equipoise.web.server import FULL, MOST_PAGES, served
+from equipoise.web.session import Session, opened_example
+from unit.web.pages import Content, unpacked
+
+FOREIGN = "http://other.example"
+
+
+@dataclass
+class Here:
+    """A server that runs in a thread of its own."""
+
+    address: str
+
+    @property
+    def host(self) -> str:
+        return self.address.split("/")[2]
+
+    @property
+    def query(self) -> str:
+        return self.address.rpartition("?")[2]
+
+    def get(self, path: str, **headers: str) -> tuple[int, str, str]:
+        """Status, headers and body of a request that is sent as it stands."""
+        lines = {"Host": self.host, "Connection": "close", **headers}
+        port = int(self.host.rpartition(":")[2])
+        with socket.create_connection(("127.0.0.1", port), timeout=10) as connection:
+            head = "".join(f"{key}: {value}\r\n" for key, value in lines.items() if value)
+            connection.sendall(f"GET {path} HTTP/1.1\r\n{head}\r\n".encode("latin-1"))
+            answer = b""
+            while part := connection.recv(65536):
+                answer += part
+        first, _, body = answer.decode().partition("\r\n\r\n")
+        return int(first.split()[1]), first.lower(), body
+
+    @contextmanager
+    def page(self, query: str = "", **options: Any) -> Iterator[ClientConnection]:
+        address = f"ws://{self.host}/live?{query or self.query}"
+        usual = {"origin": f"http://{self.host}", "max_size": None, "compression": None}
+        with connect(address, **(usual | options)) as page:
+            yield page
+
+
+def hear(page: ClientConnection) -> Content:
+    return unpacked(page.recv(timeout=20))[0]  # type: ignore[arg-type]
+
+
+def ask(page: ClientConnection, message: object) -> Content:
+    page.send(message if isinstance(message, str | bytes) else json.dumps(message))
+    return hear(page)
+
+
+@pytest.fixture(scope="module")
+def here() -> Iterator[Here]:
+    def begin() -> Session:
+        session = Session()
+        session.open(opened_example("yamashita-1"))
+        return session
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            served_module, "assets", lambda: {"equipoise.js": b"//", "equipoise.css": b""}
+        )
+        with served(begin) as (server, listener, address):
+            thread = threading.Thread(target=server.run, kwargs={"sockets": [listener]})
+            thread.start()
+            yield Here(address)
+            server.should_exit = True
+            thread.join()
+
+
+def test_the_page_is_served_with_a_strict_policy(here: Here) -> None:
+    status, head, body = here.get(f"/?{here.query}")
+    assert status == 200
+    assert f"content-security-policy: {POLICY}" in head
+    assert "referrer-policy: no-referrer" in head
+    assert "access-control" not in head
+    assert "http" not in body.replace('http-equiv="', "")
+    for asset in ("equipoise.js", "equipoise.css"):
+        assert f"/{asset}?{here.query}" in body
+        assert here.get(f"/{asset}?{here.query}")[0] == 200
+
+
+REFUSED = {
+    # path, headers, what is said
+    "no token": ("/", {}, TOKEN),
+    "wrong token": ("/?token=abc", {}, TOKEN),
+    "no token for the script": ("/equipoise.js", {}, TOKEN),
+    "odd bytes for a token": ("/?token=%ff%fe\xff", {}, TOKEN),
+    "foreign origin": ("/?QUERY", {"Origin": FOREIGN}, ORIGIN),
+    "no origin that could be named": ("/?QUERY", {"Origin": "null"}, ORIGIN),
+    "another port": ("/?QUERY", {"Origin": "http://127.0.0.1:1"}, ORIGIN),
+    "another scheme": ("/?QUERY", {"Origin": "https://HOST"}, ORIGIN),
+    "another name for this address": ("/?QUERY", {"Host": "other.example"}, HOST),
+    "another name with the port": ("/?QUERY", {"Host": "other.example:PORT"}, HOST),
+    "a forwarded name": ("/?QUERY", {"Host": "a.example", "X-Forwarded-Host": "HOST"}, HOST),
+}
+
+
+@pytest.mark.parametrize(("path", "headers", "told"), REFUSED.values(), ids=REFUSED)
+def test_strangers_are_refused(here: Here, path: str, headers: dict[str, str], told: str) -> None:
+    def filled(text: str) -> str:
+        port = here.host.rpartition(":")[2]
+        for word, value in (("QUERY", here.query), ("HOST", here.host), ("PORT", port)):
+            text = text.replace(word, value)
+        return text
+
+    given = {key: filled(value) for key, value in headers.items()}
+    status, _, body = here.get(filled(path), **given)
+    assert status in {400, 403}
+    assert body == f"equipoise: {told}\n" or status == 400
+
+
+@pytest.mark.parametrize(
+    "path",
+    ["/../../etc/passwd", "/%2e%2e/session.py", "/equipoise.js/../session.py", "//equipoise.js",
+     "/static/equipoise.js", "/live", "/%00", "/docs"],
+)  # fmt: skip
+def test_there_is_nothing_else(here: Here, path: str) -> None:
+    assert here.get(f"{path}?{here.query}")[0] == 404
+
+
+@pytest.mark.parametrize(
+    ("query", "options"),
+    [
+        ("token=wrong", {}),
+        ("", {"origin": FOREIGN}),
+        ("", {"origin": None}),
+    ],
+)
+def test_strange_pages_get_no_socket(here: Here, query: str, options: Any) -> None:
+    with pytest.raises(InvalidStatus) as caught, here.page(query, **options):
+        pass
+    assert caught.value.response.status_code == 403
+    assert caught.value.response.body.startswith(b"equipoise: ")
+
+
+def test_nonsense_is_answered_with_a_sentence(here: Here) -> None:
+    with here.page() as page:
+        assert hear(page)["type"] == "hello"
+        for nonsense in ("", "[" * 100_000, "[]", '{"type":"close"}', '{"type":"undo","seq":NaN}',
+                         "1" * 5000, b"\x00", '{"type":"edit","edits":[{}]}'):  # fmt: skip
+            told = ask(page, nonsense)
+            assert told["type"] == "refused"
+            assert told["message"].isprintable()
+        big = {"type": "open", "seq": 3, "name": "big.toml", "text": "x" * 2_000_001}
+        assert "longer than 2 MB" in ask(page, big)["message"]
+        assert ask(page, {"type": "ready"})["machine"] is True
+    with here.page() as page:
+        hear(page)
+        with pytest.raises(ConnectionClosed):  # in sending or in hearing
+            ask(page, "x" * 7_000_000)
+
+
+def test_pages_do_not_disturb_each_other(here: Here) -> None:
+    with here.page() as one, here.page() as other:
+        assert hear(one)["type"] == hear(other)["type"] == "hello"
+        change = {"set": "links.crank.mass", "text": "300 g"}
+        edited = ask(one, {"type": "edit", "seq": 1, "label": "mass", "edits": [change]})
+        assert edited["undo"] == "mass"
+        ask(other, {"type": "ready", "seq": 2})
+        untouched = hear(other)
+        assert untouched["undo"] is None
+        assert untouched["fields"][1]["text"] == "199 g"
+
+
+def test_dragging_goes_on_while_something_takes_long(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    dragged = threading.Event()
+
+    def slowly(machine: Machine) -> Balanced:
+        assert dragged.wait(20)
+        return balanced(machine)
+
+    monkeypatch.setattr(session_module, "balanced", slowly)
+    with here.page() as page:
+        hear(page)
+        assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
+        change = {"set": "drive.speed", "text": "200 rpm"}
+        assert ask(page, {"type": "edit", "seq": 2, "edits": [change]})["seq"] == 2
+        dragged.set()
+        late = hear(page)
+        assert (late["type"], late["seq"]) == ("refused", 1)
+        assert "was changed while" in late["message"]
+
+
+def test_there_is_an_end_to_pages_and_messages(here: Here) -> None:
+    from contextlib import ExitStack
+
+    with ExitStack() as stack:
+        for _ in range(MOST_PAGES):
+            assert hear(stack.enter_context(here.page()))["type"] == "hello"
+        with here.page() as last:
+            assert hear(last)["message"] == FULL
+    with here.page() as page, pytest.raises(ConnectionClosed):  # noqa: PT012
+        for _ in range(20 * MOST_WAITING):
+            page.send('{"type":"ready"}')
+        while True:
+            hear(page)
+
+
+def test_a_port_that_is_taken_is_told() -> None:
+    with socket.create_server(("127.0.0.1", 0)) as taken:
+        port = taken.getsockname()[1]
+        told = f"the port {port} cannot be used"
+        with pytest.raises(UsageError, match=told), served(Session, port):
+            pass

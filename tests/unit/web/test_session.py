@@ -1,0 +1,166 @@
+"""A page from opening a machine to downloading what became of it."""
+
+from __future__ import annotations
+
+import csv
+from math import pi
+
+import pytest
+
+import equipoise as eq
+from equipoise.web.design import Design
+from equipoise.web.session import Session
+from unit.web.pages import ask, edit, opened, refusal, state
+
+MASS = {"set": "links.crank.mass", "text": "250 g"}
+
+
+def test_undo_and_redo_go_through_every_step() -> None:
+    session, first = opened("yamashita-1")
+    assert (first.content["undo"], first.content["redo"]) == (None, None)
+    edit(session, MASS, label="mass of crank")
+    after = edit(session, {"set": "drive.speed", "text": "250 rpm"}, label="speed")
+    assert after.content["undo"] == "speed"
+    assert after.content["speed"] == pytest.approx(250 * pi / 30)
+    back = state(ask(session, "undo", seq=5)[0])
+    assert (back.content["undo"], back.content["redo"]) == ("mass of crank", "speed")
+    assert back.field("links.crank.mass")["text"] == "250 g"
+    first_again = state(ask(session, "undo")[0])
+    assert first_again.block.tobytes() == first.block.tobytes()
+    assert "nothing to undo" in refusal(ask(session, "undo"))
+    ask(session, "redo")
+    again = state(ask(session, "redo")[0])
+    assert again.block.tobytes() == after.block.tobytes()
+    edit(session, MASS, label="another")
+    assert "nothing to redo" in refusal(ask(session, "redo"))
+
+
+def test_a_drag_is_one_step_from_where_it_began() -> None:
+    session, first = opened("yamashita-1")
+    for value in (0.21, 0.24, 0.3):
+        edit(session, {"set": "links.crank.mass", "value": value}, commit=False)
+    last = edit(session, {"set": "links.crank.mass", "value": 0.3}, label="slide")
+    assert last.field("links.crank.mass")["value"] == 0.3
+    assert state(ask(session, "undo")[0]).block.tobytes() == first.block.tobytes()
+
+
+def test_a_drag_that_ends_where_nothing_can_be_keeps_its_last_good_place() -> None:
+    session, _ = opened("yamashita-1")
+    good = edit(session, {"set": "links.coupler.points.C.x", "text": "90 mm"}, commit=False)
+    bad = {"set": "links.coupler.points.C.x", "text": "10 mm"}
+    replies = ask(session, "edit", seq=9, commit=True, label="drag", edits=[bad])
+    assert "cannot turn" in refusal(replies)
+    kept = state(replies[1])
+    assert kept.block.tobytes() == good.block.tobytes()
+    assert (kept.content["seq"], kept.content["undo"]) == (9, "drag")
+
+
+def test_a_counterweight_is_a_point_mass_on_the_link() -> None:
+    """Beside the force of a mass that turns in a circle, and the file that is downloaded."""
+    session, before = opened("yamashita-1")
+    after = edit(
+        session,
+        {"set": "counterweights.crank.mass", "text": "80 g"},
+        {"set": "counterweights.crank.radius", "text": "45 mm"},
+        {"set": "counterweights.crank.direction", "text": "170 deg"},
+    )
+    added = after.vector("shaking_force") - before.vector("shaking_force")
+    turning = 0.08 * 0.045 * before.content["speed"] ** 2
+    assert abs(added) == pytest.approx(turning, rel=1e-4)
+    (model,) = ask(session, "download", kind="model")
+    crank = eq.loads(model.buffer.decode()).links["crank"]
+    own = eq.load("yamashita-1").links["crank"]
+    assert crank.mass == pytest.approx(0.279)
+    about_pin = crank.inertia + crank.mass * abs(complex(*crank.center_of_mass)) ** 2  # type: ignore[operator, misc]
+    own_about_pin = own.inertia + own.mass * abs(complex(*own.center_of_mass)) ** 2  # type: ignore[operator, misc]
+    assert about_pin - own_about_pin == pytest.approx(0.08 * 0.045**2)
+
+
+def test_balancing_shows_before_and_after_and_can_be_taken_back() -> None:
+    session, first = opened("balance-crank")
+    busy, told, shown = ask(session, "balance", seq=4)
+    assert busy.content["what"] == "balancing"
+    machine = eq.load("balance-crank")
+    found = eq.balance(machine)
+    assert told.content["changes"]
+    by_label = {one["label"]: one for one in told.content["figures"]}
+    force = by_label["shaking force y, RMS"]
+    assert force["before"] == pytest.approx(found.before["shaking_force.y.rms"])
+    assert force["after"] == pytest.approx(found.after["shaking_force.y.rms"])
+    after = state(shown)
+    (aim,) = told.content["aims"]
+    assert [aim["before"], aim["after"]] == pytest.approx(next(iter(found.objectives.values())))
+    assert after.content["before"]
+    assert after.figure("shaking_force.y.rms")["before"] == pytest.approx(
+        found.before["shaking_force.y.rms"], rel=1e-6
+    )
+    assert (after.vector("before.shaking_force") == first.vector("shaking_force")).all()
+    assert after.field("counterweights.crank.mass")["text"] == "1145 g"
+    radius = after.field("counterweights.crank.radius")["value"]
+    assert radius == pytest.approx(found.changes[0].values["radius"])
+    assert state(ask(session, "undo")[0]).block.tobytes() == first.block.tobytes()
+    compared = state(ask(session, "compare", on=True)[0])
+    assert "before.shaking_force" in compared.content["arrays"]
+    alone = state(ask(session, "compare", on=False)[0])
+    assert "before.shaking_force" not in alone.content["arrays"]
+
+
+def test_what_sliders_cannot_show_goes_into_the_links() -> None:
+    """A sector has an inertia of its own."""
+    session, _ = opened("balance-rig")
+    ask(session, "balance")
+    assert not session.shown.design.counterweights
+    assert session.shown.design.machine == eq.balance(eq.load("balance-rig")).machine
+
+
+def test_a_change_while_it_is_balanced_is_not_lost() -> None:
+    session, _ = opened("balance-crank")
+    from equipoise.web.messages import message_of
+
+    balancing = session.receive(message_of({"type": "balance", "seq": 1}))
+    assert next(balancing).content["type"] == "busy"
+    edit(session, MASS)
+    assert "was changed while" in refusal([next(balancing)])
+    assert session.shown.design.own.links["crank"].mass == 0.25
+
+
+def test_downloads() -> None:
+    session, _ = opened("yamashita-1")
+    edit(session, MASS)
+    model, table = (ask(session, "download", kind=kind)[0] for kind in ("model", "csv"))
+    assert model.content["name"] == "yamashita-1.toml"
+    assert eq.loads(model.buffer.decode()) == session.shown.design.machine
+    odd = Session()
+    odd.open(Design("a/b: c?", eq.load("yamashita-1")))
+    assert ask(odd, "download", kind="csv")[0].content["name"] == "a-b- c-.csv"
+    rows = [*csv.reader(table.buffer.decode().splitlines())]
+    assert rows[0][0] == "crank_angle [rad]"
+    assert len(rows) == 721
+    assert "there are 'model', 'csv', 'report'" in refusal(ask(session, "download", kind="pdf"))
+    replies = ask(session, "download", kind="report", language="xx")
+    assert "no language of reports is called 'xx'" in refusal(replies)
+
+
+@pytest.mark.parametrize(
+    ("given", "told"),
+    [
+        ({"example": "yamashita-9"}, "no example of the name 'yamashita-9'"),
+        ({"example": "../secret"}, "no example of the name"),
+        ({"name": "a.toml", "text": ""}, "a.toml: schema: missing"),
+        ({"name": "a\n.toml", "text": "[["}, "a\\n.toml: end of document"),
+        ({"name": "b.toml", "text": "x" * 2_000_001}, "b.toml: the text is longer than 2 MB"),
+        ({"name": "t.toml", "text": 'schema = 1\nshaft.length = "1 m"'}, "hand-held tool"),
+        ({"name": "c.toml"}, "open: text: got nothing"),
+    ],
+)
+def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
+    session = Session()
+    assert told in refusal(ask(session, "open", seq=2, **given))
+    for kind in ("edit", "undo", "balance", "download", "compare"):
+        assert "no machine is open" in refusal(ask(session, kind, edits=[MASS], kind="csv"))
+
+
+def test_a_file_with_a_byte_order_mark_is_opened() -> None:
+    session = Session()
+    text = "\ufeff" + eq.dumps(eq.load("yamashita-1"))
+    assert state(ask(session, "open", name="m.toml", text=text)[0]).content["name"] == "m.toml"

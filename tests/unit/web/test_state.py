@@ -1,0 +1,87 @@
+"""What a page is sent, against the analysis that it shows."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from unit.web.pages import ask, edit, opened
+
+
+def test_arrays_are_those_of_the_analysis() -> None:
+    _, shown = opened("yamashita-1")
+    whole = eq.analyze(eq.load("yamashita-1"), 720)
+    forces = whole.forces
+    wanted = {
+        "place.P": whole.motion.points["P"].place,
+        "mass_center.coupler": whole.motion.mass_centers["coupler"].place,
+        "angle.rocker": whole.motion.links["rocker"].angle,
+        "shaking_force": forces.shaking_force.value,
+        "shaking_moment": forces.shaking_moment,
+        "drive_torque": forces.drive_torque,
+        "joint.C": forces.joints["C"].size,
+        "spectrum.shaking_force.y": whole.by_order["shaking_force.y"].sizes[:21],
+    }
+    for name, values in wanted.items():
+        sent = shown.vector(name) if np.iscomplexobj(values) else shown.array(name)
+        scale = np.max(np.abs(values))
+        np.testing.assert_allclose(sent, values, rtol=0, atol=1e-6 * scale, err_msg=name)
+    assert shown.figure("shaking_force.peak")["value"] == pytest.approx(
+        np.max(np.abs(forces.shaking_force.value))
+    )
+    assert shown.content["orders"] == list(range(21))
+
+
+def test_rows_add_up_as_their_phases_say() -> None:
+    """The sum of one row's signal, read as far ahead as each row's crank is."""
+    session, _ = opened("four-row-transplanter")
+    shown = edit(session, {"set": "rows.2.phase", "text": "75 deg"})
+    rows = session.shown.design.machine.rows
+    for name, read in (("shaking_force", shown.vector), ("drive_torque", shown.array)):
+        one = read(name)
+        ahead = [round(row.phase / (2 * np.pi) * len(one)) for row in rows]
+        total = sum(np.roll(one, -samples) for samples in ahead)
+        scale = np.max(np.abs(one))
+        np.testing.assert_allclose(read(f"rows.{name}"), total, atol=2e-5 * scale)
+    assert shown.figure("drive_torque.rms")["label"] == "one row, drive torque, RMS"
+
+
+def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:
+    session, shown = opened("kim-chung-a")
+    path, angle = shown.vector("ground.P"), shown.array("crank_angle")
+    way = np.unwrap(angle)[-1] / (2 * np.pi)
+    moved = (path - shown.place("P")).real
+    figures = eq.plant(eq.load("kim-chung-a"))
+    assert moved[-1] - moved[0] == pytest.approx(way * figures["hill_spacing"], rel=1e-5)
+    assert shown.content["planting"]["surface"] == pytest.approx(figures["surface"])
+    (more,) = session.tell_more()
+    told = {one["name"]: one["value"] for one in more.content["figures"]}
+    assert told["soil.depth"] == pytest.approx(1e3 * figures["soil.depth"])
+    assert not session.has_more
+
+
+def test_a_machine_on_a_support_tells_its_response() -> None:
+    session, _ = opened("yamashita-rig")
+    _, _, reply = ask(session, "ready")
+    found = eq.respond(eq.load("yamashita-rig"))
+    (gauge,) = reply.content["gauges"]
+    offset, length = reply.content["arrays"][f"response.{gauge['name']}"]
+    sent = np.frombuffer(reply.buffer, "<f4")[offset : offset + length]
+    wanted = found.gauges[gauge["name"]].displacement.samples(length)
+    np.testing.assert_allclose(sent, wanted, atol=1e-6 * np.max(np.abs(wanted)))
+
+
+def test_a_machine_without_masses_moves() -> None:
+    session, _ = opened("yamashita-1")
+    text = eq.dumps(eq.load("yamashita-1"))
+    bare = "\n".join(
+        line
+        for line in text.splitlines()
+        if not line.startswith(("mass ", "center_of_mass", "inertia"))
+    )
+    shown = ask(session, "open", name="bare.toml", text=bare)[0].content
+    assert not shown["has_forces"]
+    assert shown["missing"] == ["crank", "coupler", "rocker"]
+    assert "shaking_force" not in shown["arrays"]
+    assert not [one for one in shown["fields"] if one["path"].startswith("counterweights")]
