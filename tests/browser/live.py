@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+import pytest
 from playwright.sync_api import Locator, Page, expect
 
 import equipoise as eq
@@ -56,6 +57,14 @@ class Live:
         """Return where the page says that a handle is, mm."""
         x, y = NUMBER.findall((handle.get_attribute("aria-valuetext") or "").replace("−", "-"))
         return float(x), float(y)
+
+    def comes_to(self, handle: Locator, place: tuple[float, float], within: float) -> None:
+        """Wait until the page says that a handle is at a place, mm; an answer may be on its way."""
+        for _ in range(250):
+            if self.place(handle) == pytest.approx(place, abs=within):
+                return
+            self.page.wait_for_timeout(20)
+        assert self.place(handle) == pytest.approx(place, abs=within)
 
     def spot(self, handle: Locator) -> tuple[float, float]:
         """Return where a handle is on the screen, pixels."""

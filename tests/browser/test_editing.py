@@ -33,8 +33,8 @@ def test_a_joint_follows_the_mouse_and_all_others_stay(live: Live) -> None:
     expect(live.button("Undo")).to_be_enabled()
     assert live.spot(joint) == pytest.approx((x - 20, y - 30), abs=1)
     for name, place in still.items():
-        assert live.place(live.joint(name)) == pytest.approx(place, abs=SHOWN)
-    assert at_start(live.machine(), "B") == pytest.approx(live.place(joint), abs=SHOWN)
+        live.comes_to(live.joint(name), place, SHOWN)
+    live.comes_to(joint, at_start(live.machine(), "B"), SHOWN)
 
 
 def test_a_drag_goes_on_where_a_plate_becomes_a_bar(live: Live) -> None:
@@ -70,13 +70,13 @@ def test_arrow_keys_move_by_steps_that_undo_takes_back_as_one(live: Live) -> Non
     joint.press("Enter")  # ends the move
     moved = (x + 1.9 * step, y + 10 * step)
     expect(joint).to_have_attribute("aria-valuenow", f"{moved[0]:.2f}")
-    assert live.place(joint) == pytest.approx(moved, abs=SHOWN)
+    live.comes_to(joint, moved, SHOWN)
     live.page.keyboard.press("Control+z")
     expect(live.button("Undo")).to_be_disabled()
-    assert live.place(joint) == pytest.approx((x, y), abs=SHOWN)
+    live.comes_to(joint, (x, y), SHOWN)
     live.page.keyboard.press("Control+Shift+z")
     expect(live.button("Redo")).to_be_disabled()
-    assert live.place(joint) == pytest.approx(moved, abs=SHOWN)
+    live.comes_to(joint, moved, SHOWN)
 
 
 def test_a_centre_of_mass_follows_the_mouse(live: Live) -> None:
@@ -88,7 +88,7 @@ def test_a_centre_of_mass_follows_the_mouse(live: Live) -> None:
     motion, own = eq.analyze(machine).motion, complex(*machine.links["coupler"].center_of_mass)
     turned = own * np.exp(1j * motion.links["coupler"].angle[0])
     place = 1e3 * (motion.points["B"].place[0] + turned)  # B is at the origin of its axes
-    assert (place.real, place.imag) == pytest.approx(live.place(center), abs=SHOWN)
+    live.comes_to(center, (place.real, place.imag), SHOWN)
     assert others(live) == still
 
 
@@ -130,7 +130,7 @@ def test_what_cannot_turn_is_told_and_the_last_good_state_stays(live: Live) -> N
     live.page.mouse.up()
     expect(live.button("Undo")).to_be_enabled()
     assert others(live) == still
-    assert at_start(live.machine(), "B") == pytest.approx(live.place(joint), abs=SHOWN)
+    live.comes_to(joint, at_start(live.machine(), "B"), SHOWN)
     live.button("Undo").click()
     expect(live.button("Undo")).to_be_disabled()
 

@@ -77,7 +77,8 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         blocks["joints"] = [*drawn.pop("joints", []), joint_table(analysis)]
     if found.response is not None:
         tables = vibration_blocks(found.response, found.sweep)
-        blocks["vibration"] = [*drawn.pop("vibration", []), *tables]
+        shown = [*drawn.pop("vibration", []), *drawn.pop("modes", [])]
+        blocks["vibration"] = [*shown, *tables]
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found, found.balanced), *drawn.pop("balance", [])]
     settings = [*_settings_of_linkage(found), *_common(found, command)]

@@ -62,7 +62,7 @@ def _others(found: Findings | ToolFindings) -> Collection[str]:
     if isinstance(found, ToolFindings):
         return ()
     if found.response is not None:
-        return ("vibration",) if found.planting is None else ("vibration", "balance")
+        return ("vibration",) if found.planting is None else ("vibration", "modes", "balance")
     return ("motion", "forces") if found.planting is None else ("motion", "planting")
 
 

@@ -12,7 +12,7 @@ from equipoise.report.findings import Findings, ToolFindings
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-SECTIONS = ("motion", "planting", "forces", "joints", "vibration", "balance", "tool")
+SECTIONS = ("motion", "planting", "forces", "joints", "vibration", "modes", "balance", "tool")
 """In the order in which they are shown."""
 
 

@@ -37,7 +37,7 @@ def of_linkage(found: Findings, at: Sequence[float] | None) -> Iterator[Part]:
     if found.sweep is not None:
         yield "vibration", _speeds(found.sweep)
     if found.modes is not None:
-        yield "vibration", _modes(found)
+        yield "modes", _modes(found)
     if found.balanced is not None:
         yield "balance", _balance(found.balanced)
 
