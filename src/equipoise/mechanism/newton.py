@@ -105,7 +105,7 @@ class LoopGroup:
         with np.errstate(all="ignore"):
             for _ in range(ITERATIONS):
                 gap = self.gaps(self.poses(known, q), 0)
-                step = self.divide(q, known, gap)
+                step = self.divide(self.matrix(q, known), gap)
                 q = q - step
                 if not np.all(np.isfinite(q)):
                     break
@@ -119,18 +119,19 @@ class LoopGroup:
     def scale(self) -> Array:
         return np.tile([self.size, self.size, 1.0], len(self.links))
 
-    def divide(self, q: Array, known: Poses, right: Array) -> Array:
-        """Solve the loops' matrix for a right-hand side (3 n, N)."""
+    def divide(self, matrix: Array, right: Array) -> Array:
+        """Solve the loops' matrix (N, 3 n, 3 n) for a right-hand side (3 n, N)."""
         try:
-            solution = np.linalg.solve(self.matrix(q, known), right.T[:, :, None])
+            solution = np.linalg.solve(matrix, right.T[:, :, None])
         except np.linalg.LinAlgError:
-            return np.full_like(q, np.nan)
+            return np.full_like(right, np.nan)
         return solution[:, :, 0].T
 
     def derivatives(self, q: Array, known: Poses) -> tuple[Array, Array]:
         """First and second derivative of the unknowns by crank angle."""
-        q1 = -self.divide(q, known, self.gaps(self.poses(known, q, np.zeros_like(q)), 1))
-        q2 = -self.divide(q, known, self.gaps(self.poses(known, q, q1), 2))
+        matrix = self.matrix(q, known)
+        q1 = -self.divide(matrix, self.gaps(self.poses(known, q, np.zeros_like(q)), 1))
+        q2 = -self.divide(matrix, self.gaps(self.poses(known, q, q1), 2))
         return q1, q2
 
     def follow(self, start: Array, known: Poses, theta: Array) -> Array:
