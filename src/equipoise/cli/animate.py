@@ -116,7 +116,8 @@ def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) 
     if options["traced"] is None:
         options["traced"] = scene.ends[:MOST_PATHS]
     if force:
-        options["arrow"] = Arrow(found.forces.about, found.forces.shaking_force.value)
+        forces, of_one = found.forces, len(found.machine.rows) > 1
+        options["arrow"] = Arrow(forces.about, forces.shaking_force.value, of_one)
     if kind == "svg":
         return animated_svg(scene, title=found.machine.title, frames=SVG_FRAMES, **options)
     draw = film.gif if kind == "gif" else film.mp4

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.text import Annotation
 
 from equipoise.plotting.style import SMALL
 from equipoise.plotting.vibration.panels import Unit, name_y
@@ -28,6 +29,10 @@ VISIBLE = 0.004
 """Over the largest amplitude: below this a bar cannot be seen, and gets no number."""
 MOST_DECIMALS = 4
 """Of numbers at bars; longer ones are left out."""
+CLEAR = 3
+"""Pixels between numbers at least."""
+FEWEST = 10
+"""Steps of its last digit that the largest number keeps at least."""
 WIDE = 0.72
 """Width of the bars of an order, over the distance of orders."""
 
@@ -48,6 +53,7 @@ def bars(
     largest = unit.factor * max(float(np.max(sizes)) for _, sizes in read.values())
     finest = _finest(read, VISIBLE * largest / unit.factor)
     wide = WIDE * finest / len(read)
+    told: list[tuple[Array, Array, str]] = []
     for number, (name, (orders, sizes)) in enumerate(read.items()):
         fill, ink = looks[name]
         seen = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
@@ -55,9 +61,10 @@ def bars(
         heights = unit.factor * sizes[seen]
         axes.bar(at, heights, wide, color=fill, linewidth=0, zorder=3, label=name)
         if last / finest <= most_told:
-            _numbers(axes, at, heights, largest, ink)
+            told.append((at, heights, ink))
     axes.set_xlim(-0.7 * finest, last + 0.7 * finest)
     axes.set_ylim(0, 1.18 * largest or 1.0)
+    _numbers(axes, told, largest)
     if not largest:
         axes.set_yticks([])
         look: Any = {"transform": axes.transAxes, "ha": "center", "va": "center"}
@@ -86,13 +93,45 @@ def _finest(read: Read, least: float) -> float:
     return 1.0
 
 
-def _numbers(axes: Axes, at: Array, heights: Array, largest: float, color: str) -> None:
-    """Heights of bars that can be seen, above them, with three digits of the largest."""
+def _numbers(axes: Axes, told: list[tuple[Array, Array, str]], largest: float) -> None:
+    """Heights of bars that can be seen, above them, with as many digits as all have room for.
+
+    told : places, heights and colour of the numbers of each kind of bar.  Where even the shortest
+    numbers would lie on each other, the lower bars have none.
+    """
     decimals = max(0, 2 - int(np.floor(np.log10(largest)))) if largest else 0
     if decimals > MOST_DECIMALS:
         return
-    for x, height in zip(at, heights, strict=True):
-        if height > VISIBLE * largest:
-            text, place = f"{height:.{decimals}f}", (float(x), float(height))
-            look: Any = {"fontsize": SMALL, "color": color, "ha": "center"}
-            axes.annotate(text, place, xytext=(0, 2), textcoords="offset points", **look)
+    seen = [
+        (float(x), float(height), ink)
+        for at, heights, ink in told
+        for x, height in zip(at, heights, strict=True)
+        if height > VISIBLE * largest
+    ]
+    for fewer in range(decimals, -1, -1):
+        texts = [_number(axes, one, fewer) for one in seen if round(one[1], fewer)]
+        clear = _clear(texts)
+        if len(clear) == len(texts) or not fewer or largest * 10 ** (fewer - 1) < FEWEST:
+            break
+        for text in texts:
+            text.remove()
+    for text in texts:
+        if text not in clear:
+            text.remove()
+
+
+def _number(axes: Axes, bar: tuple[float, float, str], decimals: int) -> Annotation:
+    x, height, color = bar
+    text = f"{height:.{decimals}f}"
+    look: Any = {"fontsize": SMALL, "color": color, "ha": "center"}
+    return axes.annotate(text, (x, height), xytext=(0, 2), textcoords="offset points", **look)
+
+
+def _clear(texts: list[Annotation]) -> list[Annotation]:
+    """Those that lie on no number of a higher bar."""
+    clear: list[Annotation] = []
+    for text in sorted(texts, key=lambda one: -one.xy[1]):
+        box = text.get_window_extent().padded(CLEAR)
+        if not any(box.overlaps(other.get_window_extent()) for other in clear):
+            clear.append(text)
+    return clear

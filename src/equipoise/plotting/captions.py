@@ -68,7 +68,10 @@ def _strip(stage: Stage) -> Iterator[list[Label]]:
     yield [Label(words, right + 8 * stage.unit - 2j, "start")]
     if stage.arrow is not None:
         peak = shown(abs(stage.arrow.force).max())
-        words = say("shaking force, at most {peak} N", peak=peak)
+        if stage.arrow.of_one:
+            words = say("shaking force of one row, at most {peak} N", peak=peak)
+        else:
+            words = say("shaking force, at most {peak} N", peak=peak)
         corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
         yield [Label(words, corner, "end", "stress")]
 

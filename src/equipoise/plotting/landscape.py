@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from equipoise.balancing.naming import objective_named
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
@@ -132,9 +133,8 @@ def _what(found: Landscape) -> str:
     """What is drawn, and what else was set."""
     speed = told_speed(found.machine.drive.speed)
     unit = found.unit.replace("^2", "²")
-    what = say(
-        "{objective}, {unit}, at {speed}", objective=found.objective.name, unit=unit, speed=speed
-    )
+    objective = objective_named(found.objective, len(found.machine.rows))
+    what = say("{objective}, {unit}, at {speed}", objective=objective, unit=unit, speed=speed)
     others = [
         f"{path} = {Scale.of(found.dimensions[path]).told(value)}"
         for path, value in found.given.items()

@@ -30,10 +30,12 @@ class Arrow:
     """The shaking force, and where it is drawn.
 
     place : complex, m.  force : (N,) complex, N, at the crank angles of the scene.
+    of_one : whether it is of one row where there are several.
     """
 
     place: complex
     force: Array
+    of_one: bool = False
 
 
 @dataclass(frozen=True, eq=False)

@@ -28,6 +28,10 @@ SOIL, STUBBLE, EARTH = "#efe4d2", "#dccbb0", "#7a5c33"
 
 SMALL, NORMAL, LARGE = 7.5, 8.5, 10.5
 """Sizes of type, points."""
+SMALLEST = 7.0
+"""Points: long headings are set so small before they are cut."""
+LAST = 12
+"""Signs of a word that is left out as a whole, where a text is cut in it."""
 
 MARKS = {
     "pick-up": "D",
@@ -174,15 +178,22 @@ def heading(figure: Figure, title: str, what: str, left: float, right: float = 0
         text = figure.text(
             left / width, 1 - below / height, words, fontsize=size, fontweight=weight, va="top"
         )
-        fit(text, width - left - right)
+        fit(text, width - left - right, SMALLEST / size)
 
 
-def fit(text: Any, room: float) -> None:
-    """Shorten a text to some inches."""
+def fit(text: Any, room: float, least: float = 1.0) -> None:
+    """Shorten a text to some inches.
+
+    least : share of its size of type down to which it is shrunk before that.
+    """
+    wide = inches(text)[0]
+    if wide > room and least < 1:
+        text.set_fontsize(text.get_fontsize() * max(least, 0.99 * room / wide))
     words = text.get_text()
     while words and inches(text)[0] > room:
         words = words[: max(0, min(len(words) - 1, int(len(words) * room / inches(text)[0])))]
-        text.set_text(f"{words.rstrip()}\N{HORIZONTAL ELLIPSIS}")
+        whole = words.rpartition(" ")[0] if " " in words[-LAST:] else words
+        text.set_text(f"{whole.rstrip()}\N{HORIZONTAL ELLIPSIS}")
 
 
 def inches(text: Any) -> tuple[float, float]:

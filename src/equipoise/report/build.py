@@ -10,6 +10,7 @@ from equipoise.report.document import Block, Document, Listing, Paragraph, Point
 from equipoise.report.drawing import drawings
 from equipoise.report.effects import balance_blocks, planting_blocks, vibration_blocks
 from equipoise.report.findings import Findings, ToolFindings
+from equipoise.report.notes import method_told, noted
 from equipoise.report.numbers import number
 from equipoise.report.sources import sources
 from equipoise.report.summary import answers, check_whole_cycle, tiles
@@ -22,7 +23,6 @@ from equipoise.report.tables import (
 )
 from equipoise.report.tool import tool_answers, tool_tiles
 from equipoise.report.tool_tables import design_table, exposure_blocks, mode_blocks, tool_model
-from equipoise.structures.response import EQUATIONS
 from equipoise.words import say, speaking, to_say
 
 TITLES = {
@@ -38,6 +38,21 @@ TITLES = {
     "settings": to_say("Version and settings"),
     "file": to_say("The model file"),
 }
+
+MODELS = {
+    "linear": to_say("the shaking force at the drive's pivot; equation (59) of Yamashita et al."),
+    "torque": to_say(
+        "the shaking force at the drive's pivot, and the drive torque; equation (57) of "
+        "Yamashita et al."
+    ),
+    "moment": to_say("the whole force and moment of the joints on the frame"),
+    "coupled": to_say(
+        "as torque, with the torque that the motion of the support takes; equation (54) of "
+        "Yamashita et al."
+    ),
+    "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
+}
+"""What each model of the support stands for; as `structures.response.EQUATIONS`."""
 
 MOST_TRACED = 3
 """Points whose paths are drawn beside the moving linkage, where no finger plants."""
@@ -81,7 +96,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         blocks["vibration"] = [*shown, *tables]
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found, found.balanced), *drawn.pop("balance", [])]
-    settings = [*_settings_of_linkage(found), *_common(found, command)]
+    settings = [*_settings_of_linkage(found), _made(found)]
     return Document(
         language,
         machine.title,
@@ -90,7 +105,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         tuple(tiles(found)),
         tuple(answers(found)),
         _animation(found),
-        _sections(found, blocks, settings),
+        _sections(found, blocks, settings, command),
     )
 
 
@@ -116,18 +131,22 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         tuple(tool_tiles(found)),
         tuple(tool_answers(found)),
         "",
-        _sections(found, named, list(_common(found, command))),
+        _sections(found, named, [_made(found)], command),
     )
 
 
 def _sections(
-    found: Findings | ToolFindings, blocks: dict[str, list[Block]], settings: Iterable[str]
+    found: Findings | ToolFindings,
+    blocks: dict[str, list[Block]],
+    settings: Iterable[str],
+    command: str,
 ) -> tuple[Section, ...]:
     """Sections of the blocks, then what every report ends with."""
-    notes = tuple(say("Note: {note}", note=note) for note in found.notes)
+    notes = map(noted, found.notes)
+    again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
     last: dict[str, list[Block]] = {
         "sources": [Points("", tuple(sources(found)))],
-        "settings": [Points("", tuple(settings)), *map(Paragraph, notes)],
+        "settings": [Points("", tuple(settings)), *map(Paragraph, notes), *again],
         "file": [Listing(found.file, found.text)],
     }
     return tuple(
@@ -149,7 +168,7 @@ def _animation(found: Findings) -> str:
     arrow = None
     if analysis.solved is not None:
         forces = analysis.solved
-        arrow = Arrow(forces.about, forces.shaking_force.value)
+        arrow = Arrow(forces.about, forces.shaking_force.value, of_one=len(found.machine.rows) > 1)
     return animated_svg(
         scene,
         title=found.machine.title,
@@ -161,25 +180,27 @@ def _animation(found: Findings) -> str:
 
 def _settings_of_linkage(found: Findings) -> Iterator[str]:
     motion = found.analysis.motion
-    yield say(
-        "{angles} crank angles in a turn, {turns} turn(s) until everything repeats",
-        angles=found.angles,
-        turns=motion.turns,
-    )
+    if motion.turns == 1:
+        angles = found.angles
+        yield say("{angles} crank angles in a turn, after which everything repeats", angles=angles)
+    else:
+        yield say(
+            "{angles} crank angles in a turn, {turns} turns until everything repeats",
+            angles=found.angles,
+            turns=motion.turns,
+        )
     if motion.acceleration:
         yield say("Crank acceleration {value} rad/s²", value=number(motion.acceleration))
     gravity = ", ".join(number(part) for part in found.machine.gravity)
     yield say("Gravity ({value}) m/s²", value=gravity)
     if found.response is not None:
         model = found.response.model
-        yield say("Vibration by the model {model}: {what}", model=model, what=EQUATIONS[model])
+        yield say("Vibration by the model {model}: {what}", model=model, what=say(MODELS[model]))
     if found.balanced is not None:
-        yield say("Balanced by: {method}", method=found.balanced.method)
+        yield say("Balanced by: {method}", method=method_told(found.balanced.method))
 
 
-def _common(found: Findings | ToolFindings, command: str) -> Iterator[str]:
-    yield say(
+def _made(found: Findings | ToolFindings) -> str:
+    return say(
         "Made by Equipoise {version} from {file}", version=equipoise.__version__, file=found.file
     )
-    if command:
-        yield say("Command: {command}", command=command)

@@ -55,18 +55,17 @@ def _added(link: str, values: dict[str, Any]) -> Iterator[str]:
             point=values["at"],
         )
     for piece in values["pieces"]:
-        yield _piece(link, piece, values["center"])
+        yield say("{link}, made as: {piece}", link=link, piece=_piece(piece, values["center"]))
 
 
-def _piece(link: str, piece: dict[str, Any], center: tuple[float, float]) -> str:
+def _piece(piece: dict[str, Any], center: tuple[float, float]) -> str:
     mass = _grams(piece["mass"])
     if piece["shape"] == "point":
         place_of = place(piece["place"])
-        return say("{link}: point mass of {mass} g at ({at}) mm", link=link, mass=mass, at=place_of)
+        return say("point mass of {mass} g at ({at}) mm", mass=mass, at=place_of)
     thickness = _millimetres(piece["thickness"])
     if piece["shape"] in ("ring", "sector"):
         told: dict[str, str] = {
-            "link": link,
             "mass": mass,
             "inner": _millimetres(piece["inner_radius"]),
             "outer": _millimetres(piece["outer_radius"]),
@@ -75,21 +74,19 @@ def _piece(link: str, piece: dict[str, Any], center: tuple[float, float]) -> str
         }
         if piece["shape"] == "ring":
             return say(
-                "{link}: ring of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
+                "ring of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
                 "{thickness} mm thick",
                 **told,
             )
         return say(
-            "{link}: sector of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
+            "sector of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
             "{thickness} mm thick, {wide}° wide, its middle at {direction}°",
             wide=_direction(piece["angle"]),
             direction=_direction(piece["direction"]),
             **told,
         )
     return say(
-        "{link}: disc of {mass} g, radius {radius} mm, {thickness} mm thick, its centre at "
-        "({at}) mm",
-        link=link,
+        "disc of {mass} g, radius {radius} mm, {thickness} mm thick, its centre at ({at}) mm",
         mass=mass,
         radius=_millimetres(piece["radius"]),
         thickness=thickness,

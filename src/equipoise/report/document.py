@@ -3,15 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from equipoise.report.numbers import kept_together
 
 Row = tuple[str, ...]
 
 
+def _kept(value: Any) -> Any:
+    if isinstance(value, str):
+        return kept_together(value)
+    return tuple(map(_kept, value)) if isinstance(value, tuple) else value
+
+
+class _Told:
+    """What is read in lines: no line ends between a number and its unit."""
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            object.__setattr__(self, name, _kept(value))
+
+
 @dataclass(frozen=True)
-class Paragraph:
+class Paragraph(_Told):
     """Running text."""
 
     kind: ClassVar[str] = "paragraph"
@@ -19,7 +33,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Points:
+class Points(_Told):
     """A list; `title` stands above it."""
 
     kind: ClassVar[str] = "points"
@@ -28,7 +42,7 @@ class Points:
 
 
 @dataclass(frozen=True)
-class Table:
+class Table(_Told):
     """A table; its first `words` columns are words, the others numbers."""
 
     kind: ClassVar[str] = "table"
@@ -70,7 +84,7 @@ class Section:
 
 
 @dataclass(frozen=True)
-class Tile:
+class Tile(_Told):
     """One figure that is seen at once; `note` stands below it."""
 
     label: str
@@ -80,14 +94,11 @@ class Tile:
 
 
 @dataclass(frozen=True)
-class Answer:
+class Answer(_Told):
     """A part of the summary: what it answers, and the answer in sentences."""
 
     question: str
     sentences: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "sentences", tuple(map(kept_together, self.sentences)))
 
 
 @dataclass(frozen=True)

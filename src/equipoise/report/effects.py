@@ -7,13 +7,15 @@ from math import pi
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
+from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
 from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import PlantingFigures
 from equipoise.report.changes import told
 from equipoise.report.document import Block, Paragraph, Points, Row, Table
 from equipoise.report.findings import Findings
-from equipoise.report.naming import MEASURES, objective_named, output_named, scaled, unit_of
-from equipoise.report.numbers import PER_RPM, angle, change, number
+from equipoise.report.helps import nothing_told
+from equipoise.report.notes import noted
+from equipoise.report.numbers import PER_RPM, about, angle, change, number
 from equipoise.structures.response import Response
 from equipoise.structures.sweep import Sweep
 from equipoise.words import say, to_say
@@ -59,7 +61,7 @@ def planting_blocks(found: PlantingFigures) -> Iterator[Block]:
     header = ("", f"{say('crank angle')} °", "x mm", "y mm", "m/s", "m/s²")
     yield Table(say("Instants of a stroke, relative to the machine"), header, tuple(rows))
     path: tuple[Row, ...] = tuple(
-        (f"{say(label)}, {unit}", number(value * scale))
+        (_headed(say(label), unit), number(value * scale))
         for name, label, scale, unit in PATH
         if (value := get(name)) is not None
     )
@@ -67,9 +69,12 @@ def planting_blocks(found: PlantingFigures) -> Iterator[Block]:
     yield from _notes(found.notes)
 
 
+def _headed(*words: str) -> str:
+    return say(", ").join(words)
+
+
 def _notes(notes: tuple[str, ...]) -> Iterator[Block]:
-    for note in notes:
-        yield Paragraph(say("Note: {note}", note=note))
+    yield from map(Paragraph, map(noted, notes))
 
 
 # -- vibration -------------------------------------------------------------------------------------
@@ -138,7 +143,7 @@ def _mounts(response: Response) -> Table:
         unit = "N m" if mount.torsional else "N"
         values = (float(mount.force.mean), mount.largest, mount.smallest)
         scale = 100 * max(map(abs, values))
-        rows.append((f"{name}, {unit}", *(number(value, scale) for value in values)))
+        rows.append((_headed(name, unit), *(number(value, scale) for value in values)))
     header = ("", say("mean"), say("largest"), say("smallest"))
     return Table(say("Forces of the mounts on the support"), header, tuple(rows))
 
@@ -148,13 +153,23 @@ def _mounts(response: Response) -> Table:
 
 def balance_blocks(found: Findings, balanced: Balanced) -> Iterator[Block]:
     """What to change, and every figure before and after."""
-    if not found.own_plan:
+    if not found.own_plan and balanced.plan.phases is not None:
+        yield Paragraph(
+            say(
+                "The file does not say what may be changed. So this is the remedy that costs "
+                "nothing: other phases of the rows."
+            )
+        )
+    elif not found.own_plan:
         yield Paragraph(
             say(
                 "The file does not say what may be changed. So this is the usual remedy: a "
                 "counterweight on the axis of the drive link, within its reach."
             )
         )
+    if not found.helped:
+        yield from map(Paragraph, nothing_told(found))
+        return
     lines = tuple(line for one in balanced.changes for line in told(one))
     yield Points(say("Changes; places and directions in the axes of each link"), lines)
     rows = len(found.machine.rows)
@@ -166,7 +181,7 @@ def balance_blocks(found: Findings, balanced: Balanced) -> Iterator[Block]:
         yield Paragraph(
             say(
                 "Proof: nothing that is allowed is better by more than {gap} of the value before.",
-                gap=f"{gap:.0e}".replace("-", "−"),
+                gap=about(gap),
             )
         )
     yield from _notes(balanced.notes)
@@ -178,7 +193,7 @@ def _objectives(balanced: Balanced, rows: int) -> Table:
         before, after = balanced.objectives[one.name]
         scale, unit = scaled(balanced.units[one.name])
         values = (number(before * scale), number(after * scale, before * scale))
-        lines.append((f"{objective_named(one, rows)}, {unit}", *values, change(before, after)))
+        lines.append((_headed(objective_named(one, rows), unit), *values, change(before, after)))
     header = ("", say("before"), say("after"), say("change"))
     return Table(say("What was made small"), header, tuple(lines))
 
@@ -191,15 +206,21 @@ def _before_after(balanced: Balanced, count: int) -> Table:
     largest: dict[str, float] = {}
     for name, (_, scale, unit) in told.items():
         top = max(before.get(name, 0.0), after.get(name, 0.0)) * scale
-        largest[unit] = max(largest.get(unit, 0.0), top)
+        largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), top)
     rows = []
     for name, (label, scale, unit) in told.items():
-        least = 10 * largest[unit]
-        cells = (number(x[name] * scale, least) if name in x else "" for x in (before, after))
-        changed = change(before.get(name, 0.0), after.get(name, 0.0)) if name in before else ""
-        rows.append((f"{label}, {unit}", *cells, changed))
+        least = 10 * largest[_kin(unit)]
+        cells = [number(x[name] * scale, least) if name in x else "" for x in (before, after)]
+        zero = cells[0] in ("0", "")
+        changed = "" if zero else change(before[name], after.get(name, 0.0))
+        rows.append((_headed(label, unit), *cells, changed))
     header = ("", say("before"), say("after"), say("change"))
     return Table(say("Before and after"), header, tuple(rows))
+
+
+def _kin(unit: str) -> str:
+    """The unit of which rounding of a unit comes."""
+    return "N m" if unit == "J" else unit
 
 
 def _figure(balanced: Balanced, name: str, count: int) -> tuple[str, float, str]:
@@ -207,7 +228,7 @@ def _figure(balanced: Balanced, name: str, count: int) -> tuple[str, float, str]
     if name == "mass":
         return say("mass of the links"), 1e3, "g"
     output, _, measure = name.rpartition(".")
-    label = f"{output_named(output, count)}, {say(MEASURES[measure])}"
+    label = _headed(output_named(output, count), say(MEASURES[measure]))
     if output.startswith("gauges"):
         return label, *scaled(si_unit(Objective(output), balanced.original))
     return label, *scaled(unit_of(output, measure))

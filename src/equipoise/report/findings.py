@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 
 Value = TypeVar("Value")
 
+NOTHING = 0.01
+"""Share of what is made small below which making it smaller does not help."""
+
 ANGLES = 720
 """Crank angles in a turn."""
 AROUND = (0.2, 2.0)
@@ -134,6 +137,16 @@ class Findings(_Found):
     def own_plan(self) -> bool:
         """Whether the file itself says what to balance."""
         return self.plan is not None and self.plan is self.machine.balance
+
+    @property
+    def helped(self) -> bool:
+        """Whether balancing brings anything that is worth a change."""
+        balanced = self.balanced
+        if balanced is None:
+            return False
+        pairs = balanced.objectives.values()
+        moved = (abs(after - before) > NOTHING * before for before, after in pairs)
+        return bool(balanced.plan.limits) or any(moved)
 
     @property
     def notes(self) -> tuple[str, ...]:

@@ -12,6 +12,7 @@ Array = np.ndarray[Any, Any]
 
 PER_RPM = pi / 30
 MINUS = "\N{MINUS SIGN}"
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 ROUNDING = 1e-10
 SAME = 5e-4
 """Share of a change that is told as none."""
@@ -22,9 +23,20 @@ def number(value: float, scale: float = 0.0, digits: int = 4) -> str:
     if value == 0 or abs(value) <= ROUNDING * abs(scale):
         return "0"
     if not 1e-3 <= abs(value) < 1e6:
-        return f"{value:.{digits - 1}e}".replace("-", MINUS)
+        return _powered(value, digits - 1)
     after = max(0, digits - 1 - floor(log10(abs(value))))
     return f"{value:.{after}f}".replace("-", MINUS)
+
+
+def _powered(value: float, after: int) -> str:
+    """A value with a power of ten, ``1.23×10⁻⁴``."""
+    digits, power = f"{value:.{after}e}".split("e")
+    return f"{digits}×10{str(int(power)).translate(RAISED)}".replace("-", MINUS)
+
+
+def about(value: float) -> str:
+    """The power of ten of a small value, with one digit."""
+    return _powered(value, 0)
 
 
 def brief(value: float, scale: float = 0.0) -> str:
@@ -67,12 +79,16 @@ def place(xy: tuple[float, float]) -> str:
     return f"{number(1e3 * xy[0], scale)}, {number(1e3 * xy[1], scale)}"
 
 
-_VALUE = re.compile(r"(?<=[0-9]) (?=(?:[%°hgJN]|N m|mm|rpm|Hz|kg|mrad|m/s²)(?![A-Za-z]))")
+_UNIT = re.compile(r"(?<![A-Za-z])(k?N|k?g) (mm?|s)(?![A-Za-z])")
+_VALUE = re.compile(
+    r"(?<=[0-9)]) (?=(?:k?N|k?g|k?J|[cm]?m|m?rad|m?s|min|h|rpm|Hz|[%°])[²³]?(?![A-Za-z0-9]))"
+)
 
 
 def kept_together(text: str) -> str:
-    """A sentence that never ends a line between a number and its unit."""
-    return _VALUE.sub("\N{NO-BREAK SPACE}", text)
+    """A text that never ends a line within a unit, or between it and its number."""
+    bound = _UNIT.sub("\\1\N{NO-BREAK SPACE}\\2", text)
+    return _VALUE.sub("\N{NO-BREAK SPACE}", bound)
 
 
 def capital(text: str) -> str:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
+from equipoise.balancing.naming import scaled
 from equipoise.report.findings import Findings
-from equipoise.report.naming import scaled
 from equipoise.report.numbers import PER_RPM, angle, brief
 from equipoise.words import say
 

@@ -29,8 +29,10 @@ MORE_EASTERN = {
     "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
     "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
 }
-SHRUNK, PAGE = 0.87, 504.0
-"""Width of a picture over how it is drawn; points between the margins."""
+SHRUNK, PAGE, HALF = 0.8, 504.0, 338.0
+"""Width of a picture over how it is drawn; points between the margins; height that fits twice."""
+LEAST = 0.7
+"""Scale below which its letters would be too small to read."""
 NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
 
 
@@ -110,8 +112,11 @@ def _template() -> jinja2.Template:
 
 def _width(svg: str) -> str:
     """Width of a picture on paper, where it is a little smaller than drawn."""
-    wide = re.search(r'viewBox="0 0 ([0-9.]+) ', svg)
-    return f"{min(SHRUNK * float(wide[1]), PAGE):.1f}pt" if wide else "100%"
+    size = re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', svg)
+    if size is None:
+        return "100%"
+    width, height = map(float, size.groups())
+    return f"{min(width * min(SHRUNK, max(HALF / height, LEAST)), PAGE):.1f}pt"
 
 
 def _text(value: str) -> str:

@@ -38,7 +38,7 @@ def of_linkage(found: Findings, at: Sequence[float] | None) -> Iterator[Part]:
         yield "vibration", _speeds(found.sweep)
     if found.modes is not None:
         yield "modes", _modes(found)
-    if found.balanced is not None:
+    if found.balanced is not None and found.helped:
         yield "balance", _balance(found.balanced)
 
 

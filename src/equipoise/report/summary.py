@@ -7,12 +7,13 @@ from math import cos, pi, sin
 
 import numpy as np
 
+from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.naming import CAUSES, joint_named, objective_named
 from equipoise.errors import UsageError
-from equipoise.report.changes import told
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import Findings
-from equipoise.report.naming import CAUSES, objective_named, output_named, scaled
-from equipoise.report.numbers import PER_RPM, angle, brief, capital, change, percent
+from equipoise.report.helps import good_already, helps_told
+from equipoise.report.numbers import PER_RPM, angle, brief, change, percent
 from equipoise.report.outcomes import planting_told, vibration_told
 from equipoise.report.shaking import Shaking, shares
 from equipoise.signals import Figures
@@ -24,7 +25,6 @@ LEADING = 0.5
 """Share of the mean square from which one order is told as the whole."""
 STRETCHED, ROUND = 0.8, 0.6
 """Share of the mean square along one direction: from where, and up to where, it is called so."""
-WORSE, MOST_WORSE = 0.1, 3
 
 
 def answers(found: Findings) -> Iterator[Answer]:
@@ -36,7 +36,7 @@ def answers(found: Findings) -> Iterator[Answer]:
         shaking = Shaking.of(found)
         yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
         yield Answer(say("Why"), tuple(_why(found)))
-        if helps := tuple(_helps(found)):
+        if helps := tuple(helps_told(found)):
             yield Answer(say("What helps most"), helps)
     if vibration := tuple(vibration_told(found)):
         yield Answer(say("What that does to the support"), vibration)
@@ -58,20 +58,29 @@ def tiles(found: Findings) -> Iterator[Tile]:
         return say("one row: {what}", what=what) if several else what
 
     yield Tile(say("shaking force, peak"), brief(size.peak), "N", _at(size.peak_at))
-    moment, torque = analysis.summary["shaking_moment"], analysis.summary["drive_torque"]
     least = analysis.summary["frame_moment"].peak
-    yield Tile(
-        of_one(say("shaking moment, peak")), brief(moment.peak, least), "N m", _at(moment.peak_at)
-    )
-    yield Tile(of_one(say("drive torque, peak")), brief(torque.peak), "N m", _at(torque.peak_at))
+    for what, name in (
+        (say("shaking moment, peak"), "shaking_moment"),
+        (say("drive torque, peak"), "drive_torque"),
+    ):
+        one = analysis.summary[name]
+        value = brief(one.peak, least)
+        note = _at(one.peak_at) if value != "0" else ""
+        yield Tile(of_one(what), value, "N m", note)
     name, largest = _largest_joint(found)
     if name:
         label = say("largest joint force")
-        yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=name))
+        yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
-        name, (before, after) = next(iter(found.balanced.objectives.items()))
-        told = change(before, after).removesuffix(" %")
-        yield Tile(say("by balancing"), told, "%", _objective(found, name))
+        yield _by_balancing(found, found.balanced)
+
+
+def _by_balancing(found: Findings, balanced: Balanced) -> Tile:
+    one = balanced.plan.objectives[0]
+    before, after = balanced.objectives[one.name]
+    told = change(before, after).removesuffix(" %") or percent(0)
+    what = objective_named(one, len(found.machine.rows))
+    return Tile(say("by balancing"), told, "%", what if found.helped else good_already(found))
 
 
 def _at(crank_angle: float) -> str:
@@ -173,7 +182,7 @@ def _why(found: Findings) -> Iterator[str]:
             for name, share in by_link.items()
             if abs(share) >= SMALL
         ]
-        yield say("The shaking force comes from: {parts}.", parts=", ".join(parts))
+        yield say("The shaking force comes from: {parts}.", parts=say(", ").join(parts))
         against = [name for name, share in by_link.items() if share <= -SMALL]
         if against:
             yield say("A minus means that the link works against the others.")
@@ -188,7 +197,7 @@ def _why(found: Findings) -> Iterator[str]:
             if abs(share) >= SMALL
         ]
         swing = {"low": brief(torque.min, torque.peak), "high": brief(torque.max, torque.peak)}
-        swing["parts"] = ", ".join(causes)
+        swing["parts"] = say(", ").join(causes)
         if len(found.machine.rows) > 1:
             yield say(
                 "The drive torque of one row swings between {low} and {high} N m; that comes "
@@ -200,62 +209,6 @@ def _why(found: Findings) -> Iterator[str]:
                 "The drive torque swings between {low} and {high} N m; that comes from: {parts}.",
                 **swing,
             )
-
-
-# -- what helps ------------------------------------------------------------------------------------
-
-
-def _objective(found: Findings, name: str) -> str:
-    balanced = found.balanced
-    assert balanced is not None
-    one = next(one for one in balanced.plan.objectives if one.name == name)
-    return objective_named(one, len(found.machine.rows))
-
-
-def _helps(found: Findings) -> Iterator[str]:
-    balanced = found.balanced
-    if balanced is None:
-        return
-    for one in balanced.changes:
-        yield say("{sentence}.", sentence=next(told(one)))
-    units = balanced.units
-    for name, (before, after) in balanced.objectives.items():
-        scale, unit = scaled(units[name])
-        yield say(
-            "{what}: from {before} to {after} {unit} ({change}).",
-            what=capital(_objective(found, name)),
-            before=brief(before * scale),
-            after=brief(after * scale, before * scale),
-            unit=unit,
-            change=change(before, after) or percent(0),
-        )
-    if balanced.gap is not None:
-        yield say("Of all that may be changed here nothing is better; that is proved.")
-    if worse := _worse(found):
-        yield say("In exchange these become larger: {figures}.", figures=", ".join(worse))
-    if balanced.planting_kept:
-        yield say("The planting figures stay as they are.")
-
-
-def _worse(found: Findings) -> list[str]:
-    """Peaks and RMS of outputs that grow by more than a tenth, the most first."""
-    balanced = found.balanced
-    assert balanced is not None
-    grown = {
-        name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
-        for name, old in balanced.before.items()
-        if old > 1e-12 and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
-    }
-    worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
-    rows = len(found.machine.rows)
-    return [
-        say(
-            "{what} by {share} %",
-            what=output_named(name, rows),
-            share=percent(grown[name]),
-        )
-        for name in worst[:MOST_WORSE]
-    ]
 
 
 def check_whole_cycle(found: Findings) -> None:

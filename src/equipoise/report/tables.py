@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from equipoise.balancing.naming import CAUSES, body_named, joint_named, output_named
 from equipoise.mechanism.dynamics import JointForce, SliderForce
 from equipoise.mechanism.fourbar import FourBar
 from equipoise.mechanism.model import Machine
 from equipoise.report.document import Block, Points, Row, Table
-from equipoise.report.naming import CAUSES, output_named
 from equipoise.report.numbers import PER_RPM, angle, number, percent, place, span
 from equipoise.report.shaking import shares
 from equipoise.results import Analysis
@@ -63,7 +63,7 @@ def _parts(machine: Machine) -> Iterator[str]:
             "Slider: {point} of {link} on a line of {on} through {through} at {angle}°",
             point=slider.point,
             link=slider.link,
-            on=slider.on,
+            on=body_named(slider.on),
             through=slider.through,
             angle=angle(slider.direction),
         )
@@ -72,7 +72,7 @@ def _parts(machine: Machine) -> Iterator[str]:
             "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
             driver=gear.driver,
             driven=gear.driven,
-            carrier=gear.carrier,
+            carrier=body_named(gear.carrier),
             ratio=number(gear.speed_ratio),
         )
     for spring in machine.springs:
@@ -104,8 +104,8 @@ def _support(machine: Machine) -> Iterator[str]:
     assert support is not None
     if support.mass is not None:
         yield say("Mass: {mass} kg", mass=number(support.mass))
-    yield say("Mounts: {names}", names=", ".join(support.mounts))
-    yield say("Gauges: {names}", names=", ".join(support.gauges))
+    yield say("Mounts: {names}", names=say(", ").join(support.mounts))
+    yield say("Gauges: {names}", names=say(", ").join(support.gauges))
 
 
 # -- motion ----------------------------------------------------------------------------------------
@@ -204,7 +204,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
         scale = max(summary[other].peak for other, u in FORCES if u == unit)
         means = (number(found.mean, scale), number(found.rms, scale))
         ends = (_top(found, scale), _bottom(found, scale))
-        rows.append((f"{output_named(name, several)}, {unit}", *means, *ends))
+        rows.append((say(", ").join((output_named(name, several), unit)), *means, *ends))
     header = ("", say("mean"), say("RMS"), say("largest"), say("smallest"))
     title = say(
         "On frame and drive; extremes with their crank angle, moments about the drive pivot"
@@ -227,8 +227,7 @@ def _by_link(analysis: Analysis) -> Table:
 
 
 def _causes(analysis: Analysis) -> Table:
-    scale = analysis.summary["drive_torque"].peak
-    forces = analysis.forces
+    scale, forces = analysis.summary["drive_torque"].peak, analysis.forces
     given = {"load": forces.loads, "spring": forces.springs}
     rows: list[Row] = []
     for cause, values in forces.split.by_cause("drive_torque").items():
@@ -283,9 +282,11 @@ def joint_table(analysis: Analysis) -> Table:
         if isinstance(joint, SliderForce):
             couple = number(float(np.max(np.abs(joint.moment))), scale)
         means = (number(found.mean), number(found.rms))
-        rows.append((name, f"{joint.by} → {joint.on}", *means, _top(found), couple))
-    named = (say("by → on"), say("mean"), say("RMS"), say("largest"), f"{say('moment')} N m")
-    header: Row = ("", *named)
+        ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
+        named = say("teeth") if name in forces.gears else joint_named(name)
+        rows.append((named, ends, *means, _top(found), couple))
+    columns = (say("by → on"), say("mean"), say("RMS"), say("largest"), f"{say('moment')} N m")
+    header: Row = ("", *columns)
     if not any(row[-1] for row in rows):
         header, rows = header[:-1], [row[:-1] for row in rows]
     title = say("Force in each joint, N; largest with its crank angle")

@@ -11,11 +11,11 @@ import numpy as np
 
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import ToolFindings
-from equipoise.report.numbers import PER_RPM, brief, change, percent
-from equipoise.report.tool_tables import in_units
+from equipoise.report.numbers import PER_RPM, brief, capital, change, percent
+from equipoise.report.tool_tables import in_units, varied_named
 from equipoise.tools.exposed import WORKING, grips
 from equipoise.tools.response import respond_tool
-from equipoise.words import say, to_say
+from equipoise.words import say, spoken, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.design import ToolDesign
@@ -28,8 +28,8 @@ VERDICTS = {
     "above the action value": to_say("above the action value of 2.5 m/s² (2002/44/EC)"),
     "above the limit value": to_say("above the limit value of 5 m/s² (2002/44/EC)"),
 }
-DAY = 24.0
-"""h."""
+HOUR, DAY = 3600.0, 86400.0
+"""s."""
 NEAR = 0.1
 """Distance of a natural frequency from what shakes, over the latter, below which it is told."""
 
@@ -92,22 +92,34 @@ def _felt(exposure: ToolExposure) -> Iterator[str]:
         hand=exposure.worst,
         verdict=say(VERDICTS[day.verdict]),
     )
-    action, limit = day.times.to_action / 3600, day.times.to_limit / 3600
+    action, limit = day.times.to_action, day.times.to_limit
     if limit < DAY:
         yield say(
-            "The action value is reached after {action} h of such work a day, the limit value "
-            "after {limit} h.",
-            action=brief(action),
-            limit=brief(limit),
+            "The action value is reached after {action} of such work a day, the limit value "
+            "after {limit}.",
+            action=_time(action),
+            limit=_time(limit),
         )
     elif action < DAY:
         yield say(
-            "The action value is reached after {action} h of such work a day, the limit value "
+            "The action value is reached after {action} of such work a day, the limit value "
             "not in a day.",
-            action=brief(action),
+            action=_time(action),
         )
     else:
         yield say("A whole day of such work does not reach the action value.")
+
+
+def _begun(words: str) -> str:
+    """Words that begin a sentence; in other languages a name of the file does, as it is."""
+    return capital(words) if spoken() == "en" else words
+
+
+def _time(seconds: float) -> str:
+    """A part of a day, in minutes where it is less than an hour."""
+    if seconds < HOUR:
+        return say("{minutes} min", minutes=brief(seconds / 60))
+    return say("{hours} h", hours=brief(seconds / HOUR))
 
 
 def _why(tool: Tool) -> Iterator[str]:
@@ -126,7 +138,7 @@ def _why(tool: Tool) -> Iterator[str]:
     yield say(
         "Each source alone would give the hand at {hand}: {parts}.",
         hand=hand,
-        parts=", ".join(parts),
+        parts=say(", ").join(parts),
     )
 
 
@@ -149,7 +161,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
     """The natural frequency nearest to what shakes once a turn."""
     plane = modes.planes[0]
     swinging = plane.cycles_per_second[len(plane.rigid) :]
-    told = ", ".join(brief(float(value)) for value in swinging[:4])
+    told = say(", ").join(brief(float(value)) for value in swinging[:4])
     if told:
         yield say("The lowest are {list} Hz.", list=told)
     operation = found.tool.operation
@@ -171,8 +183,8 @@ def _helps(design: ToolDesign) -> Iterator[str]:
         before, after, unit = in_units(one)
         if before != after:
             yield say(
-                "{name}: from {before} to {after} {unit}.",
-                name=one.name,
+                "{name}: {before} → {after} {unit}.",
+                name=_begun(varied_named(one.name)),
                 before=before,
                 after=after,
                 unit=unit,

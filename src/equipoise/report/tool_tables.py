@@ -23,6 +23,20 @@ EDGES = {
     "highest": to_say("as high as it may be"),
     "": "",
 }
+VARIED = {
+    "position": to_say("position of {station}"),
+    "mass": to_say("mass of {station}"),
+    "stiffness": to_say("stiffness under {station}"),
+    "damping": to_say("damping under {station}"),
+    "rotational_stiffness": to_say("rotational stiffness under {station}"),
+    "rotational_damping": to_say("rotational damping under {station}"),
+    "harness.stiffness": to_say("stiffness of the harness at {station}"),
+    "harness.damping": to_say("damping of the harness at {station}"),
+    "absorber.mass": to_say("mass of the absorber at {station}"),
+    "absorber.stiffness": to_say("stiffness of the absorber at {station}"),
+    "absorber.damping": to_say("damping of the absorber at {station}"),
+}
+"""Key of a number that a design may change, as `tools.wishes.KEYS` -> what it is."""
 SCALES = {
     "length": (1e3, "mm"),
     "mass": (1e3, "g"),
@@ -50,7 +64,7 @@ def tool_model(tool: Tool) -> Iterator[Block]:
         )
     )
     rows = tuple(
-        (one.name, number(1e3 * one.position), number(1e3 * one.mass), ", ".join(_holds(one)))
+        (one.name, number(1e3 * one.position), number(1e3 * one.mass), say(", ").join(_holds(one)))
         for one in tool.stations
     )
     header = ("", f"{say('position')} mm", f"{say('mass')} g", say("with"))
@@ -128,7 +142,12 @@ def design_table(design: ToolDesign) -> Table:
     for one, edge in zip(design.variables, design.edges, strict=True):
         before, after, unit = in_units(one)
         rows.append(
-            (one.name, unit, before, after, change(one.before, one.after), say(EDGES[edge]))
+            (
+                varied_named(one.name),
+                *(unit, before, after),
+                change(one.before, one.after),
+                say(EDGES[edge]),
+            )
         )
     for one in design.figures:
         before, after, unit = in_units(one)
@@ -137,6 +156,12 @@ def design_table(design: ToolDesign) -> Table:
         )
     header = ("", "", say("before"), say("after"), say("change"), "")
     return Table(say("What to change, and what that brings"), header, tuple(rows), words=2)
+
+
+def varied_named(name: str) -> str:
+    """A number that a design may change, as `tools.design` calls it, in words."""
+    station, _, key = name.rpartition(" ")
+    return say(VARIED[key], station=station)
 
 
 def in_units(one: Before) -> tuple[str, str, str]:

@@ -20,6 +20,7 @@ from equipoise.plotting.analysis import (
     curves_figure,
     drawings,
     hodograph_figure,
+    joints_figures,
     linkage_figure,
     moment_figure,
     polar_figure,
@@ -27,6 +28,8 @@ from equipoise.plotting.analysis import (
 )
 from equipoise.plotting.analysis.looks import outputs, together
 from equipoise.plotting.analysis.plane import clear_angle, traced
+from equipoise.plotting.cartoon import cartoon
+from equipoise.plotting.stage import Arrow
 from equipoise.plotting.style import render
 from equipoise.results import Analysis
 from equipoise.scene import Scene
@@ -254,3 +257,20 @@ def test_the_same_bytes_on_every_run() -> None:
     again = drawings(eq.analyze(eq.load("yamashita-1"), 360))
     for name, figure in drawn("yamashita-1").items():
         assert render(figure, "svg") == render(again[name], "svg"), name
+
+
+def test_a_couple_of_rounding_is_zero() -> None:
+    figure = joints_figures(eq.analyze(eq.load("slider-crank-engine"), 90))[0]
+    assert "zero at every crank angle" in words(figure)
+    panel = next(axes for axes in figure.axes if "couple" in axes.get_ylabel())
+    assert not np.any(np.asarray(panel.get_lines()[0].get_ydata()))
+
+
+@pytest.mark.parametrize("of_one", [False, True])
+def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
+    found = eq.analyze(eq.load("four-row-transplanter"), 60)
+    arrow = Arrow(found.forces.about, found.forces.shaking_force.value, of_one)
+    told = [label.text for label in cartoon(Scene.of(found.motion), arrow=arrow).labels]
+    (force,) = (text for text in told if text.startswith("shaking force"))
+    assert ("of one row" in force) == of_one
+    assert f"{np.max(np.abs(arrow.force)):.4g} N" in force

@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
+from matplotlib.text import Text
 
 import equipoise as eq
 from equipoise.balancing.front import Front
 from equipoise.balancing.parts import Change
-from equipoise.mechanism.model import Machine
+from equipoise.plotting.analysis import linkage_figure
 from equipoise.plotting.balancing import drawings
+from equipoise.plotting.balancing.changes import changes_figure
 from equipoise.plotting.balancing.front import front_figure
 from equipoise.plotting.balancing.looks import grams
 from equipoise.plotting.balancing.pieces import sector
@@ -34,9 +39,23 @@ from unit.plotting.samples import words
 from unit.plotting.vibration_samples import check_texts
 
 
-def at_zero(machine: Machine, link: str, place: tuple[float, float]) -> complex:
-    """Where a place of a link is in the frame at crank angle 0, mm, by its point and angle."""
-    motion = eq.move(machine, np.array([0.0]))
+def key(figure: Figure) -> list[tuple[Text, Any]]:
+    """Names and signs of a legend."""
+    (legend,) = figure.legends
+    return list(zip(legend.get_texts(), legend.legend_handles, strict=True))
+
+
+def crank_angle(kind: str) -> float:
+    """At which the picture says that it shows the machine, rad."""
+    told = re.search(r"in the frame: ([0-9.]+)°", words(pictures(kind)["changes"]))
+    assert told is not None
+    return float(np.radians(float(told[1])))
+
+
+def at_pose(kind: str, link: str, place: tuple[float, float]) -> complex:
+    """Where a place of a link is in the frame at that angle, mm, by its point and angle."""
+    machine = found(kind).machine
+    motion = eq.move(machine, np.array([crank_angle(kind)]))
     name, own = next(iter(machine.links[link].points.items()))
     turned = np.exp(1j * motion.links[link].angle[0])
     there = motion.points[name].place[0] + turned * (complex(*place) - complex(*own))
@@ -76,7 +95,7 @@ def test_plates_are_to_scale(kind: str) -> None:
     for patch, (link, piece) in zip(drawn, cut, strict=True):
         area, middle = moments(patch)
         assert area * 1e-6 == pytest.approx(piece["mass"] / (STEEL * 0.02), rel=2e-3)
-        assert middle == pytest.approx(at_zero(result.machine, link, piece["place"]), abs=0.1)
+        assert middle == pytest.approx(at_pose(kind, link, piece["place"]), abs=0.1)
         assert f"{MM * piece['mass']:.4g} g on {link}" in words(pictures(kind)["changes"])
 
 
@@ -85,12 +104,12 @@ def test_points_and_moved_centres() -> None:
     axes = pictures("one of each")["changes"].axes[0]
     by_kind = {change.kind + change.link: change for change in result.changes}
     move = by_kind["center of masscoupler"].values
-    ends = [at_zero(result.machine, "coupler", move[k]) for k in ("from", "to")]
+    ends = [at_pose("one of each", "coupler", move[k]) for k in ("from", "to")]
     (drawn,) = arrows(axes)
     assert list(drawn) == pytest.approx(ends)
     dots = [complex(line(axes, k)[0]) for k in range(len(axes.lines)) if len(line(axes, k)) == 1]
     for piece in by_kind["added massrocker"].values["pieces"]:
-        place = at_zero(result.machine, "rocker", piece["place"])
+        place = at_pose("one of each", "rocker", piece["place"])
         assert min(abs(place - dot) for dot in dots) < 1e-6
     assert f"coupler, {MM * move['mass']:.4g} g" in words(pictures("one of each")["changes"])
 
@@ -102,8 +121,24 @@ def test_rooms() -> None:
     assert np.abs(other - pivot) == pytest.approx(50.0)
     assert np.abs(np.diff(box)) == pytest.approx([100, 60, 100, 60])
     (round_about,) = labelled(pictures("moved")["changes"].axes[0], "room")
-    middle = at_zero(found("moved").machine, "coupler", (0, 0))
+    middle = at_pose("moved", "coupler", (0, 0))
     assert np.abs(round_about - middle) == pytest.approx(30.0)
+
+
+def test_the_pose_is_that_of_the_linkages_picture() -> None:
+    """Of a machine that has gears already, which are told apart from new ones."""
+    machine = eq.load("geared-counterweight")
+    weight = eq.AddedMass("crank", "O2", eq.Weight("point", 0.03))
+    result = eq.balance(
+        machine, eq.Balance(masses=(weight,), objectives=(eq.Objective("shaking_force"),))
+    )
+    with styled():
+        figure = changes_figure(result)
+    angle = re.search(r"in the frame: [0-9.]+°", words(figure))
+    assert angle and angle[0] in words(linkage_figure(eq.analyze(machine, 720)))
+    signs = {text.get_text(): sign for text, sign in key(figure)}
+    assert {"added mass", "room allowed", "pitch circles of gears"} == signs.keys()
+    assert signs["added mass"].get_marker() == "o"
 
 
 def test_gears_touch() -> None:
@@ -129,7 +164,7 @@ def test_springs() -> None:
     (drawn,) = labelled(pictures("spring")["changes"].axes[0], "spring")
     spring = result.machine.springs[-1]
     ends = [
-        at_zero(result.machine, "rocker", result.machine.links["rocker"].points["C"]),
+        at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]),
         50 + 120j,
     ]
     assert drawn == pytest.approx(np.array(ends))
@@ -230,8 +265,8 @@ def test_front_goes_through_its_points() -> None:
     axes = pictures("front")["front"].axes[0]
     drawn = line(axes)
     np.testing.assert_allclose(drawn, front().values @ [1, 1j], rtol=1e-12)
-    assert axes.get_xlabel() == "rms of shaking_moment, N m"
-    assert axes.get_ylabel() == "rms of drive_torque, N m"
+    assert axes.get_xlabel() == "shaking moment, RMS, N m"
+    assert axes.get_ylabel() == "drive torque, RMS, N m"
     x, y = front().values[0]
     assert f"{x:.4g} N m, {y:.4g} N m" in words(pictures("front")["front"])
 
@@ -266,6 +301,6 @@ def test_lengths_in_mm_and_added_mass() -> None:
     figure = drawings(result)["front"]
     check_texts("front of a gauge", figure)
     axes = figure.axes[0]
-    assert axes.get_xlabel() == f"{gauge.name}, mm"
+    assert axes.get_xlabel() == "gauge gauge, peak to peak, mm"
     np.testing.assert_allclose(line(axes), values @ [MM, 1j])
     assert f"with {grams(found('sector').added_mass)} more" in words(figure)

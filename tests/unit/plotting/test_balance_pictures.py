@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -16,9 +17,12 @@ from matplotlib.axes import Axes
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.usual import usual_plan
 from equipoise.plotting.balancing import drawings
-from equipoise.plotting.balancing.looks import settled
-from equipoise.plotting.style import Kind, render
+from equipoise.plotting.balancing.looks import paired
+from equipoise.plotting.bars import bars as draw_bars
+from equipoise.plotting.style import Kind, render, styled
+from equipoise.plotting.vibration.panels import stack
 from unit.plotting.balance_samples import (
     EVERY,
     Pictures,
@@ -119,13 +123,17 @@ def test_lines_are_the_signals(kind: str) -> None:
     }
     for name, axes in panels.items():
         assert axes.get_xlim() == (0, 360 * turns)
-        for number, when in enumerate(("before", "after")):
+        alike = axes.get_lines()[0].get_label() == "unchanged"
+        for number, when in enumerate(("after",) if alike else ("before", "after")):
             values = told[f"{name}.{when}"]
             expected = np.append(values, values[0])
             np.testing.assert_allclose(line(axes, number).imag, expected, atol=1e-12)
             degrees = np.degrees(told["crank_angle"])
             angles = np.append(degrees, 360 * turns)
             np.testing.assert_allclose(line(axes, number).real, angles, atol=1e-9)
+        if alike:
+            np.testing.assert_allclose(told[f"{name}.before"], values, rtol=1e-6)
+            continue
         before, after = axes.get_lines()[:2]
         assert before.get_linewidth() < after.get_linewidth()
     largest = np.max(told["shaking_moment.after"])
@@ -149,15 +157,25 @@ def test_what_did_not_change_is_seen_and_told_once() -> None:
     told = words(pictures("sector")["moment"])
     largest = np.max(columns(found("sector"))["shaking_moment.after"])
     assert told.count(f"{largest:.4g} at ") == 1
-    before, after = pictures("sector")["moment"].axes[0].get_lines()[:2]
+    before, after = pictures("sector")["force"].axes[0].get_lines()[:2]
     assert before.get_zorder() > after.get_zorder()
+    assert "unchanged" in told and "before\n" not in told
 
 
 def test_rounding_is_nothing() -> None:
     before = np.array([1.0, -2.0])
-    assert np.all(settled(before, 1e-12 * before) == 0)
-    assert np.all(settled(before, 1e-3 * before) == 1e-3 * before)
-    assert np.all(settled(0 * before, before) == before)
+    assert np.all(paired(before, 1e-12 * before, 0.0)["after"] == 0)
+    assert np.all(paired(before, 1e-3 * before, 0.0)["after"] == 1e-3 * before)
+    assert np.all(paired(0 * before, before, 0.0)["after"] == before)
+    assert not any(np.any(one) for one in paired(1e-13 * before, 2e-13 * before, 1e-12).values())
+
+
+@pytest.mark.parametrize("name", ["planetary-planting-arm", "scotch-yoke"])
+def test_a_moment_that_is_always_zero_is_no_curve(name: str) -> None:
+    machine = eq.load(name)
+    drawn = drawings(eq.balance(machine, usual_plan(machine)))["moment"]
+    assert "zero at every crank angle" in words(drawn)
+    assert not np.any(line(drawn.axes[0], 0).imag)
 
 
 # -- orders ----------------------------------------------------------------------------------------
@@ -181,8 +199,21 @@ def test_bars_are_the_orders() -> None:
         assert list(heights) == list(range(len(heights))) and len(heights) > 4
         for order, height in heights.items():
             assert height == pytest.approx(amplitudes[int(order)], abs=1e-9)
-    assert axes.get_title(loc="left") == "rms of shaking_force.y"
+    assert axes.get_title(loc="left") == "shaking force y, RMS"
     assert f"{bars(axes, 0)[1.0]:.1f}" in words(pictures("sector")["orders"])
+
+
+@pytest.mark.parametrize("factor", [1.0, 1e3])
+def test_numbers_at_bars_keep_apart(factor: float) -> None:
+    """Also where they have no digit after the point that could go."""
+    orders = np.arange(9.0)
+    read = {when: (orders, factor * size * 0.8**orders) for when, size in (("a", 1), ("b", 0.95))}
+    with styled():
+        _, (axes,) = stack(1, 2.0, "title", "what")
+        draw_bars(axes, read, {"a": ("k", "k"), "b": ("b", "b")}, False, 8)
+        boxes = [one.get_window_extent() for one in axes.texts]
+    assert len(boxes) > 6
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
 def test_orders_of_vectors_and_joints_and_of_some_orders() -> None:
@@ -195,6 +226,8 @@ def test_orders_of_vectors_and_joints_and_of_some_orders() -> None:
     mean = np.hypot(np.mean(at_b.x), np.mean(at_b.y))
     assert bars(joint, 0)[0.0] == pytest.approx(mean, rel=1e-6)
     assert [order for order, height in bars(moment, 0).items() if height > 1e-9] == [1, 2]
+    assert force.get_title(loc="left") == "shaking force, RMS: both components together"
+    assert moment.get_title(loc="left") == "shaking moment, RMS, order 1, 2"
     assert force.get_xlim() == joint.get_xlim() == moment.get_xlim()
     assert (force.get_ylabel(), moment.get_ylabel()) == ("amplitude, N", "amplitude, N m")
 

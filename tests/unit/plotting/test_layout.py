@@ -13,7 +13,7 @@ from equipoise.planting.summary import plant
 from equipoise.plotting.crank import angle_step
 from equipoise.plotting.labels import Labels, spread
 from equipoise.plotting.planting import drawings
-from equipoise.plotting.style import blank, render, styled
+from equipoise.plotting.style import LARGE, SMALLEST, blank, heading, render, styled
 from equipoise.scene import hull
 from unit.plotting.samples import BUNDLED, drawn, long_cycle, odd_machines, one_link, texts, words
 
@@ -106,3 +106,15 @@ def test_hull() -> None:
     assert list(hull(np.array([*square, 0.5 + 0.5j, 0.5, 1j]))) == list(square)
     assert list(hull(np.array([0, 0.5 + 0.5j, 1 + 1j]))) == [0, 1 + 1j]
     assert list(hull(np.array([2j, 2j]))) == [2j]
+
+
+def test_long_headings_shrink_before_they_are_cut() -> None:
+    with styled():
+        figure = blank(6.0, 3.0)
+        heading(
+            figure, "Planting mechanism type II, to be found (Yamashita, Ichikawa)", "w" * 200, 0.8
+        )
+    title, what = figure.texts
+    assert title.get_text().endswith("Ichikawa)") and title.get_fontsize() < LARGE
+    assert what.get_text().endswith("w…") and what.get_fontsize() == SMALLEST
+    assert all(text.get_window_extent().x1 <= figure.bbox.x1 for text in figure.texts)

@@ -12,6 +12,7 @@ import equipoise as eq
 from equipoise.plotting.vibration import mode_drawings, response_drawings, transient_drawings
 from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
+from equipoise.scene import Scene
 from equipoise.structures.forced import respond
 from equipoise.structures.free import vibrate_freely
 from equipoise.structures.modes import Mode
@@ -241,3 +242,10 @@ def test_without_gauges_the_coordinates_are_read() -> None:
 
 def linkage_on_springs() -> eq.Machine:
     return plane(linkage(), gauges={})
+
+
+def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
+    machine = eq.load("exudyn-slider-crank")
+    low, high = Scene.of(eq.move(machine, 72)).box
+    axes = mode_drawings(vibrate_freely(machine))["mode-1"].axes[0]
+    assert 0.1 < np.ptp(axes.get_xlim()) / 1e3 / abs(high - low) < 1

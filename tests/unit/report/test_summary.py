@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import ast
+import re
 from math import pi
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.report.build import MODELS
+from equipoise.report.effects import balance_blocks
 from equipoise.report.findings import find
+from equipoise.report.notes import METHODS, SENTENCES, method_told, noted
 from equipoise.report.numbers import brief, change, kept_together, number
+from equipoise.report.pictures import pictures
 from equipoise.report.shaking import Shaking, shares
-from equipoise.report.summary import answers
+from equipoise.report.summary import answers, tiles
+from equipoise.structures.response import EQUATIONS
 from equipoise.words import speaking
 
 
@@ -57,7 +65,7 @@ def test_what_helps_most_is_what_balancing_finds():
     told = text_of(found)
     better = eq.analyze(found.balanced.machine).forces.shaking_force.value
     rms = float(np.sqrt(np.mean(np.abs(better) ** 2)))
-    assert f"to {brief(rms)} N" in told
+    assert f"→ {brief(rms)} N" in told
     gauge = found.response.gauges["gauge"].displacement.peak_to_peak
     assert f"moves by {brief(1e3 * float(gauge))} mm peak to peak at 193 rpm" in told
 
@@ -77,8 +85,79 @@ def test_no_placeholder_is_left(language):
 
 def test_numbers_are_short_and_rounding_is_nothing():
     assert [number(x) for x in (0.0, 12.345, -0.01234567, 1e-9, 2e7)] == [
-        "0", "12.35", "−0.01235", "1.000e−09", "2.000e+07",
+        "0", "12.35", "−0.01235", "1.000×10⁻⁹", "2.000×10⁷",
     ]  # fmt: skip
     assert number(1e-12, 1e3) == "0"
     assert [change(2.0, 1.0), change(2.0, 2.0001), change(0.0, 1.0)] == ["−50.0 %", "±0 %", ""]
-    assert kept_together("2.22 N m and 4 rows") == "2.22\xa0N m and 4 rows"
+    told = "2.22 N m and 4 rows, ratio in N m s/rad, (5.4 g mm) at (1, 2) mm, 7 milestones, 3 %"
+    assert kept_together(told) == (
+        "2.22\xa0N\xa0m and 4 rows, ratio in N\xa0m s/rad, (5.4\xa0g\xa0mm) at (1, 2)\xa0mm, "
+        "7 milestones, 3\xa0%"
+    )
+
+
+def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
+    found = find("slider-crank-engine")
+    before, after = next(iter(found.balanced.objectives.values()))
+    assert 0.99 * before < after <= before
+    told = text_of(found)
+    assert f"RMS, {brief(before)} N, is already as small as a counterweight on the crank" in told
+    assert "add a counterweight" not in told
+    assert [tile.note for tile in tiles(found)][-1].startswith("already as small as")
+    assert "balance" not in {one.section for one in pictures(found)}
+
+
+def test_rows_are_not_told_of_a_counterweight():
+    found = find("walking-transplanter")
+    told = " ".join(str(block) for block in balance_blocks(found, found.balanced))
+    assert "other phases of the rows" in told and "counterweight" not in told
+    rolls = found.balanced.after["rows.roll_moment.peak"]
+    assert f"roll moment from 0 to {brief(rolls)} N m" in text_of(found)
+
+
+def test_a_mass_that_is_large_beside_the_links_is_told():
+    found = find("quick-return")
+    added = found.balanced.after["mass"] - found.balanced.before["mass"]
+    assert f"have {brief(found.machine.mass)} kg, and {brief(added)} kg are added" in text_of(found)
+
+
+def test_rounding_has_no_crank_angle():
+    found = find("planetary-planting-arm")
+    moment = next(tile for tile in tiles(found) if "moment" in tile.label)
+    assert (moment.value, moment.note) == ("0", "")
+    table = list(balance_blocks(found, found.balanced))[3]
+    area = next(row for row in table.rows if row[0].startswith("shaking moment, area"))
+    assert area[1:] == ("0", "0", "")
+
+
+def test_notes_of_other_rooms_are_found_by_their_patterns():
+    source = "".join(
+        text
+        for room in ("balancing", "planting", "structures")
+        for path in sorted((Path(eq.__file__).parent / room).glob("*.py"))
+        for text in strings(path.read_text(encoding="utf-8"))
+    )
+    for pattern in (*SENTENCES, *METHODS):
+        for part in re.split(r"\{\w+\}", pattern):
+            assert part in source, pattern
+    with speaking("ko"):
+        assert noted("float does not touch at rest, and is left out").startswith(
+            "참고: float: 정지"
+        )
+        assert noted("the moon is full") == "참고(원문): the moon is full"
+        assert method_told("cone program, for each of 3 choices of gears").startswith(
+            "원뿔 계획법("
+        )
+
+
+def strings(source: str) -> list[str]:
+    """Texts of a file, those in pieces put together."""
+    return [
+        node.value
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+
+
+def test_models_are_those_of_the_response():
+    assert MODELS.keys() == EQUATIONS.keys()

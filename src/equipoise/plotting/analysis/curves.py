@@ -178,7 +178,7 @@ def hodograph_figure(analysis: Analysis, points: Sequence[str] | None = None) ->
     figure = blank(WIDTH, side + TOP + BOTTOM)
     what = title(
         analysis,
-        say("Ends of the arrows of velocity and acceleration"),
+        say("Hodographs of velocity and acceleration"),
         say("numbers: crank angle, deg"),
         of_one=True,
     )

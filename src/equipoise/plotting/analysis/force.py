@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.balancing.naming import CAUSES
 from equipoise.plotting.analysis.looks import (
     ALL,
     LINE_LOOKS,
@@ -27,7 +28,7 @@ from equipoise.plotting.crank import draw, mark
 from equipoise.plotting.hodograph import nothing_there
 from equipoise.plotting.style import LINES, SMALL, short, shown, styled
 from equipoise.plotting.vibration.panels import legend, name_panel, name_y, stack
-from equipoise.words import say, to_say
+from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,14 +45,6 @@ MEAN = (0, (5, 2))
 """Dashes of the mean."""
 NOTHING = 1e-9
 """Over the largest value: what is less is rounding."""
-CAUSES = {
-    "translation": to_say("inertia of translation"),
-    "rotation": to_say("inertia of rotation"),
-    "weight": to_say("weight"),
-    "load": to_say("loads"),
-    "spring": to_say("springs"),
-}
-"""What makes torque -> how it is called."""
 
 
 @styled()

@@ -16,12 +16,14 @@ from equipoise.plotting.analysis.looks import (
     angle_axis,
     line,
     name_angles,
+    settled,
+    size_of,
     title,
     unit_of,
 )
 from equipoise.plotting.analysis.polar import draw_polar
 from equipoise.plotting.crank import draw, mark
-from equipoise.plotting.hodograph import numbers, square, told_angles
+from equipoise.plotting.hodograph import nothing_there, numbers, square, told_angles
 from equipoise.plotting.style import MAIN, blank, heading, short, styled
 from equipoise.plotting.vibration.panels import (
     LEFT,
@@ -46,6 +48,8 @@ ROW = 1.6
 """Inches: height of a row of panels."""
 LARGEST, BETWEEN, ABOVE, BELOW = 2.5, 0.5, 0.28, 0.28
 """Inches: side of a square, between two of them, for its name above and its numbers below."""
+NOTHING = 1e-10
+"""Over the largest force in a joint, and that at the length of the machine: less is rounding."""
 HEAD, FOOT, IN_LINE, MOST_SQUARES = 0.6, 0.1, 3, 9
 """Inches of heading and foot; squares side by side, and in one picture."""
 
@@ -64,13 +68,16 @@ class Joint:
 
 
 def joints_of(analysis: Analysis) -> dict[str, Joint]:
-    """Every joint and pair of gears; of a sliding joint its couple too."""
+    """Every joint and pair of gears; of a sliding joint its couple too; rounding as zeros."""
     found, forces = {}, analysis.forces
-    for name, joint in {**forces.joints, **forces.gears}.items():
-        found[name] = Joint(_told(name, joint), joint.value)
+    every = {**forces.joints, **forces.gears}
+    largest = max((float(np.max(joint.size)) for joint in every.values()), default=0.0)
+    force, moment = NOTHING * largest, NOTHING * largest * size_of(analysis)
+    for name, joint in every.items():
+        found[name] = Joint(_told(name, joint), settled(joint.value, force))
         if isinstance(joint, SliderForce):
             told = say("{name}: couple on {on}", name=short(name), on=short(joint.on))
-            found[f"{name}.moment"] = Joint(told, joint.moment)
+            found[f"{name}.moment"] = Joint(told, settled(joint.moment, moment))
     return found
 
 
@@ -106,6 +113,8 @@ def _over_angle(analysis: Analysis) -> Iterator[Figure]:
             name_panel(axes, joint.told)
             name_y(axes, _label(joint, unit))
             mark(axes, [one], [], angles=False)
+            if not np.any(values):
+                nothing_there(axes, say("zero at every crank angle"))
         name_angles(figure, analysis)
         yield figure
 

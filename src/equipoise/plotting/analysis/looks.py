@@ -141,6 +141,20 @@ def together(analysis: Analysis) -> dict[str, Array]:
 
 def _settled(analysis: Analysis, found: dict[str, Array]) -> dict[str, Array]:
     """Zeros where nothing but rounding is left beside what each link needs."""
+    force, moment = rounding(analysis)
+    return {
+        name: settled(values, force if name == "shaking_force" else moment)
+        for name, values in found.items()
+    }
+
+
+def settled(values: Array, least: float) -> Array:
+    """Values (N,), or zeros where none is larger than what is told as rounding."""
+    return values if float(np.max(np.abs(values), initial=0.0)) > least else 0 * values
+
+
+def rounding(analysis: Analysis) -> tuple[float, float]:
+    """Force (N) and moment (N m) that are rounding beside what each link needs."""
     forces = analysis.forces
     demands = [
         demand
@@ -148,18 +162,15 @@ def _settled(analysis: Analysis, found: dict[str, Array]) -> dict[str, Array]:
         for demand in cause.values()
     ]
     force = max(float(np.max(np.abs(demand))) for demand, _ in demands)
-    size = abs(complex(*(np.ptp(part) for part in _places(analysis))))
-    moment = force * size + max(float(np.max(np.abs(demand))) for _, demand in demands)
-    least = {"shaking_force": NOTHING * force}
-    return {
-        name: values if np.max(np.abs(values)) > least.get(name, NOTHING * moment) else 0 * values
-        for name, values in found.items()
-    }
+    moment = force * size_of(analysis)
+    moment += max(float(np.max(np.abs(demand))) for _, demand in demands)
+    return NOTHING * force, NOTHING * moment
 
 
-def _places(analysis: Analysis) -> tuple[Array, Array]:
+def size_of(analysis: Analysis) -> float:
+    """Diagonal of the box that holds every point all the time, m."""
     every = np.concatenate([point.place for point in analysis.motion.points.values()])
-    return every.real, every.imag
+    return abs(complex(np.ptp(every.real), np.ptp(every.imag)))
 
 
 def each(analysis: Analysis, output: str) -> Mapping[str, Array]:

@@ -13,12 +13,12 @@ from matplotlib.path import Path
 
 from equipoise.plotting.balancing.looks import MM
 from equipoise.plotting.balancing.pieces import Mark, marks
-from equipoise.plotting.balancing.placed import Placed
+from equipoise.plotting.balancing.placed import Placed, placed_well
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.linkage import draw_sketch
 from equipoise.plotting.marks import arrow
 from equipoise.plotting.panels import Panel
-from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, heading, short
+from equipoise.plotting.style import FAINT, INK, LINES, MAIN, STRESS, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
 from equipoise.words import say, to_say
 
@@ -51,31 +51,34 @@ NAMES = {
     "move": to_say("centre of mass, from old to new"),
     "gear": to_say("pitch circles of new gears"),
     "spring": to_say("new spring"),
-    "room": to_say("room"),
+    "room": to_say("room allowed"),
 }
 
 
 def changes_figure(found: Balanced) -> Figure:
-    """The new machine at crank angle 0, with what was changed."""
-    placed = Placed(found.machine)
+    """The new machine, as far as can be with nothing on top of each other, and its changes."""
+    placed = placed_well(found.original, found.machine)
     drawn = marks(placed, found.changes, found.plan)
     panel = _panel(placed, drawn)
     figure = blank(panel.width + LEFT + RIGHT, panel.height + TOP + BOTTOM)
     drive = short(found.machine.drive.link)
     changed = any(one.kind != "room" for one in drawn)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle="0°")
+    angle = f"{shown(round(float(np.degrees(placed.crank_angle)), 2))}°"
+    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=angle)
     heading(figure, found.original.title, what, LEFT)
     axes = place(figure, LEFT, BOTTOM, panel.width, panel.height)
     panel.settle(axes)
     axes.set_xlabel(say("x in the frame, mm"))
     axes.set_ylabel(say("y in the frame, mm"))
-    there_already = placed.drawn.springs[: len(found.original.springs)]
-    draw_sketch(axes, replace(placed.drawn, springs=there_already), MM, panel.inch)
+    old = Placed(found.original).drawn
+    springs = placed.drawn.springs[: len(old.springs)]
+    circles = placed.drawn.circles[: len(old.circles)]
+    draw_sketch(axes, replace(placed.drawn, springs=springs, circles=circles), MM, panel.inch)
     for one in drawn:
         _draw(axes, one)
     _label(axes, placed, drawn, panel.inch)
-    legend(figure, _keys(drawn))
+    legend(figure, _keys(drawn, gears=bool(circles)))
     return figure
 
 
@@ -173,16 +176,23 @@ def _dots(drawn: list[Mark]) -> list[complex]:
     return [complex(z) for one in small for z in one.outline]
 
 
-def _keys(drawn: list[Mark]) -> list[Any]:
-    """What the signs are that the picture has."""
+def _keys(drawn: list[Mark], gears: bool) -> list[Any]:
+    """What the signs are that the picture has.
+
+    gears : whether there are some already.
+    """
     kinds = {one.kind for one in drawn}
     found: list[Any] = []
+    look: Any
     for kind, text in NAMES.items():
         if kind not in kinds:
             continue
         name = say(text)
-        if kind == "mass":
-            look: Any = {"facecolor": MAIN, "alpha": FILL, "linewidth": 0}
+        if kind == "mass" and all(len(one.outline) == 1 for one in drawn if one.kind == kind):
+            look = {"color": COLORS[kind], "marker": "o", "markersize": 8, "mec": "white"}
+            found.append(Line2D([], [], linestyle="none", label=name, **look))
+        elif kind == "mass":
+            look = {"facecolor": MAIN, "alpha": FILL, "linewidth": 0}
             found.append(Patch(label=name, **look))
         elif kind == "move":
             found.append(Line2D([], [], color=COLORS[kind], marker=">", label=name))
@@ -190,4 +200,7 @@ def _keys(drawn: list[Mark]) -> list[Any]:
             width = 1.6 if kind == "spring" else 0.9
             look = {"color": COLORS[kind], "linestyle": DASHES[kind], "linewidth": width}
             found.append(Line2D([], [], label=name, **look))
+    if gears:
+        look = {"color": FAINT, "linestyle": (0, (4, 2)), "linewidth": 0.9}
+        found.append(Line2D([], [], label=say("pitch circles of gears"), **look))
     return found

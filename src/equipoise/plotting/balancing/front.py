@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from equipoise.balancing.naming import objective_named
 from equipoise.balancing.problem import Problem
 from equipoise.plotting.balancing.looks import MM, grams
 from equipoise.plotting.labels import Labels
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.balancing.front import Front
+    from equipoise.mechanism.balance import Objective
 
 Array = np.ndarray[Any, Any]
 
@@ -43,8 +45,9 @@ def front_figure(found: Front) -> Figure:
     before = np.array(_before(found)) * scales
     seen = _is_near(values, before)
     _settle(axes, np.vstack([values, before]) if seen else values)
-    axes.set_xlabel(f"{short(found.first.name, 60)}, {units[0]}")
-    axes.set_ylabel(f"{short(found.second.name, 40)}, {units[1]}")
+    first, second = (_named(found, one) for one in (found.first, found.second))
+    axes.set_xlabel(f"{short(first, 60)}, {units[0]}")
+    axes.set_ylabel(f"{short(second, 46)}, {units[1]}")
     labels = Labels(axes)
     look: Any = {"color": MAIN, "markersize": 4.5, "zorder": 3}
     axes.plot(values[:, 0], values[:, 1], "o-", label=say("best machines"), **look)
@@ -56,6 +59,10 @@ def front_figure(found: Front) -> Figure:
         _far_off(axes, labels, say("as it is, far off: {places}", places=", ".join(told)))
     _ends(labels, found, values, units)
     return figure
+
+
+def _named(found: Front, one: Objective) -> str:
+    return objective_named(one, len(found.original.rows))
 
 
 def _units(found: Front) -> tuple[Array, tuple[str, str]]:

@@ -10,11 +10,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from equipoise.balancing.effects import SCALARS, VECTORS, Effects
+from equipoise.balancing.naming import objective_named
 from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
-from equipoise.plotting.style import FAINT, LINES, MAIN, short
+from equipoise.plotting.style import FAINT, LINES, MAIN
 from equipoise.plotting.vibration.panels import (
     continued,
     groups,
@@ -47,7 +48,8 @@ def orders_figures(found: Balanced) -> Iterator[Figure]:
     every = list(drawn)
     for names in groups(every, MOST_PANELS):
         what = say("Amplitude of each order") + continued(names, every)
-        what += ", " + say("all rows") if found.phasing is not None else ""
+        if len(found.original.rows) > 1:
+            what += ", " + (say("all rows") if found.phasing is not None else say("of one row"))
         speed = told_speed(found.original.drive.speed)
         what += ", " + say("before and after, at {speed}", speed=speed)
         high = ONE if len(names) == 1 else HIGH
@@ -56,7 +58,7 @@ def orders_figures(found: Balanced) -> Iterator[Figure]:
         last = max(last_order(one) for one in read.values())
         for axes, name in zip(panels, names, strict=True):
             rotation = output_of(drawn[name].output, found.original).quantity == "torque"
-            name_panel(axes, short(name, 80))
+            name_panel(axes, _named(found, drawn[name]))
             bars(axes, read[name], COLORS, rotation, last)
         name_x(figure, say("order: events in one turn of the crank"))
         legend(
@@ -64,6 +66,15 @@ def orders_figures(found: Balanced) -> Iterator[Figure]:
             [Patch(color=COLORS[when][0], linewidth=0, label=say(WHEN[when])) for when in LOOKS],
         )
         yield figure
+
+
+def _named(found: Balanced, one: Objective) -> str:
+    """An objective in words; of a vector the bars are of both components."""
+    count = len(found.original.rows) if found.phasing is not None else 1
+    told = objective_named(one, count)
+    if output_of(one.output, found.original).is_vector:
+        return say("{what}: both components together", what=told)
+    return told
 
 
 def _is_drawn(found: Balanced, objective: Objective) -> bool:

@@ -7,11 +7,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import Objective
-from equipoise.plotting.balancing.looks import LOOKS, MM, WHEN, compare, keys, name_angles, settled
+from equipoise.plotting.analysis.looks import settled
+from equipoise.plotting.balancing.looks import (
+    LOOKS,
+    MM,
+    WHEN,
+    Pair,
+    compare,
+    keys,
+    name_angles,
+    paired,
+    rounding_of,
+)
 from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import FAINT, NORMAL, SMALL, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -66,8 +78,8 @@ def phases_figure(original: Machine | None, machine: Machine) -> Figure:
         bottom = figure.get_figheight() - HEAD - (down + 1) * row + BELOW
         axes = place(figure, middle - DIAL / 2, bottom, DIAL, 2 * FACE + ABOVE)
         _dial(axes, original, machine, k)
-    shown_keys = keys() if original is not None else keys()[1:]
-    legend(figure, shown_keys)
+    hands = LOOKS if original is not None else ("after",)
+    legend(figure, [Line2D([], [], label=say(WHEN[name]), **LOOKS[name]) for name in hands])
     name_x(figure, say("from left to right of who looks forward, with their lateral places"))
     return figure
 
@@ -115,15 +127,16 @@ def together_figure(original: Machine | None, machine: Machine) -> Figure:
     else:
         what = say("Shaking force of {count} rows together, before and after, at {speed}", **told)
     figure, panels = stack(2, HIGH, machine.title, what, KEYS)
+    least, _ = rounding_of(machine)
+    pairs: list[Pair] = []
     for axes, axis in zip(panels, ("x", "y"), strict=True):
         angles, after = summed(machine, axis)
-        pair = {"after": after}
+        pairs.append({"after": settled(after, least)})
         if original is not None:
-            before = summed(original, axis)[1]
-            pair = {"before": before, "after": settled(before, after)}
-        compare(axes, angles, pair, say("along {axis}", axis=axis))
+            pairs[-1] = paired(summed(original, axis)[1], after, least)
+        compare(axes, angles, pairs[-1], say("along {axis}", axis=axis))
     name_angles(figure, machine.drive)
-    legend(figure, keys() if original is not None else keys()[1:])
+    legend(figure, keys(*pairs))
     return figure
 
 

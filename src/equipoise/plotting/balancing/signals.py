@@ -7,8 +7,24 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from equipoise.plotting.balancing.looks import LOOKS, WHEN, compare, keys, name_angles, settled
-from equipoise.plotting.hodograph import ALIKE, numbers, origin, square, told_angles
+from equipoise.plotting.balancing.looks import (
+    LOOKS,
+    Pair,
+    compare,
+    keys,
+    lines_of,
+    name_angles,
+    paired,
+    rounding_of,
+)
+from equipoise.plotting.hodograph import (
+    ALIKE,
+    nothing_there,
+    numbers,
+    origin,
+    square,
+    told_angles,
+)
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import blank, heading
 from equipoise.plotting.vibration.panels import (
@@ -28,7 +44,6 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
 
 Array = np.ndarray[Any, Any]
-Pair = dict[str, Array]
 
 HIGH, ONE = 1.75, 2.5
 """Inches: height of one of two panels, and of a single one."""
@@ -51,7 +66,8 @@ def signal_figures(found: Balanced) -> dict[str, Figure]:
     """``force``, ``polar``, ``moment`` and ``torque``, before and after."""
     columns = {name: values for name, _, values in found.columns()}
     angles = columns["crank_angle"]
-    force = {axis: _pair(columns, f"shaking_force.{axis}") for axis in ("x", "y")}
+    least_force, least_moment = rounding_of(found.original)
+    force = {axis: _pair(columns, f"shaking_force.{axis}", least_force) for axis in ("x", "y")}
     drawn = {
         "force": force_figure(found, angles, force),
         "polar": polar_figure(found, angles, force),
@@ -59,8 +75,9 @@ def signal_figures(found: Balanced) -> dict[str, Figure]:
     for name, (output, title, label) in SIGNALS.items():
         what = f"{say(title)}, {_told(found)}"
         figure, panels = stack(1, ONE, found.original.title, what, KEYS)
-        compare(panels[0], angles, _pair(columns, output), say(label), True, True)
-        drawn[name] = finish(figure, found)
+        pair = _pair(columns, output, least_moment)
+        compare(panels[0], angles, pair, say(label), True, True)
+        drawn[name] = finish(figure, found, pair)
     return drawn
 
 
@@ -71,9 +88,8 @@ def _told(found: Balanced) -> str:
     return of_one + say("before and after, at {speed}", speed=speed)
 
 
-def _pair(columns: Pair, output: str) -> Pair:
-    before, after = (columns[f"{output}.{when}"] for when in LOOKS)
-    return {"before": before, "after": settled(before, after)}
+def _pair(columns: dict[str, Array], output: str, least: float) -> Pair:
+    return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
 
 
 def force_figure(found: Balanced, angles: Array, force: dict[str, Pair]) -> Figure:
@@ -82,13 +98,13 @@ def force_figure(found: Balanced, angles: Array, force: dict[str, Pair]) -> Figu
     figure, panels = stack(2, HIGH, found.original.title, what, KEYS)
     for axes, (axis, pair) in zip(panels, force.items(), strict=True):
         compare(axes, angles, pair, say("along {axis}", axis=axis))
-    return finish(figure, found)
+    return finish(figure, found, *force.values())
 
 
-def finish(figure: Figure, found: Balanced) -> Figure:
-    """Name the x axis, and say which line is which."""
+def finish(figure: Figure, found: Balanced, *pairs: Pair) -> Figure:
+    """Name the x axis, and say which line of some pairs is which."""
     name_angles(figure, found.original.drive)
-    legend(figure, keys())
+    legend(figure, keys(*pairs))
     return figure
 
 
@@ -110,19 +126,22 @@ def polar_figure(found: Balanced, angles: Array, force: dict[str, Pair]) -> Figu
     axes.set_ylabel(say("shaking force along y, {unit}", unit=unit.name))
     origin(axes)
     _hodographs(axes, angles, ends)
-    legend(figure, keys())
+    if not any(np.any(values) for values in ends.values()):
+        nothing_there(axes, say("zero at every crank angle"))
+    legend(figure, keys(ends))
     return figure
 
 
 def _hodographs(axes: Axes, angles: Array, ends: Pair) -> None:
     labels = Labels(axes)
-    for when, values in ends.items():
+    drawn = lines_of(ends)
+    for name, (values, look) in drawn.items():
         closed = np.append(values, values[0])
-        axes.plot(closed.real, closed.imag, label=say(WHEN[when]), **LOOKS[when])
+        axes.plot(closed.real, closed.imag, label=name, **look)
         labels.avoid(closed.real, closed.imag)
     at = told_angles(angles)
-    for when in ("after", "before"):
-        if np.any(ends[when]):
-            numbers(axes, labels, at, ends[when], LOOKS[when]["color"])
+    for values, look in reversed(drawn.values()):
+        if np.any(values):
+            numbers(axes, labels, at, values, look["color"])
         apart = np.abs(ends["before"] - ends["after"])
         at = {angle: k for angle, k in at.items() if apart[k] > ALIKE * np.ptp(axes.get_xlim())}

@@ -8,13 +8,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator
 
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, LINES, shown
-from equipoise.plotting.vibration.curves import DECADES, Curve, bounded, speed_axis
+from equipoise.plotting.vibration.curves import (
+    DECADES,
+    Curve,
+    bounded,
+    fine_log,
+    speed_axis,
+)
 from equipoise.plotting.vibration.map import names_above
-from equipoise.plotting.vibration.panels import RPM, log_scale
+from equipoise.plotting.vibration.panels import RPM
 from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
@@ -25,8 +30,6 @@ Array = np.ndarray[Any, Any]
 SPEED = to_say("speed of the engine, rpm")
 ALONE = 0.1
 """Share by which the axis goes beyond a speed that stands alone."""
-FINE = ((8.0, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)), (150.0, (1.0, 2.0, 5.0)))
-"""Ratio of the ends of a log axis, up to which more numbers are told than 1 and 10, and which."""
 MOST_MODES = 24
 WORK: Any = (0, (5, 2, 1, 2))
 """Dashes of the working speed."""
@@ -57,13 +60,6 @@ def turns(speed: float) -> str:
     """A speed or frequency, rad/s, in turns a minute: four digits, and all before the point."""
     minute = speed * RPM
     return shown(minute) if minute < 1e4 else f"{minute:.0f}"
-
-
-def fine_log(axes: Axes, low: float, high: float) -> None:
-    """A log y axis with as many plain numbers as are good to read."""
-    log_scale(axes, low, high)
-    subs = next((digits for ratio, digits in FINE if high < ratio * low), (1.0,))
-    axes.yaxis.set_major_locator(LogLocator(subs=subs))
 
 
 def curve_limits(

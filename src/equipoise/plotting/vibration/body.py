@@ -8,10 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from equipoise.scene import hull
+from equipoise.mechanism.motion import move
+from equipoise.scene import Scene, hull
 from equipoise.structures.linkages import rows_of
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount, Support
     from equipoise.structures.free import FreeVibration
     from equipoise.structures.modes import Mode
@@ -29,6 +31,8 @@ SHOWN_SIZE = 0.13
 """Largest displacement drawn, over the size of the support."""
 ROUND, DIRECTIONS = 0.035, 24
 """Radius of the outline's corners over the size of the support; points of a circle."""
+ANGLES = 72
+"""In a turn, from which the size of a linkage is told."""
 PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
 
 
@@ -71,8 +75,9 @@ class Shape:
 
     @cached_property
     def size(self) -> float:
-        """Of the support, m."""
-        return float(np.linalg.norm(np.ptp(self.corners, axis=0))) or 1e-3
+        """Of the support or, where that is a point, of what moves on it; m."""
+        size = float(np.linalg.norm(np.ptp(self.corners, axis=0)))
+        return size or size_of(self.free.machine) or 1e-3
 
     @cached_property
     def motion(self) -> Array:
@@ -104,6 +109,12 @@ class Shape:
         every = np.concatenate([self.outline(view, phase) for phase in (0, *PHASES[::6])])
         low = complex(np.min(every.real), np.min(every.imag))
         return low, complex(np.max(every.real), np.max(every.imag))
+
+
+def size_of(machine: Machine) -> float:
+    """Diagonal of the box that holds every point of a linkage all the time, m."""
+    low, high = Scene.of(move(machine, ANGLES)).box
+    return abs(high - low)
 
 
 def _moved(motion: Array, arms: Array) -> Array:

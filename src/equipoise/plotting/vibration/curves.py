@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import LogLocator
 
 from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, NORMAL, SMALL, STRESS, fit, short
@@ -38,6 +39,8 @@ UNBOUNDED = 5e3
 """Over the median, what only a resonance without damping can reach."""
 DECADES = 6.0
 """Of a log axis at most."""
+FINE = ((8.0, (1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0)), (150.0, (1.0, 2.0, 5.0)))
+"""Ratio of the ends of a log axis, up to which more numbers are told than 1 and 10, and which."""
 MARKERS = 7
 ENTRY, PER_ROW, LINE = 2.02, 3, 0.19
 """Inches that a name in a legend takes; how many stand in a row; height of a row."""
@@ -231,7 +234,14 @@ def log_axis(axes: Axes, curves: Sequence[Curve]) -> None:
         return
     high = float(np.max(heard))
     low = max(float(np.min(heard)), high * 10**-DECADES)
-    log_scale(axes, low / 1.6, high * 3)
+    fine_log(axes, low / 1.6, high * 3)
+
+
+def fine_log(axes: Axes, low: float, high: float) -> None:
+    """A log y axis with as many plain numbers as are good to read."""
+    log_scale(axes, low, high)
+    subs = next((digits for ratio, digits in FINE if high < ratio * low), (1.0,))
+    axes.yaxis.set_major_locator(LogLocator(subs=subs))
 
 
 def rows_of(handles: Sequence[Any]) -> int:

@@ -32,7 +32,7 @@ Prefixed = tuple[tuple[float, str], ...]
 UNITS: dict[tuple[str, bool], Prefixed] = {
     ("displacement", False): ((1e3, "mm"), (1e6, "µm"), (1.0, "m")),
     ("velocity", False): ((1e3, "mm/s"), (1e6, "µm/s"), (1.0, "m/s")),
-    ("acceleration", False): ((1.0, "m/s²"), (1e3, "mm/s²"), (1e-3, "km/s²")),
+    ("acceleration", False): ((1.0, "m/s²"), (1e3, "mm/s²"), (1.0, "m/s²")),
     ("displacement", True): ((1e3, "mrad"), (1e6, "µrad"), (1.0, "rad")),
     ("velocity", True): ((1e3, "mrad/s"), (1e6, "µrad/s"), (1.0, "rad/s")),
     ("acceleration", True): ((1.0, "rad/s²"), (1e3, "mrad/s²"), (1.0, "rad/s²")),

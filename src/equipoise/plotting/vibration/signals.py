@@ -113,11 +113,15 @@ def drive_figure(response: Response) -> Figure:
     unit = Unit.of("force", True, [drive.torque.extreme(sign)[0] for sign in (1, -1)])
     crank_axis(panels[0], response.turns)
     signal_panel(
-        panels[0], drive.torque, unit.factor, say("drive torque, {unit}", unit=unit.name), mean=True
+        panels[0],
+        drive.torque,
+        unit.factor,
+        say("drive torque, {unit}", unit=unit.name),
+        mean=unit.name,
     )
     if drive.speed is not None:
         crank_axis(panels[1], response.turns)
-        signal_panel(panels[1], drive.speed, RPM, say("crank speed, rpm"), mean=True)
+        signal_panel(panels[1], drive.speed, RPM, say("crank speed, rpm"), mean="rpm")
         panels[1].set_title(
             say("varies by {share} % of its mean", share=shown(100 * drive.fluctuation)),
             fontsize=SMALL,
@@ -129,10 +133,8 @@ def drive_figure(response: Response) -> Figure:
     return figure
 
 
-def signal_panel(
-    axes: Axes, signal: Periodic, factor: float, label: str, mean: bool = False
-) -> None:
-    """One signal over a period; `mean` draws its mean value too."""
+def signal_panel(axes: Axes, signal: Periodic, factor: float, label: str, mean: str = "") -> None:
+    """One signal over a period; `mean`, the unit, draws its mean value too."""
     line = line_of(signal, factor)
     name_y(axes, label)
     draw(axes, [line])
@@ -141,6 +143,6 @@ def signal_panel(
         if abs(average) <= VARIES * float(np.ptp(line.values)):
             average = 0.0
         axes.axhline(average, color=LINES, linewidth=0.9, linestyle=MEAN, zorder=2)
-        text = say("dashed: mean {value}", value=shown(average))
+        text = say("dashed: mean {value} {unit}", value=shown(average), unit=mean)
         axes.set_title(text, fontsize=SMALL, loc="right", pad=3, color=LINES)
     mark(axes, [line], [])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from math import pi
+
 from equipoise.mechanism.balance import Objective
-from equipoise.report.numbers import PER_RPM, number
 from equipoise.words import say, to_say
 
+RPM = 30 / pi
 OUTPUTS = {
     "shaking_force": to_say("shaking force"),
     "shaking_force.x": to_say("shaking force x"),
@@ -46,12 +48,23 @@ def output_named(name: str, rows: int = 1) -> str:
     if first == "gauges":
         return say("gauge {name}", name=rest)
     if first == "joints":
-        what = say("force in joint {name}", name=rest)
+        what = say("force in joint {name}", name=joint_named(rest))
     elif first == "gears":
-        what = say("tooth force {name}", name=rest)
+        what = say("tooth force {name}", name=rest.replace(" to ", " → "))
     else:
         what = say(OUTPUTS[name]) if name in OUTPUTS else name
     return say("one row: {what}", what=what) if rows > 1 else what
+
+
+def body_named(name: str) -> str:
+    """A link, or the frame."""
+    return say("frame") if name == "frame" else name
+
+
+def joint_named(name: str) -> str:
+    """A joint; a slider, such as ``ram on frame``, by its link and what it slides on."""
+    link, _, on = name.partition(" on ")
+    return say("{link} on {on}", link=link, on=body_named(on)) if on else name
 
 
 def objective_named(one: Objective, rows: int = 1) -> str:
@@ -63,9 +76,9 @@ def objective_named(one: Objective, rows: int = 1) -> str:
     if one.orders:
         words.append(say("order {orders}", orders=", ".join(f"{order:g}" for order in one.orders)))
     if one.speeds:
-        speeds = ", ".join(number(speed / PER_RPM) for speed in one.speeds)
+        speeds = ", ".join(f"{speed * RPM:.4g}" for speed in one.speeds)
         words.append(say("at {speeds} rpm", speeds=speeds))
-    return ", ".join(words)
+    return say(", ").join(words)
 
 
 def unit_of(output: str, measure: str) -> str:
