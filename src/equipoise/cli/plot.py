@@ -190,8 +190,12 @@ def _map(
         numbers["drive.speed"] = quantity("--speed", speed, "angular speed")
     with naming(file), counted("machine") as progress:
         found = landscape(model, ranges, objective, numbers, progress)
-    draw(drawings(found), folder, kind)
-    print(told(found))
+    pictures = drawings(found)
+    draw(pictures, folder, kind)
+    for name in pictures:
+        print(os.path.join(folder, f"{name}.{kind}"))
+    edge = [f"; {path} is at an end of its range" for path in found.at_edge]
+    print(told(found) + "".join(edge))
 
 
 def _range(model: Model, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

@@ -65,6 +65,13 @@ class Landscape:
     start: tuple[float, float] | None
     before: float
 
+    @property
+    def at_edge(self) -> list[str]:
+        """Which of the two numbers is least at an end of its range: beyond it, it may be less."""
+        ranges = zip(self.paths, self.best, (self.x, self.y), strict=True)
+        ends = [(path, best, one[[0, -1]]) for path, best, one in ranges]
+        return [p for p, best, end in ends if np.min(np.abs(end - best)) <= CLOSE * np.ptp(end)]
+
     def to_dict(self) -> dict[str, Any]:
         """As plain values; what is NaN in `values` stays so."""
         first, second = self.paths
@@ -76,6 +83,7 @@ class Landscape:
             "over": {first: self.x, second: self.y},
             "values": self.values,
             "best": dict(zip(self.paths, self.best, strict=True)),
+            "at_edge": self.at_edge,
             "least": self.least,
             "before": self.before,
         }
@@ -118,6 +126,7 @@ def landscape(
     if missing := massless(base):
         raise MassError(missing)
     _check_output(base, of)
+    _check_weights({**given, **{path: one[-1] for path, one in zip(paths, values, strict=True)}})
     x, y = values
     points = [dict(zip(paths, pair, strict=True)) for pair in _pairs(x, y)]
     value = linear(maker, of, points) or (lambda point: value_of(maker, of, point))
@@ -173,6 +182,15 @@ def _checked(
             raise UsageError(f"{path}: got less than 0; give 0 or more")
     first, second = over
     return (first, second), values
+
+
+def _check_weights(largest: Mapping[str, float]) -> None:
+    """A counterweight without a mass changes nothing wherever it is."""
+    for path in largest:
+        weight = COUNTERWEIGHT.fullmatch(path)
+        mass = None if weight is None else f"counterweights.{weight['link']}.mass"
+        if mass is not None and not largest.get(mass):
+            raise UsageError(f'{path}: the counterweight has no mass; set {mass}, such as "1 kg"')
 
 
 def _start(

@@ -164,3 +164,23 @@ def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
         landscape(eq.load("yamashita-1"), over, RIPPLE)  # type: ignore[arg-type]
     with pytest.raises(EquipoiseError, match="this is a tool"):
         landscape(eq.Template.load("pole-saw"), over, RIPPLE)
+
+
+def test_a_counterweight_without_mass_is_no_map() -> None:
+    over = {
+        f"{WEIGHT}.radius": np.linspace(0, 0.06, 5),
+        f"{WEIGHT}.direction": np.linspace(0, 6, 5),
+    }
+    with pytest.raises(EquipoiseError, match=r"no mass; set counterweights\.crank\.mass"):
+        landscape(eq.Template.load("yamashita-1"), over, RIPPLE)
+
+
+def test_a_least_at_the_end_of_a_range_is_told() -> None:
+    assert over_counterweight().at_edge == []
+    over = {
+        f"{WEIGHT}.radius": np.linspace(0, 0.03, 5),
+        f"{WEIGHT}.direction": np.linspace(3.0, 4.0, 5),
+    }
+    model = eq.Template.load("yamashita-1")
+    found = landscape(model, over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
+    assert found.at_edge == [f"{WEIGHT}.radius"]
