@@ -190,7 +190,7 @@ export class App {
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
     if (!state.before) this.balance.hide();
-    this.board.clear(this.held);
+    this.board.clear(this.held || other);
     this.show(state, other);
   }
 
@@ -292,7 +292,10 @@ export class App {
   private step(type: "undo" | "redo"): void {
     this.talk.release();
     // What was held until now is a step of its own, which the state does not tell yet.
-    if (this.talk.busy || this.state?.[type]) this.talk.ask({ type });
+    if (!this.talk.busy && !this.state?.[type]) return;
+    this.board.say("", false);
+    this.inspector.forget();
+    this.talk.ask({ type });
   }
 
   private keep(): void {

@@ -9,6 +9,7 @@ const READING = 4000;
 export class Board {
   readonly root: HTMLElement;
   private since = 0;
+  private later = 0;
   private readonly spoken = h("p", { class: "said", role: "status", "aria-live": "polite" });
   private readonly hinted = h("p", { class: "hint", "aria-hidden": "true" });
 
@@ -42,13 +43,16 @@ export class Board {
 
   /** Something worked: take the last sentence away, but let one about a mistake be read first. */
   clear(now: boolean): void {
-    const young = performance.now() - this.since < READING;
-    if (now || !young || !this.spoken.classList.contains("bad")) this.say("", false);
+    const left = this.since + READING - performance.now();
+    if (now || left <= 0 || !this.spoken.classList.contains("bad")) this.say("", false);
+    else if (!this.later) this.later = window.setTimeout(() => this.say("", false), left);
   }
 
   /** A sentence about what was asked; `bad` where it cannot be. */
   say(text: string, bad: boolean): void {
     this.since = performance.now();
+    clearTimeout(this.later);
+    this.later = 0;
     write(this.spoken, text);
     this.spoken.classList.toggle("bad", bad && text !== "");
   }

@@ -15,16 +15,18 @@ const SPECTRA = {
   drive_torque: ["Drive torque, by order", "N m"],
 } as const;
 type Spectrum = keyof typeof SPECTRA;
+/** Of what no sum over several rows is told. */
+const OF_ONE = ", one row";
 
 export class Charts {
   readonly root: HTMLElement;
   private readonly x = new Abscissa();
   private readonly squares = h("div", { class: "squares" });
-  private readonly whose = chooser("Forces of", () => this.again());
+  private readonly whose = chooser("Forces of", () => this.chosen());
   private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
-  private readonly pathOf = chooser("Path of", () => this.again());
-  private readonly jointOf = chooser("Force in joint", () => this.again());
-  private readonly spectrumOf = chooser("Spectrum of", () => this.again());
+  private readonly pathOf = chooser("Path of", () => this.chosen());
+  private readonly jointOf = chooser("Force in joint", () => this.chosen());
+  private readonly spectrumOf = chooser("Spectrum of", () => this.chosen());
   private readonly gaugeOf = chooser("Response of", () => this.answer());
   private readonly polar = new Plane("Shaking force, polar", true, h("b", {}, "Polar force"));
   private readonly path = new Plane("Path", false, this.pathOf.label);
@@ -109,6 +111,8 @@ export class Charts {
     if (other) this.heard = null;
     if (!state.numbers.has("shaking_force") !== this.polar.root.hidden || other)
       this.arrange(state);
+    // Rows that stand still have no forces together.
+    this.whoseRow.hidden = !state.numbers.has("rows.shaking_force");
     if (other) this.offer(state);
     this.again();
   }
@@ -157,7 +161,6 @@ export class Charts {
     ]) {
       part.root.hidden = !forces;
     }
-    this.whoseRow.hidden = !state.numbers.has("rows.shaking_force");
     this.response.root.hidden = this.sweep.root.hidden = true;
     this.squares.classList.toggle("alone", !forces);
   }
@@ -175,13 +178,24 @@ export class Charts {
       ...points.map((p): [string, string] => [p, `Path of ${p}`]),
     ]);
     const joints = state.numbers.names("joint.").map((name) => name.slice(6));
-    this.jointOf.offer(joints.map((name) => [name, `Force in ${name}`]));
-    this.spectrumOf.offer(Object.entries(SPECTRA).map(([name, [label]]) => [name, label]));
+    const one = this.whoseRow.hidden ? "" : OF_ONE;
+    this.jointOf.offer(joints.map((name) => [name, `Force in ${name}${one}`]));
+    this.spectrumOf.offer(
+      Object.entries(SPECTRA).map(([name, [label]]) => [
+        name,
+        name === "shaking_force" ? label : `${label}${one}`,
+      ]),
+    );
     this.whose.offer([
       ["rows.", "Forces of all rows together"],
       ["", "Forces of one row"],
     ]);
     if (this.whoseRow.hidden) this.whose.value = "";
+  }
+
+  private chosen(): void {
+    this.again();
+    this.settle();
   }
 
   private again(): void {
@@ -211,7 +225,7 @@ export class Charts {
     const xy = [...curve(force, "x", "main", 2, 0), ...curve(force, "y", "stress", 2, 1)];
     this.force.show({ x, unit: "N", curves: xy, least });
     this.moment.show({ x, unit: "N m", curves: curve(`${rows}shaking_moment`, "", "main"), least });
-    this.torque.show({ x, unit: "N m", curves: curve("drive_torque", "", "main"), least });
+    this.torque.show({ x, unit: "N m", curves: curve(`${rows}drive_torque`, "", "main"), least });
     this.joint.show({
       x,
       unit: "N",

@@ -3,6 +3,7 @@
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
 import type { Field, State } from "./protocol";
+import { breakable } from "./quantities";
 import { Row } from "./row";
 
 /** x or y of a place. */
@@ -26,6 +27,11 @@ export class Inspector {
     const shape = state.fields.map((field) => field.path).join();
     if (shape !== this.shape) this.build(state.fields, shape);
     for (const field of state.fields) this.rows.get(field.path)?.show(field);
+  }
+
+  /** Give back every number that was typed but not taken. */
+  forget(): void {
+    for (const row of this.rows.values()) row.forget();
   }
 
   /** Open the group of a link or of the frame, and bring it into sight. */
@@ -79,7 +85,7 @@ export class Inspector {
     return h(
       "div",
       { class: "pair" },
-      h("span", { class: "name", "aria-hidden": "true" }, name),
+      h("span", { class: "name", "aria-hidden": "true" }, breakable(name)),
       one.root,
       other.root,
     );

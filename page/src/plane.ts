@@ -24,7 +24,15 @@ export interface Plot {
   least: number;
 }
 
-const EDGE = 18;
+/** Free on each side, pixels; numbers stand around a polar curve. */
+const EDGE = { polar: 26, path: 18 };
+/** Marks nearer than this are one, pixels. */
+const TOGETHER = 5;
+/** Steps of the crank from mark to mark in the polar diagram, degrees. */
+const TWELFTH = 30;
+
+/** Pixels. */
+type Spot = [x: number, y: number];
 
 /** An SVG picture, `polar` with circles and an arrow from the origin. */
 export class Plane {
@@ -45,7 +53,7 @@ export class Plane {
   private scale = 1;
   private middle: [number, number] = [0, 0];
   /** Where numbers of crank angles stand. */
-  private named: [number, number][] = [];
+  private named: Spot[] = [];
 
   constructor(
     title: string,
@@ -136,7 +144,8 @@ export class Plane {
     [x0, y0] = [Math.floor(x0 / step) * step, Math.floor(y0 / step) * step];
     [x1, y1] = [Math.ceil(x1 / step) * step, Math.ceil(y1 / step) * step];
     this.middle = [(x0 + x1) / 2, (y0 + y1) / 2];
-    const room = [Math.max(width - 2 * EDGE, 1), Math.max(height - 2 * EDGE, 1)] as const;
+    const edge = this.polar ? EDGE.polar : EDGE.path;
+    const room = [Math.max(width - 2 * edge, 1), Math.max(height - 2 * edge, 1)] as const;
     this.scale = Math.min(room[0] / Math.max(x1 - x0, 1e-12), room[1] / Math.max(y1 - y0, 1e-12));
   }
 
@@ -176,32 +185,62 @@ export class Plane {
     this.named = [];
     let d = "";
     const count = points ? points.length / 2 : 0;
+    const turns = Math.round((count / plot.every / 360) * TWELFTH);
+    const quarters: [Spot, angles: number[]][] = [];
     for (let i = 0; points && plot.every > 0 && i * plot.every < count; i++) {
       const k = Math.round(i * plot.every);
       const [x, y] = this.place(points[2 * k] as number, points[2 * k + 1] as number);
       d += `M${x.toFixed(1)} ${y.toFixed(1)}h0`;
-      if (this.polar && i % 3 === 0 && i < 12) this.crank(x, y, i * 30);
+      if (!this.polar || i % (3 * turns)) continue;
+      const near = quarters.find(([[px, py]]) => Math.hypot(px - x, py - y) < TOGETHER);
+      if (near) near[1].push(i * TWELFTH);
+      else quarters.push([[x, y], [i * TWELFTH]]);
     }
     set(this.marks, { d });
+    const curve = quarters.length ? this.sampled() : [];
+    for (const [spot, angles] of quarters) this.crank(spot, angles, curve);
   }
 
-  /** The crank angle beside its mark, away from the origin, unless another is there already. */
-  private crank(x: number, y: number, angle: number): void {
+  /** Some places along the curve "now". */
+  private sampled(): Spot[] {
+    const points = this.now() ?? new Float32Array(0);
+    const step = Math.max(Math.floor(points.length / 144), 1) * 2;
+    const found: Spot[] = [];
+    for (let i = 0; i + 1 < points.length; i += step)
+      found.push(this.place(points[i] as number, points[i + 1] as number));
+    return found;
+  }
+
+  /** Crank angles beside their mark, away from the origin and off the curve, where there is room. */
+  private crank([x, y]: Spot, angles: number[], curve: Spot[]): void {
+    const text = angles.map((angle) => `${angle}°`).join(", ");
+    const [wide, high] = [2.8 * text.length, 5];
+    const [width, height] = this.size;
     const [ox, oy] = this.place(0, 0);
     const away = Math.hypot(x - ox, y - oy) || 1;
-    const [dx, dy] = [(x - ox) / away, (y - oy) / away];
-    const [width, height] = this.size;
-    const px = Math.min(Math.max(x + dx * 16, 16), width - 16);
-    const py = Math.min(Math.max(y + dy * 12, 8), height - 8);
-    if (this.named.some(([nx, ny]) => Math.abs(nx - px) < 28 && Math.abs(ny - py) < 12)) return;
-    this.named.push([px, py]);
-    const at = {
-      class: "crank",
-      x: px.toFixed(1),
-      y: (py + 4).toFixed(1),
-      "text-anchor": "middle",
-    };
-    this.numbers.append(s("text", at, `${angle}°`));
+    let [best, most]: [Spot | null, number] = [null, -Infinity];
+    for (let turn = 0; turn < 360; turn += 22.5) {
+      const [ux, uy] = [Math.cos((turn * Math.PI) / 180), Math.sin((turn * Math.PI) / 180)];
+      const outward = (ux * (x - ox) + uy * (y - oy)) / away;
+      for (const gap of [4, 8, 13, 19]) {
+        const [px, py] = [x + ux * (gap + wide), y + uy * (gap + high)];
+        const room = Math.min(px - wide, width - px - wide, py - high, height - py - high);
+        const taken = this.named.some(
+          ([nx, ny]) => Math.abs(nx - px) < wide + 14 && Math.abs(ny - py) < 12,
+        );
+        if (room < 0 || taken) continue;
+        const free = curve.map(([cx, cy]) =>
+          Math.max(Math.abs(cx - px) - wide, Math.abs(cy - py) - high),
+        );
+        const clear = Math.min(...free, 6);
+        const rank = clear + 3 * outward - gap / 4 - (clear < 1 ? 8 : 0);
+        if (rank > most) [best, most] = [[px, py], rank];
+      }
+    }
+    if (!best) return;
+    this.named.push(best);
+    const at = { class: "crank", x: best[0].toFixed(1), y: (best[1] + 4).toFixed(1) };
+    this.numbers.append(s("text", { ...at, "text-anchor": "middle" }, text));
   }
 
   private circles(plot: Plot): void {
@@ -223,8 +262,7 @@ export class Plane {
 
   /** The direction from the origin in which numbers on circles are farthest from the curve. */
   private freest(radii: number[]): [number, number] {
-    const points = this.now() ?? new Float32Array(0);
-    const step = Math.max(Math.floor(points.length / 144), 1) * 2;
+    const curve = this.sampled();
     const [ox, oy] = this.place(0, 0);
     let best: [number, number] = [1, 0];
     let most = -Infinity;
@@ -233,8 +271,7 @@ export class Plane {
       const [r0] = radii;
       const shown = r0 !== undefined && this.inside(ox + ux * r0, oy + uy * r0);
       let least = shown ? Infinity : -1000;
-      for (let i = 0; i + 1 < points.length; i += step) {
-        const [x, y] = this.place(points[i] as number, points[i + 1] as number);
+      for (const [x, y] of curve) {
         for (const r of radii)
           least = Math.min(least, Math.hypot(ox + ux * r - x, oy + uy * r - y));
       }

@@ -12,6 +12,18 @@ const FACTORS: Record<string, number> = {
   "kg mm^2": 1e6,
 };
 
+/** A name with underscores, that may go on in a new line after each. */
+export function breakable(name: string): string {
+  return name.replace(/_/g, "_\u200b");
+}
+
+/** A sentence in which units stay with their numbers. */
+export function unbroken(sentence: string): string {
+  return sentence
+    .replace(/([\d)]) (?=(?:k?g|[cm]?m|N|J|W|deg|m?rad|rpm|s|Hz|%)(?![\w]))/g, "$1\u00a0")
+    .replace(/\b(k?g|N) (?=m)/g, "$1\u00a0");
+}
+
 /** A number with five digits and its unit: enough to read; the field in use shows it all. */
 export function compact(text: string): string {
   const found = ENTRY.exec(text);

@@ -3,6 +3,7 @@
 import { h, write } from "./dom";
 import { percent, shown } from "./format";
 import type { Balanced, Change, Figure, State } from "./protocol";
+import { unbroken } from "./quantities";
 
 interface Line {
   label: string;
@@ -22,18 +23,17 @@ export class Readings {
     const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.before]);
     if (shape !== this.shape) this.build(lines, state, shape);
     // Forces that cancel leave rounding behind.
-    const least = 1e-9 * Math.max(...state.figures.map((figure) => figure.value ?? 0));
+    const sizes = state.figures.flatMap(({ value, before }) => [value ?? 0, before ?? 0]);
+    const least = 1e-9 * Math.max(...sizes);
     for (const figure of state.figures) {
       const cell = this.cells.get(figure.name);
       if (!cell) continue;
-      write(cell.value, shown(figure.value < least ? 0 : (figure.value ?? NaN), 4));
+      const value = figure.value < least ? 0 : (figure.value ?? NaN);
+      write(cell.value, shown(value, 4));
       if (cell.before && typeof figure.before === "number") {
-        const same =
-          Math.abs(figure.value - figure.before) <= 5e-4 * Math.abs(figure.before) + least;
-        write(
-          cell.before,
-          same ? "" : `${shown(figure.before, 4)} · ${percent(figure.before, figure.value)}`,
-        );
+        const before = figure.before < least ? 0 : figure.before;
+        const same = Math.abs(value - before) <= 5e-4 * before;
+        write(cell.before, same ? "" : `${shown(before, 4)} · ${percent(before, value)}`);
       }
     }
   }
@@ -93,11 +93,6 @@ function byLine(figures: Figure[]): Map<string, Line> {
   return lines;
 }
 
-/** A unit that stays on one line. */
-function unbroken(unit: string): string {
-  return unit.replace(/ /g, "\u00a0");
-}
-
 export function capital(text: string): string {
   return text.slice(0, 1).toUpperCase() + text.slice(1);
 }
@@ -128,7 +123,7 @@ export class BalancePanel {
     const others = found.figures.filter(({ label }) => !main.some((one) => one.label === label));
     this.root.replaceChildren(
       h("h2", {}, "Balanced"),
-      h("ul", {}, ...found.changes.map((change) => h("li", {}, change))),
+      h("ul", {}, ...found.changes.map((change) => h("li", {}, unbroken(change)))),
       h(
         "div",
         { class: "buttons" },
@@ -139,7 +134,7 @@ export class BalancePanel {
       ...(others.length
         ? [h("details", {}, h("summary", {}, "All other figures"), comparison(others))]
         : []),
-      h("p", { class: "quiet" }, found.proof),
+      h("p", { class: "quiet" }, unbroken(found.proof)),
     );
     this.root.hidden = false;
     this.root.focus({ preventScroll: true });
@@ -163,7 +158,7 @@ function comparison(figures: Change[]): HTMLTableElement {
         "th",
         { scope: "row" },
         capital(label),
-        h("span", { class: "unit" }, ` ${unbroken(unit)}`),
+        h("span", { class: "unit" }, `\u00a0${unbroken(unit)}`),
       ),
       h("td", {}, shown(before, 4)),
       h("td", { class: "after" }, shown(after, 4)),

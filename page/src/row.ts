@@ -4,7 +4,7 @@ import type { Conversation } from "./conversation";
 import { fresh, h, set, write } from "./dom";
 import { Gesture } from "./gesture";
 import type { Field } from "./protocol";
-import { bare, compact, unitOf, written } from "./quantities";
+import { bare, breakable, compact, unitOf, written } from "./quantities";
 
 const STEPS = 1000;
 /** A held key pauses no longer than this between two of its events, ms. */
@@ -51,7 +51,7 @@ export class Row {
     if (slider) this.slider = this.makeSlider(`${name} slider`);
     const axis = field.path.slice(-1);
     const label = slider
-      ? h("span", { class: "name", "aria-hidden": "true" }, field.label)
+      ? h("span", { class: "name", "aria-hidden": "true" }, breakable(field.label))
       : h("span", { class: "axis", "aria-hidden": "true" }, axis);
     this.root = h(
       "div",
@@ -72,6 +72,10 @@ export class Row {
       if (!this.typing) this.complain(null);
     }
     if (this.slider && !this.gesture) this.place(this.slider);
+  }
+
+  forget(): void {
+    if (this.typing) this.revert();
   }
 
   private get focused(): boolean {

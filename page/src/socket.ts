@@ -4,6 +4,8 @@ import type { Heard, Told, Wire } from "./protocol";
 
 const FIRST_WAIT = 250;
 const LONGEST_WAIT = 4000;
+/** The server closes so where it has said why, and where it may be tried again. */
+const TRY_LATER = 1013;
 
 /** Text goes out; binary comes in: length of the header, header (JSON), padding to four, numbers. */
 export class Socket implements Wire {
@@ -41,7 +43,7 @@ export class Socket implements Wire {
     const socket = new WebSocket(this.address);
     socket.binaryType = "arraybuffer";
     socket.onopen = () => this.begin(socket);
-    socket.onclose = () => this.end();
+    socket.onclose = (event) => this.end(event.code === TRY_LATER);
     socket.onmessage = (event: MessageEvent<ArrayBuffer | string>) => this.hear(event.data);
     this.socket = socket;
   }
@@ -56,9 +58,9 @@ export class Socket implements Wire {
     for (const text of this.unsent.splice(0)) socket.send(text);
   }
 
-  private end(): void {
+  private end(told: boolean): void {
     if (this.closed) return;
-    this.tell({ type: "lost" }, []);
+    if (!told) this.tell({ type: "lost" }, []);
     setTimeout(() => !this.closed && this.open(), this.wait);
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
   }

@@ -146,7 +146,7 @@ export class Strip {
     for (const curve of this.content.curves) {
       const reading = h("span", { class: "reading" });
       this.readings.push(reading);
-      const key = h("i", { class: `key ${curve.role}` });
+      const key = h("i", { class: `key ${curve.role}${this.look.bars ? " box" : ""}` });
       this.legend.append(
         h(
           "span",
@@ -200,7 +200,8 @@ export class Strip {
         if (value < low) low = value;
         if (value > high) high = value;
       }
-      return `${curve.label} from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
+      const range = `from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
+      return `${curve.label} ${range}`.trim();
     });
     set(this.root, { "aria-label": `${this.look.title}: ${said.join("; ")}` });
   }

@@ -78,7 +78,9 @@ export class Toolbar {
   }
 
   show(state: State): void {
-    const known = [...this.examples.options].some((option) => option.value === state.name);
+    const known = [...this.examples.options].some(
+      (option) => option !== this.own && option.value === state.name,
+    );
     if (known) this.own.remove();
     else {
       this.own.textContent = state.name;

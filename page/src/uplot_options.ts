@@ -86,19 +86,42 @@ export function optionsOf(
   };
 }
 
-/** A curve, behind it what it was before: pale and dashed, or the outline of a bar. */
+/**
+ * A curve, behind it what it was before: pale and dotted, or the dashed outline of a bar.
+ *
+ * The second of two is told from the first without colour too: dashed, or hatched.
+ */
 function series(curve: Curve, look: Look, theme: Theme, i: number, count: number): uPlot.Series[] {
   const stroke = () => theme.colours[curve.role];
   const base: uPlot.Series = { stroke, width: 1.6, points: { show: false } };
   if (!look.bars) {
-    const before: uPlot.Series = { ...base, width: 1.2, dash: [3, 3], alpha: 0.65 };
-    return curve.before ? [before, base] : [base];
+    const before: uPlot.Series = { ...base, width: 1.2, dash: [1.5, 2.5], alpha: 0.65 };
+    const now = i ? { ...base, dash: [8, 4] } : base;
+    return curve.before ? [before, now] : [now];
   }
   const align = count === 1 ? 0 : i ? 1 : -1;
   const paths = uPlot.paths.bars?.({ size: [0.7 / count, 26], align });
-  const bars: uPlot.Series = { ...base, width: 0, fill: stroke, ...(paths && { paths }) };
-  const before: uPlot.Series = { ...bars, width: 1, fill: "transparent", alpha: 0.8 };
+  const shape: uPlot.Series = { ...base, width: 1, ...(paths && { paths }) };
+  const bars = { ...shape, fill: i ? (u: uPlot) => hatching(u.ctx, stroke()) : stroke };
+  const before: uPlot.Series = { ...shape, dash: [2, 2], fill: "transparent", alpha: 0.8 };
   return curve.before ? [before, bars] : [bars];
+}
+
+/** Lines across, that fill a bar. */
+function hatching(ctx: CanvasRenderingContext2D, colour: string): CanvasPattern | string {
+  const tile = document.createElement("canvas");
+  const side = Math.round(4 * devicePixelRatio);
+  tile.width = tile.height = side;
+  const pen = tile.getContext("2d");
+  if (!pen) return colour;
+  pen.strokeStyle = colour;
+  pen.lineWidth = side / 3;
+  for (const shift of [-side, 0, side]) {
+    pen.moveTo(shift - 1, side + 1);
+    pen.lineTo(shift + side + 1, -1);
+  }
+  pen.stroke();
+  return ctx.createPattern(tile, "repeat") ?? colour;
 }
 
 /** The line of zero, a little stronger than the grid. */

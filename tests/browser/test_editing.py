@@ -10,7 +10,7 @@ import pytest
 from playwright.sync_api import Page, expect
 
 import equipoise as eq
-from browser.live import Live
+from browser.live import NUMBER, Live
 
 SHOWN = 0.011
 """Places are shown to a hundredth of a millimetre."""
@@ -145,18 +145,26 @@ def test_a_slider_changes_the_speed(live: Live) -> None:
     expect(live.field("drive speed")).to_have_value(f"{after * 30 / np.pi:.5g} rpm")
 
 
-def test_a_phase_of_a_row_changes_the_force_of_all_rows(live: Live) -> None:
+def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("four-row-transplanter")
     live.type(live.page.get_by_role("textbox", name=re.compile("row 2.*phase")), "90 deg")
     expect(live.button("Undo")).to_be_enabled()
     machine = live.machine()
-    force = eq.analyze(machine, 720).forces.shaking_force
+    forces = eq.analyze(machine, 720).forces
+    force, torque = forces.shaking_force, forces.drive_torque
     ahead = [round(np.degrees(row.phase) * 2) for row in machine.rows]  # samples
     every = sum(np.roll(force.x + 1j * force.y, -samples) for samples in ahead)
     row = live.page.get_by_role("row").filter(has_text="All rows, shaking force")
     shown = [float(text) for text in row.get_by_role("cell").all_inner_texts()[:2]]
     rms, peak = np.sqrt(np.mean(np.abs(every) ** 2)), np.max(np.abs(every))
     assert shown == pytest.approx([rms, peak], rel=2e-3)
+    chart = live.page.get_by_role("figure", name=re.compile("^Drive torque: "))
+    together = sum(np.roll(torque, -samples) for samples in ahead)
+    for whose, drawn in (("rows.", together), ("", torque)):
+        live.page.get_by_role("combobox", name="Forces of").select_option(whose)
+        said = (chart.get_attribute("aria-label") or "").replace("−", "-")
+        limits = [float(text) for text in NUMBER.findall(said)]
+        assert limits == pytest.approx([drawn.min(), drawn.max()], rel=5e-3)
 
 
 def test_the_response_of_a_rig_is_shown(live: Live) -> None:

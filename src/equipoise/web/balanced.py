@@ -2,29 +2,81 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
-from math import dist, hypot, isclose
+from math import dist, isclose
+from types import MappingProxyType
 from typing import Any
 
 from equipoise.balancing.balance import balance
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
+from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
+from equipoise.balancing.phase_search import Search
+from equipoise.balancing.problem import Problem
 from equipoise.balancing.usual import usual_plan
-from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.report.changes import told
-from equipoise.report.naming import MEASURES, objective_named, output_named, scaled, unit_of
-from equipoise.web.design import Counterweight, Design, pin_of
+from equipoise.report.numbers import number
+from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
+from equipoise.web.edits import Solved
+from equipoise.web.rounding import clean
+from equipoise.web.state import figures_of
 
 Values = dict[str, Any]
 EXACT, ROUNDED = 1e-12, 1e-9
+GAIN = 1e-3
+"""Share of the aim below which less of it is nothing that anybody would build."""
 
 
-def balanced(machine: Machine) -> Balanced:
-    """By the machine's own plan, or the usual one; with its figures, and errors, of `balance`."""
-    found = balance(machine, usual_plan(machine))
-    _ = found.before, found.after
-    return found
+def balanced(base: Design) -> Balanced:
+    """By the machine's own plan, or the usual one; with the errors of `balance`.
+
+    A counterweight of which the plan is free to choose another is replaced: the plan begins
+    without it, and what was before is nevertheless the machine as it is shown.
+    """
+    plan = base.plan or usual_plan(base.machine)
+    free = _replaced(base, plan)
+    found = balance(base.without(free).machine, plan)
+    if not free:
+        return found
+    shown = base.machine.with_balance(None)
+    before = _aims_of(shown, plan)
+    aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
+    return replace(found, original=shown, objectives=aims)
+
+
+def _replaced(base: Design, plan: Balance) -> list[str]:
+    """Links that have a counterweight on the pin where the plan may add mass."""
+    return [
+        name
+        for name, weight in base.counterweights.items()
+        if weight.mass
+        and any(one.link == name and one.at == pin_of(base.own, name) for one in plan.masses)
+    ]
+
+
+def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
+    """Value of each objective, SI units, as `balance` tells it."""
+    if plan.phases is None:
+        return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
+    search = Search(machine, plan.objectives, plan.phases, plan.combine)
+    return {term.objective.name: term.told(search.present) for term in search.cost.terms}
+
+
+def nothing_gained(found: Balanced) -> str | None:
+    """The sentence that what was to become small hardly does; None where it does."""
+    shares = [
+        after / before if before else float(after > 0)
+        for before, after in found.objectives.values()
+    ]
+    plan = found.plan
+    if plan.combined(shares) < (1 - GAIN) * plan.combined([1.0] * len(shares)):
+        return None
+    rows = len(found.machine.rows)
+    aims = " and ".join(objective_named(one, rows) for one in plan.objectives)
+    return f"nothing to gain: balancing would not make {aims} smaller by {100 * GAIN:g} %"
 
 
 def balanced_design(base: Design, found: Balanced) -> Design:
@@ -32,55 +84,104 @@ def balanced_design(base: Design, found: Balanced) -> Design:
 
     base : what was balanced.
     """
-    design = base.with_machine(base.own.with_balance(found.machine.balance))
+    weights = {**base.without(_replaced(base, found.plan)).counterweights, **_weights(base, found)}
+    links, whole = {}, True
+    for name, link in found.machine.links.items():
+        own, weight = base.own.links.get(name), weights.get(name)
+        if own is not None and weight is not None:
+            own = joined(own, weight, place_of_pin(base.own, name))
+        if own is not None and _same(own, link):
+            links[name] = base.own.links[name]
+            continue
+        links[name] = link  # which has its counterweight in it
+        whole = whole and name not in {one.link for one in found.plan.masses}
+        if weight is not None:
+            weights[name] = replace(weight, mass=0.0)
+    own_machine = replace(found.machine, links=links)
+    plan = found.plan if whole and _can_be_asked_again(base, found.plan) else None
+    return Design(base.name, own_machine, MappingProxyType(weights), plan)
+
+
+def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
+    """Those point masses that were found on pins of the frame, by link."""
+    weights = {}
     for change in found.changes:
         link, values = change.link, dict(change.values)
         shapes = [piece["shape"] for piece in values.get("pieces", ())]
         known = link in base.own.links  # and no shaft that is new
         if known and shapes == ["point"] and values["at"] == pin_of(base.own, link):
-            weight = Counterweight(values["mass"], values["radius"], values["direction"])
-            design = design.with_weight(link, weight)
-    return design if _alike(design.machine, found.machine) else Design(base.name, found.machine)
+            weights[link] = Counterweight(
+                clean(values["mass"]), clean(values["radius"]), clean(values["direction"], "angle")
+            )
+    return weights
 
 
-def _alike(one: Machine, other: Machine) -> bool:
-    """Whether two machines are the same but for rounding in the masses of their links."""
-    return (
-        one.links.keys() == other.links.keys()
-        and replace(one, links=other.links) == other
-        and all(_same(link, other.links[name]) for name, link in one.links.items())
-    )
+def _can_be_asked_again(base: Design, plan: Balance) -> bool:
+    """Whether a plan was given, and adds nothing that would be added once more."""
+    given = plan in (base.plan, base.own.balance)
+    return given and not (plan.geared or plan.shafts or plan.springs)
 
 
 def _same(one: Link, other: Link) -> bool:
-    x, y = other.center_of_mass or (0.0, 0.0)
+    """Whether two links are the same but for rounding in their masses."""
+    size = max(abs(complex(*place)) for place in (*other.points.values(), _center(other)))
     numbers = ((one.mass, other.mass), (one.inertia, other.inertia))
     return (
         one.points == other.points
         and all(isclose(a or 0.0, b or 0.0, rel_tol=ROUNDED) for a, b in numbers)
-        and dist(one.center_of_mass or (0.0, 0.0), (x, y)) <= ROUNDED * hypot(x, y)
+        and dist(_center(one), _center(other)) <= ROUNDED * size
     )
 
 
-def balanced_told(found: Balanced) -> Values:
-    """What to change, aims and every figure before and after, and what is proved."""
-    before, after = found.before, found.after
-    names = [name for name in before if name in after and not name.startswith("planting.")]
+def _center(link: Link) -> tuple[float, float]:
+    return link.center_of_mass or (0.0, 0.0)
+
+
+def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
+    """What to change, aims and every figure before and after, and what is proved.
+
+    base, after : the design before and after, computed; what the page reads of these beside it is
+        told as it is read there.
+    """
+    replaced = _replaced(base.design, found.plan)
+    old, new = found.before, found.after
+    names = [name for name in old if name in new and not name.startswith("planting.")]
+    figures = {name: (old[name], new[name]) for name in names} | _read(base, after)
     return {
-        "changes": [line for change in found.changes for line in told(change)],
-        "aims": [_aim(found, one) for one in found.plan.objectives],
-        "figures": [_figure(found, name, before[name], after[name]) for name in names],
-        "proof": _proof(found),
+        "changes": [
+            *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
+            *(line for change in found.changes for line in told(change)),
+        ],
+        "aims": [_aim(found, one, figures) for one in found.plan.objectives],
+        "figures": [_figure(found, name, *figures[name]) for name in names],
+        "proof": _proof(found, bool(replaced)),
         "notes": list(found.notes),
     }
 
 
-def _aim(found: Balanced, one: Objective) -> Values:
+def _taken_off(link: str, weight: Counterweight) -> str:
+    return f"{link}: take off the counterweight of {number(1e3 * weight.mass)} g"
+
+
+def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
+    """Figures before and after as the page shows them, by name; SI units."""
+    if base.analysis.machine.drive.acceleration:  # which balancing leaves out
+        return {}
+    figures = figures_of(after.analysis, base.analysis)
+    pairs = {one["name"]: (one.get("before"), one["value"]) for one in figures}
+    return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
+
+
+def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, float]]) -> Values:
     """What was to become small."""
     factor, unit = scaled(found.units[one.name])
-    before, after = (factor * value for value in found.objectives[one.name])
-    label = objective_named(one, len(found.machine.rows))
-    return {"label": label, "unit": unit, "before": before, "after": after}
+    rows = len(found.machine.rows)
+    pair = found.objectives[one.name]
+    if not (one.about or one.orders or one.speeds):
+        name = f"{one.output}.{one.measure}"
+        pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
+    before, after = (factor * value for value in pair)
+    return {"label": objective_named(one, rows), "unit": unit, "before": before, "after": after}
 
 
 def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
@@ -96,12 +197,13 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
     return {"label": label, "unit": unit, "before": factor * before, "after": factor * after}
 
 
-def _proof(found: Balanced) -> str:
+def _proof(found: Balanced, replaced: bool) -> str:
     if found.gap is None:
         return f"Found among {found.method}; that nothing better exists is not proved of phases."
     gap = max(found.gap, EXACT)
     proved = f"proved {found.scope}".strip()
+    of = "without the counterweights that were taken off" if replaced else "before"
     return (
         f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "
-        f"{gap:.0e} of the value before."
+        f"{gap:.0e} of the value {of}."
     )

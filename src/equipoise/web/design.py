@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from cmath import phase
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, pi, sin
@@ -12,7 +12,9 @@ from types import MappingProxyType
 from equipoise.balancing.usual import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Link, Machine
+from equipoise.web.rounding import clean, clean_place
 
 
 @dataclass(frozen=True)
@@ -38,11 +40,13 @@ class Design:
 
     name : of the file or example.  own : the machine without the counterweights.
     counterweights : by link; those of mass 0 do nothing, and keep their place.
+    plan : of a machine that has been balanced, by which it is balanced again.
     """
 
     name: str
     own: Machine
     counterweights: Mapping[str, Counterweight] = field(default_factory=dict)
+    plan: Balance | None = None
 
     @cached_property
     def machine(self) -> Machine:
@@ -50,12 +54,9 @@ class Design:
         machine = self.own
         for name, weight in self.counterweights.items():
             if weight.mass:
-                link = machine.links[name]
-                place = _pin(machine, name) + weight.arm
-                mass, center, inertia = _joined(link, weight.mass, place)
-                machine = machine.with_link(
-                    name, mass=mass, center_of_mass=(center.real, center.imag), inertia=inertia
-                )
+                link = joined(machine.links[name], weight, place_of_pin(machine, name))
+                values = {"center_of_mass": link.center_of_mass, "inertia": link.inertia}
+                machine = machine.with_link(name, mass=link.mass, **values)
         return machine
 
     def weight_on(self, link: str) -> Counterweight:
@@ -79,6 +80,12 @@ class Design:
         weights = {**self.counterweights, link: weight}
         return replace(self, counterweights=MappingProxyType(weights))
 
+    def without(self, links: Iterable[str]) -> Design:
+        """The counterweights of some links without mass, in their places."""
+        bare = {name: replace(self.counterweights[name], mass=0.0) for name in links}
+        weights = {**self.counterweights, **bare}
+        return replace(self, counterweights=MappingProxyType(weights))
+
     def own_center(self, link: str, center: complex) -> complex:
         """Centre of mass that a link needs so that it lies there with its counterweight, m.
 
@@ -94,7 +101,7 @@ class Design:
             raise UsageError(
                 f"{link} has no mass but its counterweight; change that, or give the link a mass"
             )
-        return center + (center - _pin(self.own, link) - weight.arm) * (weight.mass / mass)
+        return center + (center - place_of_pin(self.own, link) - weight.arm) * (weight.mass / mass)
 
 
 def pin_of(machine: Machine, link: str) -> str | None:
@@ -102,7 +109,7 @@ def pin_of(machine: Machine, link: str) -> str | None:
     return next((name for name in machine.links[link].points if name in machine.frame), None)
 
 
-def _pin(machine: Machine, link: str) -> complex:
+def place_of_pin(machine: Machine, link: str) -> complex:
     """Place of that point in the link's axes, m."""
     name = pin_of(machine, link)
     assert name is not None
@@ -111,17 +118,27 @@ def _pin(machine: Machine, link: str) -> complex:
 
 def _opposite(machine: Machine, link: str) -> Counterweight:
     """No mass yet, as far from the pin as the link reaches, opposite to its centre of mass."""
-    body, pin = machine.links[link], _pin(machine, link)
+    body, pin = machine.links[link], place_of_pin(machine, link)
     away = pin - complex(*(body.center_of_mass or (pin.real, pin.imag)))
     return Counterweight(0.0, reach_of(machine, link), phase(away) if away else pi)
 
 
-def _joined(link: Link, mass: float, place: complex) -> tuple[float, complex, float]:
-    """Mass, centre of mass and inertia about it of a link and a point mass."""
+def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
+    """A link with a point mass on it in mass, centre of mass and inertia.
+
+    pin : from which the weight's place is told, in the link's axes, m.
+    """
     assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
-    center = complex(*link.center_of_mass)
-    whole = link.mass + mass
-    common = (link.mass * center + mass * place) / whole
+    if not weight.mass:
+        return link
+    center, place = complex(*link.center_of_mass), pin + weight.arm
+    whole = link.mass + weight.mass
+    common = (link.mass * center + weight.mass * place) / whole
     _, _, own = kernels.about(link.mass, 0.0, link.inertia, common - center)
-    _, _, added = kernels.about(mass, 0.0, 0.0, common - place)
-    return whole, common, float(own + added)
+    _, _, added = kernels.about(weight.mass, 0.0, 0.0, common - place)
+    return replace(
+        link,
+        mass=clean(whole),
+        center_of_mass=clean_place(common),
+        inertia=clean(float(own + added)),
+    )

@@ -6,12 +6,13 @@ coordinates in each link that has it, so that all other points stand still.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from equipoise.errors import EquipoiseError, MotionError, UsageError
+from equipoise.errors import EquipoiseError, ModelError, MotionError, UsageError
 from equipoise.io.units import parse
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
@@ -22,10 +23,13 @@ from equipoise.results import LEAST_ANGLES, Analysis
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Change, Drag, Setting
+from equipoise.web.rounding import clean, clean_place
 
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
 OTHER_SIDE = {"left": "right", "right": "left", "forward": "backward", "backward": "forward"}
+GIVEN = re.compile(r"^(got (?:a \w+ of )?).*?(?=;| for |, )")
+"""A value in a sentence, in SI units."""
 THERE = 1e-6
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 
@@ -86,10 +90,22 @@ def _set(design: Design, change: Setting) -> Design:
     field = fields.get(change.path)
     if field is None:
         raise UsageError(unknown(change.path, fields, "number of this machine"))
-    value = change.to
-    if isinstance(value, str):
-        value = parse(value.strip(), field.dimension)
-    return field.put(design, value)
+    if not isinstance(change.to, str):
+        return field.put(design, clean(change.to, field.dimension))
+    typed = change.to.strip()
+    value = parse(typed, field.dimension)
+    try:
+        return field.put(design, value)
+    except ModelError as error:
+        if not error.what.startswith(f"got {value:g} "):  # of another number
+            raise
+        raise ModelError(error.where, _as_typed(error.what, typed)) from error
+    except UsageError as error:
+        raise UsageError(_as_typed(str(error), typed)) from error
+
+
+def _as_typed(sentence: str, typed: str) -> str:
+    return GIVEN.sub(lambda found: f"{found[1]}{typed}", sentence)
 
 
 def _moved(base: Solved, design: Design, change: Drag) -> Design:
@@ -100,7 +116,7 @@ def _moved(base: Solved, design: Design, change: Drag) -> Design:
     _check_sample(motion, change)
     frame, links = dict(machine.frame), dict(machine.links)
     if change.name in frame:
-        frame[change.name] = (to.real, to.imag)
+        frame[change.name] = clean_place(to)
     for name, link in links.items():
         if change.name in link.points and len(link.points) > 1:
             place = _local(motion, name, change.at, to)
@@ -118,7 +134,7 @@ def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:
     _check_sample(base.motion, change)
     place = complex(*_local(base.motion, change.name, change.at, change.to))
     center = design.own_center(change.name, place)
-    moved = machine.with_link(change.name, center_of_mass=(center.real, center.imag))
+    moved = machine.with_link(change.name, center_of_mass=clean_place(center))
     return design.with_machine(moved)
 
 
@@ -135,7 +151,7 @@ def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:
     origin = motion.points[anchor].place[at]
     turned = (place - origin) * np.exp(-1j * motion.links[link].angle[at])
     x, y = machine.links[link].points[anchor]
-    return x + float(turned.real), y + float(turned.imag)
+    return clean_place(complex(x, y) + complex(turned), abs(origin))
 
 
 def _position(motion: Motion, change: Drag | None = None) -> Position:
@@ -147,9 +163,10 @@ def _position(motion: Motion, change: Drag | None = None) -> Position:
     places = {name: point.place[at] for name, point in motion.points.items()}
     if change is not None and at == change.at:
         places[change.name] = change.to
-    points = {name: (float(place.real), float(place.imag)) for name, place in places.items()}
-    angles = {name: float(link.angle[at]) for name, link in motion.links.items()}
-    return Position(float(motion.crank_angle[at]), points, angles)
+    size = extent_of(motion.machine)
+    points = {name: clean_place(complex(place), size) for name, place in places.items()}
+    angles = {name: clean(float(link.angle[at]), "angle") for name, link in motion.links.items()}
+    return Position(clean(float(motion.crank_angle[at]), "angle"), points, angles)
 
 
 def settled(found: Solved) -> Solved:
@@ -194,12 +211,12 @@ def _reaches(found: Solved, goals: Goals) -> bool:
     points = found.motion.points
     return all(
         at < len(points[name].place)
-        and abs(points[name].place[at] - to) <= THERE * _size(found.design.own)
+        and abs(points[name].place[at] - to) <= THERE * extent_of(found.design.own)
         for name, (at, to) in goals.items()
     )
 
 
-def _size(machine: Machine) -> float:
+def extent_of(machine: Machine) -> float:
     """Size of the machine as a whole, m."""
     bodies = (machine.frame, *(link.points for link in machine.links.values()))
     places = [abs(complex(*place)) for points in bodies for place in points.values()]

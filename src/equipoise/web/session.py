@@ -14,7 +14,7 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.io.files import LARGEST, printable
 from equipoise.io.models import examples, load, loads
 from equipoise.io.opening import kind_of_text, opened
-from equipoise.web.balanced import balanced, balanced_design, balanced_told
+from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
@@ -76,7 +76,10 @@ class Session:
             design = opened_example(message.text("example"))
         else:
             design = opened_text(message.text("name", "machine.toml"), message.text("text"))
-        self.open(design)
+        try:
+            self.open(design)
+        except EquipoiseError as error:
+            raise _in_file(error, design.name) from error
         yield from self._shown(message.seq)
 
     def _edit(self, message: Message) -> Iterator[Reply]:
@@ -117,14 +120,19 @@ class Session:
     def _balance(self, message: Message) -> Iterator[Reply]:
         base = self._current()
         yield Reply({"type": "busy", "seq": message.seq, "what": "balancing"})
-        found = balanced(base.design.machine)
+        found = balanced(base.design)
+        nothing = nothing_gained(found)
+        if nothing is not None:
+            yield from self._shown(message.seq, nothing)
+            return
         after = solved(balanced_design(base.design, found))
+        told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
                 raise UsageError("the machine was changed while it was balanced; balance it again")
             self._go(self._past.then(after.design, "balance"), after)
             self.before = base
-        yield Reply({"type": "balanced", "seq": message.seq, **balanced_told(found)})
+        yield Reply({"type": "balanced", "seq": message.seq, **told})
         yield from self._shown(message.seq)
 
     def _download(self, message: Message) -> Iterator[Reply]:
@@ -188,9 +196,11 @@ class Session:
         if self.before is not None and self.before.design is history.now.design:
             self.before = None  # nothing differs from itself
 
-    def _shown(self, seq: int | None) -> Iterator[Reply]:
-        """The design that is shown, and how its support is shaken."""
-        yield self._state(seq)
+    def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
+        """The design that is shown, and how its support is shaken; notes come before its own."""
+        state = self._state(seq)
+        state.content["notes"] = [*notes, *state.content["notes"]]
+        yield state
         shaken = response_of(self.shown.design.machine)
         if shaken is not None:
             content, data = shaken
@@ -211,6 +221,13 @@ def refused(seq: int | None, error: Exception) -> Reply:
     if isinstance(error, ModelError) and error.where:
         content["path"] = error.where
     return Reply(content)
+
+
+def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
+    """The same error with the name of the file in front."""
+    if isinstance(error, ModelError):
+        return error.in_file(name)
+    return UsageError(f"{name}: {error}")
 
 
 def _shortened(sentence: str) -> str:

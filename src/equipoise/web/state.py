@@ -12,11 +12,12 @@ import numpy as np
 from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.tip import surface_of
 from equipoise.results import Analysis
 from equipoise.scene import Scene
 from equipoise.signals import Periodic
-from equipoise.web.edits import Solved, movable
+from equipoise.web.edits import Solved, extent_of, movable
 
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
@@ -102,7 +103,7 @@ def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
         "scene": _scene(scene, movable(machine), _traced(scene)),
-        "figures": [*_figures(signals, old)],
+        "figures": [*_figures(signals, old, _size_of(machine))],
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
@@ -189,23 +190,51 @@ def _peak(values: Array) -> float:
 MEASURES = {"rms": ("RMS", _rms), "peak": ("peak", _peak)}
 
 
-def _figures(signals: dict[str, Array], old: dict[str, Array] | None) -> Iterator[Values]:
-    """RMS and peak of each signal, with what they were before."""
+NOTHING = 1e-12
+"""Of the largest force in the machine, and of its moment over the machine, below which a figure is
+what rounding leaves of forces that cancel."""
+
+
+def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[Values]:
+    """RMS and peak of each signal, with what they were before; 0 where that is rounding."""
+    old = None if before is None else signals_of(before)
+    return [*_figures(signals_of(analysis), old, _size_of(analysis.machine))]
+
+
+def _size_of(machine: Machine) -> float:
+    """Size of a machine with all its rows, m."""
+    rows = [abs(length) for row in machine.rows for length in (row.lateral, *row.offset)]
+    return max(extent_of(machine), *rows, 0.0)
+
+
+def _figures(
+    signals: dict[str, Array], old: dict[str, Array] | None, size: float
+) -> Iterator[Values]:
+    """The same of signals, for a machine of a size (m)."""
     parts = _with_parts(signals)
     olds, several = {} if old is None else _with_parts(old), "rows.shaking_force" in signals
+    loudest = max(
+        (_peak(values) for one in (parts, olds) for name, values in one.items() if _is_force(name)),
+        default=0.0,
+    )
     for name, (label, unit) in LABELS.items():
         if name not in parts:
             continue
         values, was = parts[name], olds.get(name)
+        least = NOTHING * loudest * (1.0 if _is_force(name) else size)
         of_one = "one row, " if several and not name.startswith("rows.") else ""
         for measure, (shown, of) in MEASURES.items():
             entry = {
                 "name": f"{name}.{measure}",
                 "label": f"{of_one}{label}, {shown}",
                 "unit": unit,
-                "value": _plain(of(values)),
+                "value": _plain(of(values), least),
             }
-            yield entry if was is None else entry | {"before": _plain(of(was))}
+            yield entry if was is None else entry | {"before": _plain(of(was), least)}
+
+
+def _is_force(name: str) -> bool:
+    return name.startswith(("shaking_force", "rows.shaking_force", "joint."))
 
 
 def _with_parts(signals: dict[str, Array]) -> dict[str, Array]:
@@ -216,9 +245,11 @@ def _with_parts(signals: dict[str, Array]) -> dict[str, Array]:
     return {**signals, "shaking_force.x": force.real, "shaking_force.y": force.imag}
 
 
-def _plain(value: float) -> float | None:
-    """A number that JSON can hold."""
-    return value if isfinite(value) else None
+def _plain(value: float, least: float) -> float | None:
+    """A number that JSON can hold; 0 below what counts."""
+    if not isfinite(value):
+        return None
+    return value if value > least else 0.0
 
 
 def _scene(scene: Scene, handles: Sequence[str], traced: Sequence[str]) -> Values:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.io.units import format_exact
 from equipoise.web.edits import movable
 from unit.web.pages import ask, edit, move, opened, refusal
 
@@ -88,7 +91,8 @@ def test_a_dragged_centre_of_mass_counts_its_counterweight() -> None:
     ("change", "told"),
     [
         ({"set": "links.crank.mass", "text": "5"}, "the unit is missing"),
-        ({"set": "links.crank.mass", "text": "-5 g"}, "a mass cannot be negative"),
+        ({"set": "links.crank.mass", "text": "-5 g"}, "got -5 g; a mass cannot be negative"),
+        ({"set": "counterweights.crank.mass", "text": "-1 lb"}, "got a mass of -1 lb; give 0"),
         ({"set": "links.krank.mass", "text": "5 g"}, "did you mean 'links.crank.mass'"),
         ({"set": "counterweights.rocker.radius", "value": -1}, "give 0 or more"),
         ({"set": "drive.speed", "value": 1e31}, "a number of usual size"),
@@ -106,6 +110,26 @@ def test_what_cannot_be_is_refused_and_changes_nothing(
     before = session.shown
     assert told in refusal(ask(session, "edit", seq=3, commit=True, edits=[change]))
     assert session.shown is before
+
+
+def test_the_model_has_no_digits_of_rounding() -> None:
+    session, before = opened("yamashita-1")
+    for step in range(1, 4):  # as a slider does: 199 g, and thousands of its range
+        edit(session, {"set": "links.crank.mass", "value": 0.199 + step * 0.346})
+    edit(session, {"set": "counterweights.crank.direction", "value": 12 * 3.141592653589793 / 180})
+    edit(session, {"set": "counterweights.crank.mass", "value": 0.1 + 0.2})
+    place = before.place("B")[120]
+    edit(session, move("B", place + 0.01 * place / abs(place), 120))
+    edit(session, move("D", before.place("D")[0] + (0.001 - 0.001j), 120))
+    assert session.shown.design.own.links["crank"].mass == 1.237
+    direction = session.shown.design.counterweights["crank"].direction
+    assert format_exact(direction, "angle") == "12 deg"
+    (model,) = ask(session, "download", kind="model")
+    text = model.buffer.decode()
+    assert 'mass = "1537 g"' in text
+    assert 'points.B = ["43.5' in text
+    assert max(len(number.replace(".", "")) for number in re.findall(r"[\d.]+", text)) <= 15
+    assert eq.loads(text) == session.shown.design.machine
 
 
 def test_newton_begins_where_the_machine_is() -> None:

@@ -13,6 +13,7 @@ from equipoise.web.session import Session
 from unit.web.pages import ask, edit, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
+STUCK = eq.dumps(eq.load("yamashita-1")).replace('"33.5 mm"', '"200 mm"')
 
 
 def test_undo_and_redo_go_through_every_step() -> None:
@@ -105,6 +106,55 @@ def test_balancing_shows_before_and_after_and_can_be_taken_back() -> None:
     assert "before.shaking_force" not in alone.content["arrays"]
 
 
+@pytest.mark.parametrize("name", ["yamashita-1", "balance-crank"])
+def test_balancing_again_replaces_the_counterweight(name: str) -> None:
+    """As heavy as if the machine had been changed first and balanced once, by the same plan."""
+    session, _ = opened(name)
+    ask(session, "balance")
+    edit(session, {"set": "links.coupler.mass", "text": "900 g"})
+    shown = edit(session, {"set": "counterweights.rocker.mass", "text": "100 g"})
+    _, told, after = ask(session, "balance")
+    once, _ = opened(name)
+    edit(once, {"set": "links.coupler.mass", "text": "900 g"})
+    edit(once, {"set": "counterweights.rocker.mass", "text": "100 g"})
+    ask(once, "balance")
+    weights = [one.shown.design.counterweights["crank"].mass for one in (session, once)]
+    assert weights[0] == pytest.approx(weights[1], rel=1e-6)
+    own = session.shown.design.own.links
+    assert own["crank"] == eq.load(name).links["crank"]
+    assert session.shown.design.counterweights["rocker"].mass == 0.1
+    assert told.content["changes"][0].startswith("crank: take off the counterweight of 1")
+    (force,) = [one for one in told.content["figures"] if one["label"] == "shaking force, RMS"]
+    table = state(after).figure("shaking_force.rms")
+    assert force["before"] == table["before"] == shown.figure("shaking_force.rms")["value"]
+    assert force["after"] == table["value"]
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "balance-crank", "four-row-transplanter"])
+def test_what_is_balanced_has_nothing_to_gain(name: str) -> None:
+    session, _ = opened(name)
+    ask(session, "balance")
+    before = session.shown
+    _, again = ask(session, "balance", seq=8)
+    assert again.content["seq"] == 8
+    assert again.content["notes"][0].startswith("nothing to gain: balancing would not make ")
+    assert session.shown is before
+    assert state(ask(session, "undo")[0]).content["redo"] == "balance"
+
+
+def test_rows_have_the_same_figures_in_the_panel_and_the_table() -> None:
+    """Peaks between the samples, and moments that are nothing but rounding before."""
+    session, _ = opened("four-row-transplanter")
+    _, told, shown = ask(session, "balance")
+    panel = {one["label"]: one for one in told.content["figures"]}
+    for name in ("shaking_force", "roll_moment"):
+        table = state(shown).figure(f"rows.{name}.peak")
+        line = panel[table["label"].replace("rows,", "rows:")]
+        assert (line["before"], line["after"]) == (table["before"], table["value"])
+    assert table["before"] == 0.0
+    assert table["value"] > 1
+
+
 def test_what_sliders_cannot_show_goes_into_the_links() -> None:
     """A sector has an inertia of its own."""
     session, _ = opened("balance-rig")
@@ -151,6 +201,7 @@ def test_downloads() -> None:
         ({"name": "b.toml", "text": "x" * 2_000_001}, "b.toml: the text is longer than 2 MB"),
         ({"name": "t.toml", "text": 'schema = 1\nshaft.length = "1 m"'}, "hand-held tool"),
         ({"name": "c.toml"}, "open: text: got nothing"),
+        ({"name": "s.toml", "text": STUCK}, "s.toml: the crank cannot turn fully"),
     ],
 )
 def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
