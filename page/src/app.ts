@@ -10,8 +10,8 @@ import { Heading } from "./heading";
 import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
 import { Player } from "./player";
-import type { Asked, FileKind, Hello, State, Wire } from "./protocol";
-import { BalancePanel, Readings } from "./readings";
+import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
+import { BalancePanel, PlantedTable, Readings } from "./readings";
 import { Board } from "./board";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
@@ -36,6 +36,7 @@ export class App {
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
+  private readonly planted = new PlantedTable();
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly transport: TransportBar;
@@ -66,7 +67,11 @@ export class App {
     this.talk = new Conversation(wire, {
       hello: (message) => this.greet(message),
       state: (state) => this.take(state),
-      response: (message, numbers) => this.charts.answered(message, numbers),
+      response: (message, numbers) => {
+        this.charts.answered(message, numbers);
+        this.add("response", message.notes);
+      },
+      planting: (message) => this.plant(message),
       refused: (message, edit) => this.refuse(message, edit),
       balanced: (message) => this.balance.show(message),
       busy: (what) => this.busy(what),
@@ -124,7 +129,7 @@ export class App {
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": "Linkage and motion" });
     stage.append(this.heading.about, this.board.root);
-    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    stage.append(this.transport.root, this.heading.notes, this.readings.root, this.planted.root);
     this.side.append(this.charts.root);
     this.aside.append(this.balance.root, this.inspector.root);
     this.root.append(
@@ -189,9 +194,22 @@ export class App {
       this.player.playing =
         state.speed !== 0 && !matchMedia("(prefers-reduced-motion: reduce)").matches;
     } else this.player.angle = angle;
+    if (other) this.heading.forget();
+    if (other || !state.planting) this.planted.hide();
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
     this.show(state, other);
+  }
+
+  private plant(planted: Planted): void {
+    this.planted.show(planted);
+    this.add("planting", planted.notes);
+  }
+
+  /** What comes after a state has notes of its own. */
+  private add(of: string, notes: string[]): void {
+    this.heading.also(of, notes);
+    if (this.state) this.heading.show(this.state);
   }
 
   /** A frame comes; tells whether another is wanted. */

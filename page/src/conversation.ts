@@ -2,12 +2,13 @@
 
 import type { Asked, Edit, Told, Wire } from "./protocol";
 import { mark } from "./frames";
-import { Numbers, type ResponseMessage, type State } from "./protocol";
+import { Numbers, type Planted, type ResponseMessage, type State } from "./protocol";
 
 export interface Events {
   hello(message: Extract<Told, { type: "hello" }>): void;
   state(state: State): void;
   response(message: ResponseMessage, numbers: Numbers): void;
+  planting(message: Planted): void;
   refused(message: string, edit: boolean): void;
   balanced(message: Extract<Told, { type: "balanced" }>): void;
   busy(what: string | null): void;
@@ -102,6 +103,8 @@ export class Conversation {
         return this.end(told.seq, null);
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
+      case "planting":
+        return this.events.planting(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);
         return this.end(told.seq, told.message);

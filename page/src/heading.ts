@@ -5,8 +5,19 @@ import type { State } from "./protocol";
 
 export class Heading {
   readonly about = h("details", { class: "about" });
-  readonly notes = h("div", { class: "notes" });
+  readonly notes = h("div", { class: "notes", role: "status" });
   private shown = "";
+  private later = new Map<string, string[]>();
+
+  /** What is told after a state, by what it is of: it stays until it is told anew. */
+  also(of: string, notes: string[]): void {
+    this.later.set(of, notes);
+  }
+
+  /** Another machine: nothing is told of it yet. */
+  forget(): void {
+    this.later.clear();
+  }
 
   show(state: State): void {
     const told = [state.name, state.title, state.description].join("\n");
@@ -18,8 +29,9 @@ export class Heading {
         h("p", {}, text),
       );
     }
-    if (this.notes.textContent !== state.notes.join("")) {
-      this.notes.replaceChildren(...state.notes.map((note) => h("p", {}, note)));
+    const notes = [...new Set([state.notes, ...this.later.values()].flat())];
+    if (this.notes.textContent !== notes.join("")) {
+      this.notes.replaceChildren(...notes.map((note) => h("p", {}, note)));
     }
   }
 }

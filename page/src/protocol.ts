@@ -69,7 +69,8 @@ export interface Figure {
   name: string;
   label: string;
   unit: string;
-  value: number;
+  /** Null where it is not finite. */
+  value: number | null;
   before?: number | null;
 }
 
@@ -109,7 +110,15 @@ export interface ResponseMessage {
   seq: number;
   gauges: Gauge[];
   arrays: Arrays;
+  notes: string[];
   sweep?: { speeds: string; own: number; of: (Gauge & { array: string })[] } | null;
+}
+
+/** Figures of a planting finger; null where they are not finite. */
+export interface Planted {
+  type: "planting";
+  figures: { name: string; label: string; unit: string; value: number | null }[];
+  notes: string[];
 }
 
 export interface Change {
@@ -127,19 +136,20 @@ export interface Balanced {
   aims: Change[];
   figures: Change[];
   proof: string;
+  notes: string[];
 }
 
 export interface Refused {
   type: "refused";
   seq: number;
   message: string;
-  path?: string | null;
 }
 
 export type Told =
   | Hello
   | StateMessage
   | ResponseMessage
+  | Planted
   | Balanced
   | Refused
   | { type: "busy"; seq?: number; what: string }

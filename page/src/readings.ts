@@ -2,7 +2,7 @@
 
 import { h, write } from "./dom";
 import { percent, shown } from "./format";
-import type { Balanced, Change, Figure, State } from "./protocol";
+import type { Balanced, Change, Figure, Planted, State } from "./protocol";
 import { unbroken } from "./quantities";
 
 interface Line {
@@ -22,16 +22,13 @@ export class Readings {
     const lines = [...byLine(state.figures).values()];
     const shape = JSON.stringify([lines.map((l) => [l.label, !!l.rms, !!l.peak]), state.before]);
     if (shape !== this.shape) this.build(lines, state, shape);
-    // Forces that cancel leave rounding behind.
-    const sizes = state.figures.flatMap(({ value, before }) => [value ?? 0, before ?? 0]);
-    const least = 1e-9 * Math.max(...sizes);
     for (const figure of state.figures) {
       const cell = this.cells.get(figure.name);
       if (!cell) continue;
-      const value = figure.value < least ? 0 : (figure.value ?? NaN);
+      const value = figure.value ?? NaN;
       write(cell.value, shown(value, 4));
       if (cell.before && typeof figure.before === "number") {
-        const before = figure.before < least ? 0 : figure.before;
+        const { before } = figure;
         const same = Math.abs(value - before) <= 5e-4 * before;
         write(cell.before, same ? "" : `${shown(before, 4)} · ${percent(before, value)}`);
       }
@@ -76,6 +73,30 @@ export class Readings {
     this.root.replaceChildren(
       h("table", {}, caption, h("thead", {}, head), h("tbody", {}, ...rows)),
     );
+  }
+}
+
+/** Figures of a planting finger; they come a little after the machine. */
+export class PlantedTable {
+  readonly root = h("div", { class: "readings planted", hidden: true });
+
+  show(planted: Planted): void {
+    const rows = planted.figures.map(({ label, unit, value }) =>
+      h(
+        "tr",
+        {},
+        h("th", { scope: "row" }, capital(label)),
+        h("td", {}, h("span", { class: "value" }, shown(value ?? NaN, 4))),
+        h("td", { class: "unit" }, unbroken(unit)),
+      ),
+    );
+    const caption = h("caption", { class: "unseen" }, "Figures of the planting finger");
+    this.root.replaceChildren(h("table", {}, caption, h("tbody", {}, ...rows)));
+    this.root.hidden = !rows.length;
+  }
+
+  hide(): void {
+    this.root.hidden = true;
   }
 }
 
@@ -134,7 +155,7 @@ export class BalancePanel {
       ...(others.length
         ? [h("details", {}, h("summary", {}, "All other figures"), comparison(others))]
         : []),
-      h("p", { class: "quiet" }, unbroken(found.proof)),
+      ...[found.proof, ...found.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
     );
     this.root.hidden = false;
     this.root.focus({ preventScroll: true });

@@ -229,7 +229,7 @@ export class Strip {
   private spacing(): number {
     const span = this.range[1] - this.range[0];
     const most = Math.max(Math.floor(this.look.height / 20), 3);
-    for (let parts = 2; parts < most; parts += 0.5) {
+    for (let parts = 2; parts <= most + 0.5; parts += 0.5) {
       const step = round(span / parts);
       if (multiples(step, ...this.range).length >= 3) return step;
     }

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from math import isfinite
 from typing import Any
 
 from equipoise.errors import EquipoiseError
@@ -10,7 +11,7 @@ from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import plant
 from equipoise.report.effects import PATH
 from equipoise.web.edits import Solved
-from equipoise.web.shaken import swept
+from equipoise.web.shaken import can_be_shaken, swept
 
 Values = dict[str, Any]
 
@@ -29,7 +30,7 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
         planted = _planted(machine)
         if not outdated():
             yield planted, b""
-    if machine.support is None or not all(link.has_mass for link in machine.links.values()):
+    if not can_be_shaken(machine):
         return
 
     def progress(done: int, total: int) -> None:
@@ -46,14 +47,15 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
 
 
 def _planted(machine: Machine) -> Values:
-    """Figures of the tip's path, or why there are none."""
+    """Figures of the tip's path, None where they are not finite, or why there are none."""
     try:
         found = plant(machine)
     except EquipoiseError as error:
         return {"type": "planting", "figures": [], "notes": [str(error)]}
     figures = [
-        {"name": name, "label": label, "unit": unit, "value": factor * found.figures[name]}
+        {"name": name, "label": label, "unit": unit, "value": value if isfinite(value) else None}
         for name, label, factor, unit in PATH
         if name in found.figures
+        for value in [factor * float(found.figures[name])]
     ]
     return {"type": "planting", "figures": figures, "notes": list(found.notes)}

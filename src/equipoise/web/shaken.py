@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import EquipoiseError
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.structures.forced import respond
 from equipoise.structures.response import Response
@@ -21,12 +22,17 @@ SAMPLES = 360
 """In a turn."""
 
 
+def can_be_shaken(machine: Machine) -> bool:
+    """Whether there is a support, and masses that shake it."""
+    return machine.support is not None and not massless(machine)
+
+
 def response_of(machine: Machine) -> tuple[Values, bytes] | None:
     """What the gauges read over a turn at the machine's speed; None where nothing can be shaken.
 
     Where there is no steady state, no gauges and a note that says so.
     """
-    if machine.support is None or not all(link.has_mass for link in machine.links.values()):
+    if not can_be_shaken(machine):
         return None
     block = Block()
     try:

@@ -116,8 +116,7 @@ def polar_figure(found: Balanced, angles: Array, force: dict[str, Pair]) -> Figu
     unit = Unit.of("force", False, np.concatenate([*force["x"].values(), *force["y"].values()]))
     ends = {when: unit.factor * (force["x"][when] + 1j * force["y"][when]) for when in LOOKS}
     figure = blank(SQUARE + LEFT + RIGHT, SQUARE + TOP + BOTTOM)
-    what = f"{say('Shaking force')}; {say('numbers: crank angle, deg')}"
-    what += f"; {say('one row')}" if len(found.original.rows) > 1 else ""
+    what = f"{say('Shaking force')}, {_told(found)}; {say('numbers: crank angle, deg')}"
     heading(figure, found.original.title, what, LEFT)
     axes = place(figure, LEFT, BOTTOM, SQUARE, SQUARE)
     square(np.concatenate([*ends.values()]), SQUARE).settle(axes)
