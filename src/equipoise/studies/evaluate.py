@@ -38,7 +38,7 @@ class Evaluator(Protocol):
 
 
 class Quick(Protocol):
-    """Figures (P, m) and reasons (P,) of designs (P, d): `codegen.batch.Batch` or `codegen.gram.MassBatch`."""
+    """Figures (P, m) and reasons (P,) of designs (P, d), as `Batch` and `MassBatch` give."""
 
     def __call__(self, values: Array) -> tuple[Array, Array]: ...
 
