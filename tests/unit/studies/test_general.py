@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.io.template import Template
 from equipoise.results.analysis import columns, unit_of
 from equipoise.studies.asking import check_outputs

@@ -14,8 +14,8 @@ import pytest
 import xarray
 import zarr
 
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.quantities.units import KINDS
 from equipoise.studies.making import create, versions
 from equipoise.studies.sampling import samples

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.fused.batch import Batch
-from equipoise.fused.emit import can_emit
-from equipoise.fused.figures import Figure
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_emit
+from equipoise.codegen.figures import Figure
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Machine
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of

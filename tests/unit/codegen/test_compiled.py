@@ -17,14 +17,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.fused import compiled, support, unfused
-from equipoise.fused.batch import Batch
-from equipoise.fused.compiled import NOTICE, engine, run
-from equipoise.fused.emit import emit
-from equipoise.fused.figures import Gathered
-from equipoise.fused.grid import all_angles, grid_of
-from equipoise.fused.source import Source
-from equipoise.fused.table import table_of
+from equipoise.codegen import backends
+from equipoise.codegen.backends import NOTICE, engine, run_loop
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.emit import emit
+from equipoise.codegen.figures import Gathered
+from equipoise.codegen.source import Source
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
@@ -44,7 +43,7 @@ def source_of(base: Machine, *signals: str) -> Source:
 def tables_of(base: Machine, source: Source, count: int, share: float = 0.02) -> Array:
     numbers = numbers_of(base, share)
     values = drawn(numbers, count, 1)
-    designs = table_of(source, assemble(base), paths_of(numbers), values)
+    designs = designs_of(source, assemble(base), paths_of(numbers), values)
     assert not designs.refused.any()
     return designs.table
 
@@ -65,9 +64,9 @@ def test_numpy_gathers_the_same(base: Machine, signals: tuple[str, ...], turns: 
     assert assemble(base).cycle.turns == turns
     source = source_of(base, *signals)
     table, grid = tables_of(base, source, 30), grid_of(source, all_angles(90, turns))
-    got = run(source, table, grid)
+    got = run_loop(source, table, grid)
     with tempfile.TemporaryDirectory() as folder, by_numpy(Path(folder)):
-        told = run(source, table, grid)
+        told = run_loop(source, table, grid)
     own = len(set(source.watched))
     weakest, compiled = (
         f[:, source.weakest][:, :own].min(axis=1, initial=1.0) for f in (told, got)
@@ -85,17 +84,17 @@ def test_numpy_takes_designs_in_pieces(tmp_path: Path, monkeypatch: pytest.Monke
     source = source_of(every_dyad(), "shaking_force")
     table, grid = tables_of(every_dyad(), source, 9), grid_of(source, all_angles(30, 2))
     with by_numpy(tmp_path):
-        whole = run(source, table, grid)
+        whole = run_loop(source, table, grid)
         for size in (1, 100, 240):
-            monkeypatch.setattr(unfused, "AT_A_TIME", size)
-            assert np.array_equal(run(source, table, grid), whole, equal_nan=True)
+            monkeypatch.setattr(backends, "AT_A_TIME", size)
+            assert np.array_equal(run_loop(source, table, grid), whole, equal_nan=True)
 
 
 def test_angles_and_rotations_without_calls() -> None:
     """The polynomials are exact as far as a link may be from where that of the base is."""
     import numba
 
-    known = support.compiled()
+    known = backends.compiled_functions()
     angle_of, rotation = known["angle_of"], known["rotation"]
 
     @numba.njit
@@ -114,21 +113,21 @@ def test_angles_and_rotations_without_calls() -> None:
 
 @pytest.fixture
 def without_numba(monkeypatch: pytest.MonkeyPatch) -> None:
-    found = compiled.importlib.util.find_spec
+    found = backends.importlib.util.find_spec
 
     def find_spec(name: str, package: str | None = None) -> Any:
         return None if name == "numba" else found(name, package)
 
-    monkeypatch.setattr(compiled.importlib.util, "find_spec", find_spec)
-    monkeypatch.setattr(compiled, "engine", cache(engine.__wrapped__))
-    monkeypatch.setattr(compiled, "_loop_of", cache(compiled._loop_of.__wrapped__))
+    monkeypatch.setattr(backends.importlib.util, "find_spec", find_spec)
+    monkeypatch.setattr(backends, "engine", cache(engine.__wrapped__))
+    monkeypatch.setattr(backends, "_loop_of", cache(backends._loop_of.__wrapped__))
 
 
 def test_missing_numba_is_told_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, without_numba: None,
     capsys: pytest.CaptureFixture[str],
 ) -> None:  # fmt: skip
-    monkeypatch.setenv(compiled.FOLDER, str(tmp_path))
+    monkeypatch.setenv(backends.FOLDER, str(tmp_path))
     with ThreadPoolExecutor(4) as pool:
         batches = list(pool.map(lambda _: Batch(CRANK, ["drive.speed"], WANTED), range(4)))
         list(pool.map(lambda batch: batch(np.ones((3, 1))), batches))
@@ -151,8 +150,8 @@ def test_numba_is_no_news(capsys: pytest.CaptureFixture[str]) -> None:
 def fresh(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
     """An empty folder for loops; none is known yet in this process."""
     folder = tmp_path / "some" / "loops"
-    monkeypatch.setenv(compiled.FOLDER, str(folder))
-    monkeypatch.setattr(compiled, "_loop_of", cache(compiled._loop_of.__wrapped__))
+    monkeypatch.setenv(backends.FOLDER, str(folder))
+    monkeypatch.setattr(backends, "_loop_of", cache(backends._loop_of.__wrapped__))
     before = set(sys.modules)
     yield folder
     for name in set(sys.modules) - before:
@@ -176,8 +175,8 @@ def test_file_is_written_once(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
     monkeypatch.setattr(os, "replace", moved)
     text = source_of(CRANK, "points.B.x").text
-    path = compiled._file_of(text)
-    assert compiled._file_of(text) == path
+    path = backends._file_of(text)
+    assert backends._file_of(text) == path
     assert [(old.parent, new) for old, new in moves] == [(path.parent, path)]
     assert path.parent == fresh
     assert path.read_text(encoding="utf-8") == text
@@ -185,17 +184,17 @@ def test_file_is_written_once(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_names_tell_content_and_kernels(fresh: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = compiled._file_of("a = 1\n")
-    other = compiled._file_of("a = 2\n")
+    one = backends._file_of("a = 1\n")
+    other = backends._file_of("a = 2\n")
     assert one != other
-    told = compiled.inspect.getsource
+    told = backends.inspect.getsource
 
     def changed(what: Any) -> str:
         text: str = told(what)
         return text.replace("0.5", "0.25") if what is kernels else text
 
-    monkeypatch.setattr(compiled.inspect, "getsource", changed)
-    assert compiled._file_of("a = 1\n") not in (one, other)
+    monkeypatch.setattr(backends.inspect, "getsource", changed)
+    assert backends._file_of("a = 1\n") not in (one, other)
     assert len(written(fresh)) == 3
 
 
@@ -205,8 +204,8 @@ def test_no_folders_are_left_behind(
     elsewhere = tmp_path / "temporary"
     elsewhere.mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(elsewhere))
-    compiled._file_of("a = 1\n")
-    compiled._file_of("a = 1\n")
+    backends._file_of("a = 1\n")
+    backends._file_of("a = 1\n")
     assert not list(elsewhere.iterdir())
 
 
@@ -224,7 +223,7 @@ def below_a_file(tmp_path: Path) -> Path:
 def test_folder_that_cannot_be(
     place: Callable[[Path], Path], fresh: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(compiled.FOLDER, str(place(tmp_path)))
+    monkeypatch.setenv(backends.FOLDER, str(place(tmp_path)))
     figures, reasons = Batch(CRANK, ["drive.speed"], WANTED, angles=8)(np.ones((2, 1)))
     assert figures == pytest.approx(np.full((2, 1), 0.5**0.5))
     assert not reasons.any()
@@ -240,7 +239,7 @@ def test_folder_that_is_full_or_read_only(fresh: Path, monkeypatch: pytest.Monke
 
     make = tempfile.mkstemp
     monkeypatch.setattr(tempfile, "mkstemp", refuse)
-    path = compiled._file_of("a = 1\n")
+    path = backends._file_of("a = 1\n")
     assert path.parent != fresh
     assert path.read_text(encoding="utf-8") == "a = 1\n"
 
@@ -269,8 +268,8 @@ SCRIPT = """
 import sys
 import numpy as np
 import equipoise as eq
-from equipoise.fused.batch import Batch
-from equipoise.fused.figures import Figure
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
 
 links = {"crank": eq.Link({"A": (0.0, 0.0), "B": (1.0, 0.0)})}
 crank = eq.Machine("crank", eq.Drive("crank", 3.0), {"A": (0.0, 0.0)}, links)
@@ -282,7 +281,7 @@ print(batch(np.array([[1.0], [2.0]]))[0].tobytes().hex())
 
 def started(folder: Path) -> subprocess.Popen[str]:
     pipes: dict[str, Any] = dict.fromkeys(("stdin", "stdout", "stderr"), subprocess.PIPE)
-    environment = {**os.environ, compiled.FOLDER: str(folder)}
+    environment = {**os.environ, backends.FOLDER: str(folder)}
     return subprocess.Popen([sys.executable, "-c", SCRIPT], text=True, env=environment, **pipes)
 
 
@@ -317,7 +316,7 @@ def test_threads_that_ask_at_once(fresh: Path) -> None:
 
     with ThreadPoolExecutor(6) as pool:
         answers = list(pool.map(ask, range(12)))
-    assert compiled._loop_of.cache_info().misses == 1
+    assert backends._loop_of.cache_info().misses == 1
     assert all(answer.tobytes() == answers[0].tobytes() for answer in answers)
     assert answers[0][:, 0] == pytest.approx(values[:, 0] * 0.5**0.5)
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.fused.figures import Gathered
+from equipoise.codegen.figures import Gathered
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
 
@@ -147,7 +147,7 @@ class Sheet:
         self.lines.append(f"{names}{comma} = {kernel}({', '.join(arguments)})")
 
 
-def written(
+def source_of(
     sheet: Sheet, signals: Sequence[str], numbers: Mapping[str, int], gathered: Gathered
 ) -> Source:
     """Put ``state`` and ``loop`` around the lines.
@@ -159,7 +159,7 @@ def written(
     results = [*signals, *numbers, *sheet.running.values()]
     text = "\n".join(
         [
-            '"""Written out by equipoise.fused from the steps of a linkage."""',
+            '"""Written out by equipoise.codegen from the steps of a linkage."""',
             "",
             "",
             f"def state({', '.join(arguments)}):",

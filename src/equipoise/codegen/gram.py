@@ -15,9 +15,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from equipoise.codegen.figures import MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
-from equipoise.fused.figures import Figure
-from equipoise.fused.reasons import MOST_ANGLES, NO_MACHINE, NOT_STILL
 from equipoise.mechanism.columns import massive_link, with_columns, wrong
 from equipoise.mechanism.dynamics import Forces, SliderForce, forces
 from equipoise.mechanism.linkage import assemble

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import GATHERED, PLACES, Figure, figure_of
 from equipoise.errors import ChangePointError, RangeError, UsageError
-from equipoise.fused.batch import Batch
-from equipoise.fused.figures import GATHERED, PLACES, Figure, figure_of
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Load, Machine, Slider
 from support.batches import by_numpy, known_of, wanted_of

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.motion import Find, Writer, write_step
 from equipoise.errors import MassError
-from equipoise.fused.motion import Find, Written, write_step
 from equipoise.mechanism.builder import demand_names, planar
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
@@ -20,7 +20,7 @@ Held = tuple[str, str, str]
 """Link, and identifiers of force and moment that hold something against it."""
 
 
-def write_demands(writer: Written) -> None:
+def write_demands(writer: Writer) -> None:
     """Write what moves every link and what holds its weight, loads and springs.
 
     Then what the frame and the drive get, while the demands are still those of the links alone:
@@ -47,11 +47,11 @@ def write_demands(writer: Written) -> None:
     _write_drive_torque(writer)
 
 
-def _names(writer: Written, cause: str, link: str) -> tuple[str, str]:
+def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
     return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
 
 
-def _write_inertia(writer: Written) -> None:
+def _write_inertia(writer: Writer) -> None:
     sheet = writer.sheet
     speed, acceleration = writer.rate("speed"), writer.rate("acceleration")
     gravity = sheet.slot("gravity", lambda found: planar(found.machine.gravity), vector=True)
@@ -67,12 +67,12 @@ def _write_inertia(writer: Written) -> None:
         sheet.call("weight_demand", [turn, mass, moment, gravity], (f"FW({link})", f"MW({link})"))
 
 
-def _inertia(link: str, writer: Written, place: int) -> Find:
+def _inertia(link: str, writer: Writer, place: int) -> Find:
     anchor = writer.linkage.anchors[link]
     return lambda found: inertia_about(found.machine.links[link], anchor)[place]
 
 
-def _write_loads(writer: Written) -> Iterator[Held]:
+def _write_loads(writer: Writer) -> Iterator[Held]:
     for number, load in enumerate(writer.machine.loads, 1):
         x, y, torque = (
             writer.sheet.row(f"load {number} {key}", _load(load, key))
@@ -90,7 +90,7 @@ def _load(load: Load, key: str) -> Callable[[Array], Array]:
     return values
 
 
-def _write_springs(writer: Written) -> Iterator[Held]:
+def _write_springs(writer: Writer) -> Iterator[Held]:
     sheet = writer.sheet
     for number, spring in enumerate(writer.machine.springs):
         place, *_ = writer.point(spring.link, spring.point)
@@ -108,7 +108,7 @@ def _of_spring(number: int, key: str) -> Find:
 
 
 def _write_held(
-    writer: Written, link: str, point: str | None, force: str, torque: str, cause: str
+    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
 ) -> Held:
     """Write what holds a force at a point of a link, and a torque on it."""
     anchor = writer.body(link)[0]
@@ -118,7 +118,7 @@ def _write_held(
     return link, *_names(writer, cause, link)
 
 
-def _write_frame(writer: Written, what: str, demands: list[Held]) -> None:
+def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:
     """Write force and moment, about the drive's pivot, that these demands exert on the frame."""
     pivot = writer.name(f"p({writer.linkage.pivot})")
     forces = " + ".join(force for _, force, _ in demands)
@@ -130,7 +130,7 @@ def _write_frame(writer: Written, what: str, demands: list[Held]) -> None:
     writer.sheet.put(f"{what} moment", f"-({moments})")
 
 
-def _write_drive_torque(writer: Written) -> None:
+def _write_drive_torque(writer: Writer) -> None:
     terms = []
     for link in writer.machine.links:
         _, p1, _, _, w, _ = writer.body(link)
@@ -139,7 +139,7 @@ def _write_drive_torque(writer: Written) -> None:
     writer.sheet.put("drive torque", " + ".join(terms))
 
 
-def write_joints(writer: Written) -> None:
+def write_joints(writer: Writer) -> None:
     """Write the pass from demands to the force in every joint."""
     drive = writer.machine.drive.link
     for name, nothing in zip(demand_names(FRAME), ("0j", "0.0"), strict=True):

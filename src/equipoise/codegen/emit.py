@@ -1,13 +1,23 @@
-"""Signals of an analysis, by their names in its output, as expressions of what has been written."""
+"""From a linkage and signals to source: every step becomes a line, every signal an expression.
+
+Signals go by their names in the output of an analysis.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
-from equipoise.errors import UsageError
-from equipoise.fused.motion import Written
+from equipoise.codegen.figures import Figure, Gathered
+from equipoise.codegen.forces import write_demands, write_joints
+from equipoise.codegen.motion import Writer, write_motion
+from equipoise.codegen.source import Source, source_of
+from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.columns import can_vary
+from equipoise.mechanism.linkage import Linkage, assemble
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import Call, Rotation, RunningAngle
 
 FRAME_SIGNALS = {
     "shaking_force.x": "{shaking force}.real",
@@ -34,7 +44,7 @@ def needs_forces(signal: str) -> bool:
     return signal in FRAME_SIGNALS or needs_joints(signal)
 
 
-def expression(writer: Written, signal: str) -> str:
+def expression(writer: Writer, signal: str) -> str:
     """A signal as an expression.
 
     Raises
@@ -58,13 +68,13 @@ def expression(writer: Written, signal: str) -> str:
     return found
 
 
-def _known(writer: Written) -> Sequence[str]:
+def _known(writer: Writer) -> Sequence[str]:
     named = writer.linkage.named_reactions
     joints = [f"{'gears' if r.kind == 'gear' else 'joints'}.{name}" for name, r in named]
     return [*FRAME_SIGNALS, *joints]
 
 
-def _joint(writer: Written, name: str) -> str | None:
+def _joint(writer: Writer, name: str) -> str | None:
     reactions = dict(writer.linkage.named_reactions)
     if name in reactions:
         return f"length({writer.name(reactions[name].force)})"
@@ -84,13 +94,13 @@ def _joint(writer: Written, name: str) -> str | None:
     return None
 
 
-def _sign(writer: Written, reaction: Reaction) -> float:
+def _sign(writer: Writer, reaction: Reaction) -> float:
     """A joint's force is told on the later of its bodies, a gear's on the driven one."""
     order = writer.linkage.joints.bodies.index
     return 1.0 if reaction.kind == "gear" or order(reaction.on) > order(reaction.by) else -1.0
 
 
-def _point(writer: Written, name: str, part: str) -> str | None:
+def _point(writer: Writer, name: str, part: str) -> str | None:
     if part not in OF_POINTS:
         return None
     if name in writer.points:
@@ -104,16 +114,55 @@ def _point(writer: Written, name: str, part: str) -> str | None:
     return f"({_in_time(writer, values, times)}).{'real' if part[-1] == 'x' else 'imag'}"
 
 
-def _link(writer: Written, name: str, part: str) -> str | None:
+def _link(writer: Writer, name: str, part: str) -> str | None:
     if part not in OF_LINKS or name not in writer.machine.links:
         return None
     return _in_time(writer, writer.body(name)[3:], 1 + OF_LINKS.index(part))
 
 
-def _in_time(writer: Written, values: Sequence[str], times: int) -> str:
+def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
     """A value, or its first or second derivative by time, from those by crank angle."""
     speed, acceleration = writer.rate("speed"), writer.rate("acceleration")
     value, first, second = values
     if times < 2:
         return (value, f"{first} * {speed}")[times]
     return f"{second} * {speed} * {speed} + {first} * {acceleration}"
+
+
+def can_emit(linkage: Linkage) -> bool:
+    """Whether the steps of a linkage can be written out: no group of loops, no soil."""
+    machine = linkage.machine
+    soil = machine.planting is not None and machine.planting.soil is not None
+    return not soil and all(isinstance(s, Call | RunningAngle | Rotation) for s in linkage.motion)
+
+
+def emit(linkage: Linkage, gathered: Gathered) -> Source:
+    """Write out the steps of a linkage, with the signals that are gathered.
+
+    Raises
+    ------
+    UsageError : there is no such signal, or a loop cannot have it or this linkage.
+    MassError : it needs masses, and the machine lacks some.
+    """
+    if not can_emit(linkage):
+        raise UsageError("groups of loops, and fingers in soil, cannot be computed in a loop")
+    writer = Writer(linkage)
+    write_motion(writer)
+    if any(map(needs_forces, gathered.signals)):
+        write_demands(writer)
+    if any(map(needs_joints, gathered.signals)):
+        write_joints(writer)
+    signals = [writer.sheet.put(f"signal {s}", expression(writer, s)) for s in gathered.signals]
+    return source_of(writer.sheet, signals, writer.numbers(), gathered)
+
+
+def can_compute(machine: Machine, paths: Sequence[str], figure: Figure) -> bool:
+    """Whether a loop can compute a figure of designs in which these numbers vary."""
+    linkage = assemble(machine)
+    if not can_emit(linkage) or not all(can_vary(machine, path) for path in paths):
+        return False
+    try:
+        emit(linkage, Gathered.of([figure]))
+    except (UsageError, MassError):
+        return False
+    return True

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_emit, emit
+from equipoise.codegen.figures import Figure, Gathered
+from equipoise.codegen.source import RESERVED, Sheet, Source
 from equipoise.errors import MassError, UsageError
-from equipoise.fused.batch import Batch
-from equipoise.fused.emit import can_emit, emit
-from equipoise.fused.figures import Figure, Gathered
-from equipoise.fused.source import RESERVED, Sheet, Source
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Machine

@@ -11,12 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.errors import UsageError
-from equipoise.fused.compiled import run
-from equipoise.fused.emit import emit
-from equipoise.fused.figures import PLACES, Figure, Gathered
-from equipoise.fused.grid import all_angles, between, grid_of
-from equipoise.fused.reasons import (
+from equipoise.codegen.backends import run_loop
+from equipoise.codegen.designs import (
+    Designs,
+    all_angles,
+    angles_between,
+    designs_of,
+    grid_of,
+    has_steps,
+)
+from equipoise.codegen.emit import emit
+from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
     MOST_ANGLES,
@@ -25,9 +30,11 @@ from equipoise.fused.reasons import (
     NO_MACHINE,
     NOT_COMPUTED,
     NOT_STILL,
+    PLACES,
+    Figure,
+    Gathered,
 )
-from equipoise.fused.sizes import has_steps
-from equipoise.fused.table import Designs, table_of
+from equipoise.errors import UsageError
 from equipoise.mechanism import cycle
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
@@ -103,7 +110,7 @@ class Batch:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
         values = np.ascontiguousarray(values, dtype=float)
         with np.errstate(all="ignore"):  # a design that fails is told by its reason
-            designs = table_of(self.source, self.base, self.paths, values)
+            designs = designs_of(self.source, self.base, self.paths, values)
             figures, reason = self._settled(designs)
         reason[designs.refused] = NO_MACHINE
         figures[reason != COMPUTED] = np.nan
@@ -147,14 +154,16 @@ class Batch:
         """Run the loop, on several threads where that is worth it; it lets them run beside."""
         parts = min(self.threads, 1 + len(table) * grid.shape[1] // AT_ONCE)
         if parts == 1:
-            return run(self.source, table, grid)
+            return run_loop(self.source, table, grid)
         with ThreadPoolExecutor(parts) as pool:
-            done = pool.map(lambda part: run(self.source, part, grid), np.array_split(table, parts))
+            done = pool.map(
+                lambda part: run_loop(self.source, part, grid), np.array_split(table, parts)
+            )
         return np.concatenate(list(done))
 
     def _doubled(self, table: Array, found: Array, count: int) -> Array:
         """What is gathered at twice as many angles, of which only the new ones are computed."""
-        more = self._at(table, between(count, self.turns))
+        more = self._at(table, angles_between(count, self.turns))
         both = self.gathered.joined(found, more)
         for place, ways in (
             (self.source.weakest, np.minimum),

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.fused.source import Sheet
+from equipoise.codegen.source import Sheet
 from equipoise.mechanism import kernels
 from equipoise.mechanism.builder import planar, size_of_bodies
 from equipoise.mechanism.linkage import Linkage
@@ -18,7 +18,7 @@ from equipoise.mechanism.steps import Call, Rotation, RunningAngle, Step, p, u
 Find = Callable[[Linkage], Any]
 
 
-class Written:
+class Writer:
     """What has been written of a linkage so far.
 
     counted : whether angles of links are counted on from crank angle to crank angle, because a
@@ -77,7 +77,7 @@ class Written:
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
 
 
-def write_motion(writer: Written) -> None:
+def write_motion(writer: Writer) -> None:
     """Write the steps from the crank angle to every link."""
     sheet, drive = writer.sheet, writer.machine.drive.link
     for name in writer.machine.frame:
@@ -102,7 +102,7 @@ def _nth_of_motion(number: int) -> Find:
     return lambda found: found.motion[number]
 
 
-def write_step(writer: Written, step: Step, here: Find) -> None:
+def write_step(writer: Writer, step: Step, here: Find) -> None:
     """Write a step; `here` finds it in the linkage of other designs."""
     sheet = writer.sheet
     if isinstance(step, RunningAngle):
@@ -117,7 +117,7 @@ def write_step(writer: Written, step: Step, here: Find) -> None:
             _write_call(writer, step, here)
 
 
-def _write_running_angle(writer: Written, link: str) -> None:
+def _write_running_angle(writer: Writer, link: str) -> None:
     """The angle of a link that a dyad moves: that of the base, and what lies between them.
 
     Nothing is counted on from crank angle to crank angle, which would keep the loop from handling
@@ -132,7 +132,7 @@ def _write_running_angle(writer: Written, link: str) -> None:
     sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
 
 
-def _write_call(writer: Written, step: Call, here: Find) -> None:
+def _write_call(writer: Writer, step: Call, here: Find) -> None:
     kernel = step.kernel.__name__
     arguments = [writer.name(name) for name in step.inputs]
     known = list(inspect.signature(step.kernel).parameters)[len(arguments) :]
@@ -156,7 +156,7 @@ def _parameter(here: Find, place: int) -> Find:
 # -- gears -----------------------------------------------------------------------------------------
 
 
-def _write_uniform_gear(writer: Written, step: Call) -> None:
+def _write_uniform_gear(writer: Writer, step: Call) -> None:
     """A gear whose driver and carrier turn in proportion to the crank does so too.
 
     Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
