@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "Absorber": "tools.model",
     "AddedMass": "mechanism.balance",
-    "Analysis": "results",
+    "Analysis": "results.analysis",
     "Balance": "mechanism.balance",
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
