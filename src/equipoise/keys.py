@@ -24,7 +24,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
-from equipoise.io.unit_lists import KINDS, Dimension
+from equipoise.quantities.units import KINDS, Dimension
 
 Class = TypeVar("Class", bound=type)
 MOST_WHOLE = 1_000_000
