@@ -364,7 +364,7 @@ class Key:
 
     def allows(self, value: Any) -> Any:
         """Whether a number, or each of an array, is within the limits."""
-        right = value == value
+        right: Any = True
         if self.at_least is not None:
             right = right & (value >= self.at_least)
         if self.above is not None:
@@ -414,7 +414,9 @@ def key(
 def inside(kind: Kind, *, default: Any = REQUIRED, compare: bool = True) -> Any:
     """Declare a field that no file has a key for; its kind is checked all the same."""
     given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
-    return field(metadata={_KEY: Key("", kind, default=default, inside=True)}, compare=compare, **given)
+    return field(
+        metadata={_KEY: Key("", kind, default=default, inside=True)}, compare=compare, **given
+    )
 
 
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
@@ -493,7 +495,7 @@ def _shown(value: Any) -> str:
 
 @cache
 def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
-    """Keys of the table of a class in the order of the file, by name; without those of flat ones."""
+    """Keys of a class in the order of the file, by name; a flat table is one of them."""
     found = {name: replace(one, name=name) for name, one in cls.beside.items()}
     for one in _declarations(cls):
         if one.name:
