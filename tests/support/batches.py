@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.figures import Figure
 from equipoise.mechanism.model import Gear, Machine, Slider
-from equipoise.results import columns, outputs
+from equipoise.results.analysis import columns, outputs
 from equipoise.signals import Figures, figures
 from support.designs import Array, size_of
 from unit.mechanism.build import heavy, machine

@@ -17,7 +17,6 @@ import numpy as np
 
 from equipoise.codegen.figures import MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
-from equipoise.mechanism import checks
 from equipoise.mechanism.columns import massive_link, with_columns, wrong
 from equipoise.mechanism.dynamics import Forces, SliderForce, forces
 from equipoise.mechanism.linkage import assemble
@@ -30,12 +29,13 @@ from equipoise.mechanism.parameters import (
     parameters_of,
     regressor,
 )
+from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]
 
 FIRST = 180
 """Crank angles in a turn from which their number doubles."""
-TINY = 1e-14
+RANK = 1e-14
 """Of the largest of the squares that are summed: smaller ones are rounding."""
 AT_ONCE = 8192
 """Designs whose numbers stay in the processor's cache."""
@@ -158,8 +158,8 @@ class MassBatch:
     def _all_usual(self, columns: Array) -> bool:
         """Whether a glance at numbers (d, P) tells that all of these designs are machines."""
         low, high = columns.min(axis=1), columns.max(axis=1)
-        usual = (low >= -checks.HUGE) & (high <= checks.HUGE)
-        usual &= (low >= checks.TINY) | (high <= -checks.TINY)
+        usual = (low >= -HUGE) & (high <= HUGE)
+        usual &= (low >= TINY) | (high <= -TINY)
         return bool(usual.all() and np.all(low[self.not_negative] > 0))
 
     # -- made once ---------------------------------------------------------------------------------
@@ -209,7 +209,7 @@ class MassBatch:
         if _two(figure.signal):
             count //= 2
         _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)
-        kept = singular > TINY * singular[0]
+        kept = singular > RANK * singular[0]
         factor = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
         return Square(factor[:, :-1], factor[:, -1:], False)
 

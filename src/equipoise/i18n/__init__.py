@@ -9,6 +9,7 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -31,6 +32,46 @@ def say(text: str, **values: Any) -> str:
 def to_say(text: str) -> str:
     """Mark a text that is said later: as it is, but known to be wanted in the catalogues."""
     return text
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Note:
+    """A sentence with its values, said in the language of whoever reads it.
+
+    template : as in the catalogues.  values : for its ``{placeholders}``; Notes among them are said
+    in the same language.
+    """
+
+    template: str
+    values: Mapping[str, Any]
+
+    def __init__(self, template: str, /, **values: Any) -> None:
+        object.__setattr__(self, "template", template)
+        object.__setattr__(self, "values", values)
+
+    def __str__(self) -> str:
+        """The sentence in English."""
+        with speaking("en"):
+            return self.said()
+
+    def __repr__(self) -> str:
+        return f"Note({str(self)!r})"
+
+    def __hash__(self) -> int:
+        return hash((self.template, *map(str, self.values.values())))
+
+    def said(self) -> str:
+        """The sentence in the language that is spoken."""
+        values = {
+            name: value.said() if isinstance(value, Note) else value
+            for name, value in self.values.items()
+        }
+        return say(self.template, **values)
+
+    @property
+    def is_translated(self) -> bool:
+        """Whether the language that is spoken has the sentence."""
+        return spoken() == "en" or self.template in catalogue(spoken())
 
 
 @contextmanager

@@ -7,10 +7,9 @@ from functools import cache
 import pytest
 from pint import UnitRegistry
 
-from equipoise.io.unit_factors import FACTORS
-from equipoise.io.unit_lists import KINDS
+from equipoise.quantities.units import FACTORS, KINDS
 
-UNITS = [(unit, kind.units[0]) for kind in KINDS.values() for unit in kind.units]
+UNITS = [(unit, kind.si) for kind in KINDS.values() for unit in kind.units]
 
 
 @cache

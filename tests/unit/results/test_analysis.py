@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.results import columns, outputs, unit_of
+from equipoise.results.analysis import columns, outputs, unit_of
 
 NAMES = sorted(eq.examples("linkage"))
 

@@ -12,9 +12,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from equipoise import quantities
 from equipoise.errors import UsageError
-from equipoise.io import units
-from equipoise.io.units import KINDS, Dimension, format_exact, parse
+from equipoise.quantities import KINDS, Dimension, format_exact, parse
 
 DIMENSIONS = get_args(Dimension)
 numbers = st.floats(1e-29, 1e29) | st.floats(-1e29, -1e-29) | st.floats(-1e4, 1e4)
@@ -131,14 +131,14 @@ def test_any_text_is_read_or_refused_in_one_short_sentence(text: str) -> None:
     for dimension in DIMENSIONS:
         said = complaint(text, dimension)
         assert len(said) < 600
-        assert said.startswith("got ") or re.fullmatch(units.pattern(dimension), text)
+        assert said.startswith("got ") or re.fullmatch(quantities.pattern(dimension), text)
 
 
 @given(usual, st.sampled_from(DIMENSIONS))
 def test_writing_is_exact(value: float, dimension: Dimension) -> None:
     text = format_exact(value, dimension)
     assert parse(text, dimension) == value
-    assert re.fullmatch(units.pattern(dimension), text)
+    assert re.fullmatch(quantities.pattern(dimension), text)
 
 
 @given(st.integers(-(10**6), 10**6), st.sampled_from(["mm", "m"]))

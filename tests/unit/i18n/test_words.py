@@ -11,7 +11,7 @@ from threading import Thread
 import pytest
 
 import equipoise
-from equipoise.words import LANGUAGES, catalogue, say, speaking
+from equipoise.i18n import LANGUAGES, catalogue, say, speaking
 
 SOURCES = Path(equipoise.__file__).parent
 TRANSLATED = sorted(set(LANGUAGES) - {"en"})
@@ -22,7 +22,7 @@ def said() -> set[str]:
     """First arguments of `say` and `to_say` in the whole package; each has to be a plain text."""
     found = set()
     for path in SOURCES.rglob("*.py"):
-        if path.parent.name == "words":
+        if path.parent.name == "i18n":
             continue
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):

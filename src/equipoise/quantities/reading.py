@@ -12,21 +12,8 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
-from equipoise.io.unit_factors import FACTORS
-from equipoise.io.unit_lists import KINDS, Dimension, Kind, pattern, plain_unit
-from equipoise.io.unit_problems import described, not_text, too_far, wrong_text
-from equipoise.mechanism.checks import HUGE, TINY
-
-__all__ = [
-    "KINDS",
-    "Dimension",
-    "Kind",
-    "described",
-    "format_exact",
-    "parse",
-    "pattern",
-    "rounded",
-]
+from equipoise.quantities.problems import not_text, too_far, wrong_text
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, pattern, plain_unit
 
 _DIGITS = 60
 """Digits carried in conversions: enough that only the last step, to a float, rounds."""
@@ -83,7 +70,7 @@ def format_exact(value: float, dimension: Dimension) -> str:
         return f"0 {kind.printed[0]}"
     numbers = [(number, unit) for unit in kind.printed if (number := _short(value, unit))]
     if not numbers:
-        return f"{value!r} {kind.units[0]}"
+        return f"{value!r} {kind.si}"
     number, unit = min(numbers, key=lambda pair: len(pair[0]))
     return f"{number} {unit}"
 

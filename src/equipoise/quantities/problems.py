@@ -4,15 +4,7 @@ from __future__ import annotations
 
 import re
 
-from equipoise.io.unit_lists import (
-    KINDS,
-    NUMBER,
-    POWERS,
-    Dimension,
-    Kind,
-    pattern,
-    plain_unit,
-)
+from equipoise.quantities.units import KINDS, NUMBER, POWERS, Dimension, Kind, pattern, plain_unit
 
 _NAMES = {
     "\N{DEGREE SIGN}": "deg",
