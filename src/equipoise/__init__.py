@@ -21,11 +21,11 @@ _HOMES = {
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
-    "Best": "studies.best",
+    "Best": "studies.selection",
     "CenterMove": "mechanism.balance",
-    "Choices": "studies.spread",
+    "Choices": "studies.design_space",
     "Conditions": "balancing.linear_conditions",
-    "Correlation": "studies.study",
+    "Correlation": "studies.design_space",
     "Decay": "measured.decay",
     "DesignLimit": "tools.wishes",
     "DesignPlan": "tools.wishes",
@@ -47,7 +47,7 @@ _HOMES = {
     "Hand": "tools.model",
     "Harness": "tools.model",
     "Impedance": "tools.model",
-    "Landscape": "studies.landscape",
+    "Landscape": "studies.objective_map",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -58,22 +58,22 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
-    "Normal": "studies.spread",
+    "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
     "Operation": "tools.model",
-    "Output": "studies.study",
+    "Output": "studies.design_space",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
     "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
-    "Range": "studies.spread",
+    "Range": "studies.design_space",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
     "Response": "structures.response",
     "Row": "mechanism.support",
-    "Sampling": "studies.study",
+    "Sampling": "studies.design_space",
     "Searched": "studies.search",
     "Section": "tools.sections",
     "Segment": "tools.sections",
@@ -90,7 +90,7 @@ _HOMES = {
     "Sweep": "structures.sweep",
     "Task": "exposure.daily",
     "Template": "io.template",
-    "Tolerances": "studies.tolerance",
+    "Tolerances": "studies.tolerances",
     "Tool": "tools.model",
     "ToolDesign": "tools.design",
     "ToolExposure": "tools.exposed",
@@ -100,8 +100,8 @@ _HOMES = {
     "Transient": "structures.transient",
     "Transmissions": "tools.transmission",
     "Tube": "tools.sections",
-    "Uniform": "studies.spread",
-    "Vary": "studies.study",
+    "Uniform": "studies.design_space",
+    "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighted",
     "Work": "tools.model",
@@ -110,7 +110,7 @@ _HOMES = {
     "assemble": "mechanism.linkage",
     "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
-    "best": "studies.best",
+    "best": "studies.selection",
     "choose_phases": "balancing.phase_search",
     "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
@@ -118,7 +118,7 @@ _HOMES = {
     "dumps": "io.models",
     "dumps_tool": "io.tools",
     "examples": "io.models",
-    "export": "studies.export",
+    "export": "studies.table_files",
     "expose_tool": "tools.exposed",
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
@@ -128,7 +128,7 @@ _HOMES = {
     "harmonics": "signals",
     "identify_decay": "measured.decay",
     "json_schema": "io.models",
-    "landscape": "studies.landscape",
+    "landscape": "studies.objective_map",
     "least_moments": "balancing.least_norm",
     "load": "io.models",
     "load_study": "io.studies",
@@ -145,15 +145,15 @@ _HOMES = {
     "respond": "structures.forced",
     "respond_tool": "tools.response",
     "resume": "io.stored",
+    "run_study": "studies.run",
     "save": "io.models",
     "save_tool": "io.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
-    "sweep": "studies.run",
     "sweep_speed": "structures.sweep",
     "sweep_tool": "tools.sweep",
-    "tolerance": "studies.tolerance",
+    "tolerance": "studies.tolerances",
     "tool_sensitivities": "tools.felt",
     "trade_off": "balancing.pareto",
     "transmit": "tools.transmission",
@@ -294,27 +294,27 @@ if TYPE_CHECKING:
     from equipoise.structures.sweep import sweep_speed as sweep_speed
     from equipoise.structures.transient import Transient as Transient
     from equipoise.structures.transient import from_rest as from_rest
-    from equipoise.studies.best import Best as Best
-    from equipoise.studies.best import best as best
-    from equipoise.studies.export import export as export
-    from equipoise.studies.landscape import Landscape as Landscape
-    from equipoise.studies.landscape import landscape as landscape
-    from equipoise.studies.run import sweep as sweep
+    from equipoise.studies.design_space import Choices as Choices
+    from equipoise.studies.design_space import Correlation as Correlation
+    from equipoise.studies.design_space import Normal as Normal
+    from equipoise.studies.design_space import Output as Output
+    from equipoise.studies.design_space import Range as Range
+    from equipoise.studies.design_space import Sampling as Sampling
+    from equipoise.studies.design_space import Uniform as Uniform
+    from equipoise.studies.design_space import Vary as Vary
+    from equipoise.studies.objective_map import Landscape as Landscape
+    from equipoise.studies.objective_map import landscape as landscape
+    from equipoise.studies.run import run_study as run_study
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
-    from equipoise.studies.spread import Choices as Choices
-    from equipoise.studies.spread import Normal as Normal
-    from equipoise.studies.spread import Range as Range
-    from equipoise.studies.spread import Uniform as Uniform
+    from equipoise.studies.selection import Best as Best
+    from equipoise.studies.selection import best as best
     from equipoise.studies.store import Store as Store
     from equipoise.studies.store import open_store as open_store
-    from equipoise.studies.study import Correlation as Correlation
-    from equipoise.studies.study import Output as Output
-    from equipoise.studies.study import Sampling as Sampling
     from equipoise.studies.study import Study as Study
-    from equipoise.studies.study import Vary as Vary
-    from equipoise.studies.tolerance import Tolerances as Tolerances
-    from equipoise.studies.tolerance import tolerance as tolerance
+    from equipoise.studies.table_files import export as export
+    from equipoise.studies.tolerances import Tolerances as Tolerances
+    from equipoise.studies.tolerances import tolerance as tolerance
     from equipoise.tools.design import ToolDesign as ToolDesign
     from equipoise.tools.design import design_tool as design_tool
     from equipoise.tools.exposed import ToolExposure as ToolExposure

@@ -13,7 +13,7 @@ from equipoise.io.studies import restore
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
-    from equipoise.studies.run import Told
+    from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
     from equipoise.tools.model import Tool
@@ -26,7 +26,7 @@ def resume(
     *,
     workers: int | None = None,
     cluster: str | None = None,
-    progress: Told | None = None,
+    progress: OnProgress | None = None,
 ) -> Store:
     """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
 
@@ -35,11 +35,11 @@ def resume(
     Parameters
     ----------
     path : of the store.
-    workers, cluster, progress : as in `equipoise.sweep`.
+    workers, cluster, progress : as in `equipoise.run_study`.
 
     Raises
     ------
-    UsageError : there is no store, or other versions made it; or as in `equipoise.sweep`.
+    UsageError : there is no store, or other versions made it; or as in `equipoise.run_study`.
     """
     from equipoise.studies import run
 

@@ -15,16 +15,19 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.io.files import printable
 from equipoise.io.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
 from equipoise.quantities.problems import described
-from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.spread import Choices, Normal, Range, Spread, Uniform
-from equipoise.studies.study import (
+from equipoise.studies.design_space import (
+    Choices,
     Correlation,
+    Normal,
     Output,
+    Range,
     Sampling,
-    Study,
+    Spread,
+    Uniform,
     Vary,
-    from_plain,
 )
+from equipoise.studies.dimensions import dimension_of
+from equipoise.studies.study import Study, from_plain
 
 if TYPE_CHECKING:
     from equipoise.io import document_study

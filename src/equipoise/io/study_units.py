@@ -14,8 +14,9 @@ from equipoise.io.template import Template
 from equipoise.quantities.units import FACTORS, KINDS
 
 if TYPE_CHECKING:
+    from equipoise.studies.design_space import Output, Vary
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Output, Study, Vary
+    from equipoise.studies.study import Study
 
 LIMITS = ("at_most", "at_least")
 

@@ -13,9 +13,9 @@ from equipoise.terminal.tables import Row, table
 
 if TYPE_CHECKING:
     from equipoise.io.study_units import Unit
-    from equipoise.studies.best import Best
+    from equipoise.studies.design_space import Output
+    from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Output
 
 
 BEST = "the best designs; --out writes one as a model file"

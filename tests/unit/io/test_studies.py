@@ -14,9 +14,16 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.io.files import printable
 from equipoise.io.studies import load_study, restore
 from equipoise.quantities import parse
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study
+from equipoise.studies.design_space import (
+    Choices,
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Uniform,
+)
+from equipoise.studies.study import Study, samples
 from unit.io.samples import FOUR_BAR
 
 WHOLE = """

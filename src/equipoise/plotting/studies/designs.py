@@ -31,8 +31,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.io.study_units import Unit
+    from equipoise.studies.design_space import Make
     from equipoise.studies.search import Searched
-    from equipoise.studies.study import Make
 
 Array = np.ndarray[Any, Any]
 

@@ -16,16 +16,23 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.studies.best import kept, why_none
-from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
-from equipoise.studies.scatter import Scatter, scatter_of, share_of
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, kept
+from equipoise.studies.selection import why_none
 from equipoise.studies.study import SLOW_CHUNK
-from equipoise.studies.variance import Effect, Estimate, causes_of, effects, tables
+from equipoise.studies.variance import (
+    Effect,
+    Estimate,
+    Scatter,
+    causes_of,
+    effects,
+    scatter_of,
+    share_of,
+    tables,
+)
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
-
-__all__ = ["Cause", "Scatter", "Told", "Tolerances", "rows_of", "tolerance"]
 
 Array = np.ndarray[Any, Any]
 
@@ -34,7 +41,7 @@ QUICK = 0.1
 LEAST_ROWS = 32
 """Rows of A with which causes are told apart."""
 
-Told = Callable[[int, int], None]
+OnProgress = Callable[[int, int], None]
 """Is called with how many machines are computed, and how many there are."""
 
 
@@ -107,7 +114,7 @@ class Tolerances:
 
 
 def tolerance(
-    study: Study, *, progress: Told | None = None, compute: Evaluator | None = None
+    study: Study, *, progress: OnProgress | None = None, compute: Evaluator | None = None
 ) -> Tolerances:
     """What the tolerances of a study do to its outputs, and which to tighten first.
 
@@ -115,7 +122,7 @@ def tolerance(
     ----------
     study : varies by normal and uniform tolerances; `sampling.designs` machines are drawn for the
         scatter, and about as many again to tell the tolerances apart.
-    progress : see `Told`.
+    progress : see `OnProgress`.
     compute : computes designs instead of the study's own evaluator.
 
     Raises
@@ -190,7 +197,7 @@ class _Run:
     compute: Evaluator
     step: int
     most: int
-    progress: Told | None
+    progress: OnProgress | None
     total: int = 0
     done: int = 0
 
@@ -221,7 +228,7 @@ class _Run:
 
 def _drawn(study: Study) -> Iterator[Array]:
     """Machines drawn from the tolerances, part by part."""
-    from equipoise.studies.sampling import samples
+    from equipoise.studies.study import samples
 
     for start in range(0, study.size, study.chunk):
         yield samples(study, start, min(study.chunk, study.size - start))
