@@ -23,7 +23,7 @@ from equipoise.codegen.backends import FOLDER, run_loop
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.designs import all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
-from equipoise.io.template import Template
+from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.run import run_study
 from equipoise.studies.store import open_store

@@ -24,7 +24,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from equipoise.io.tools import load_tool
+from equipoise.schema.tools import load_tool
 from equipoise.tools.frequencies import natural_frequencies, scale_of
 from equipoise.tools.model import Excitation, Hand, Harness, Tool
 from equipoise.tools.modes import vibrate_tool

@@ -17,7 +17,7 @@ from equipoise.cli.options import (
     whole,
 )
 from equipoise.errors import UsageError
-from equipoise.io.files import printable
+from equipoise.schema.files import printable
 from equipoise.terminal.units import Units
 from equipoise.tools.model import Tool
 from equipoise.tools.usual import MODES, usual_answers, usual_speeds
@@ -54,7 +54,7 @@ class Asked:
 
     def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
         """Results must have a place to go, before time is spent on them."""
-        from equipoise.io.tools import files_of_tool, parts_of
+        from equipoise.schema.tools import files_of_tool, parts_of
 
         if plot is not None:
             check_folder("--plot", plot)

@@ -12,6 +12,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.structures.body import MISSING
 from equipoise.structures.choice import usual_step
 from equipoise.structures.linear import Linear, gauges_of
@@ -21,8 +22,8 @@ from equipoise.structures.table import Values, mode_values
 Array = np.ndarray[Any, Any]
 
 
-@dataclass(frozen=True, eq=False)
-class FreeVibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class FreeVibration(Result):
     """Modes of a machine on its support, standing in the mean of a turn.
 
     linear : the machine as a linear system.  modes : by frequency.

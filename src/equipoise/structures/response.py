@@ -9,6 +9,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.signals import Periodic
 from equipoise.structures.modes import Mode
 from equipoise.structures.table import Values, by_order, mode_values
@@ -105,8 +106,8 @@ class Joint:
     on_ground: float
 
 
-@dataclass(frozen=True, eq=False)
-class Response:
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(Result):
     """Steady vibration of a machine on its support.
 
     speed : of the crank in the mean, rad/s.  turns : of the crank in a period.

@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.signals import Periodic
 from equipoise.structures.body import MISSING
 from equipoise.structures.branches import Progress, follow_speeds
@@ -65,8 +66,8 @@ class MountCurve:
     torsional: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
     """Steady vibration of a machine on its support over a range of speeds.
 
     speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are

@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.structures.beginning import equations, motor_setting
 from equipoise.structures.body import Body
 from equipoise.structures.choice import chosen_model, steady_speed
@@ -28,8 +29,8 @@ MOST_TURNS = 2000
 LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
 
 
-@dataclass(frozen=True, eq=False)
-class Transient:
+@dataclass(frozen=True, eq=False, repr=False)
+class Transient(Result):
     """A machine on its support from rest, at M instants.
 
     time : (M,) s.  states : (n, M), displacements and velocities of the free coordinates.

@@ -190,7 +190,7 @@ Make = Literal["smallest", "largest"]
 
 
 class Model(Protocol):
-    """A model file in which numbers can be replaced; `equipoise.io.template.Template`."""
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
 
     @property
     def kind(self) -> Literal["linkage", "tool"]: ...

@@ -25,6 +25,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
+from equipoise.results.result import Result
 from equipoise.studies.design_space import Model
 
 Array = np.ndarray[Any, Any]
@@ -193,8 +194,8 @@ CLOSE = 1e-7
 """Share of the ranges to which the best place is found."""
 
 
-@dataclass(frozen=True, eq=False)
-class Landscape:
+@dataclass(frozen=True, eq=False, repr=False)
+class Landscape(Result):
     """An objective over two numbers, SI units and radians.
 
     machine : as the model has it.

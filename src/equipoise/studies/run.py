@@ -101,7 +101,7 @@ def resume(
 
     Parameters
     ----------
-    restore : makes the study of its texts; `equipoise.io.studies.restore`.
+    restore : makes the study of its texts; `equipoise.schema.studies.restore`.
     workers, cluster, progress : as in `run_study`.
 
     Raises

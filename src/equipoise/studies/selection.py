@@ -12,6 +12,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
+from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import kept
@@ -62,8 +63,8 @@ COUNT = 10
 """Designs that are told, if not told otherwise."""
 
 
-@dataclass(frozen=True)
-class Best:
+@dataclass(frozen=True, repr=False)
+class Best(Result):
     """The best designs of a store, K of them.
 
     by : what makes them the best, and which way; several give a Pareto front.

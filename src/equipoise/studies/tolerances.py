@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
+from equipoise.results.result import Result
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, kept
 from equipoise.studies.selection import why_none
@@ -64,8 +65,8 @@ class Cause:
     removed: float | None
 
 
-@dataclass(frozen=True, eq=False)
-class Tolerances:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tolerances(Result):
     """What the tolerances of a study do.
 
     designs : machines whose scatter is told.  failures : of these by reason.

@@ -14,7 +14,7 @@ from equipoise.studies.outcomes import Outcome
 from equipoise.terminal.tables import Row, number, table
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.design_space import Spread
     from equipoise.studies.study import Study
 

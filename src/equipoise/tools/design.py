@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.results.result import Result
 from equipoise.tools.exposed import grips
 from equipoise.tools.felt import values_of
 from equipoise.tools.model import Tool
@@ -47,8 +48,8 @@ class Before:
     after: float
 
 
-@dataclass(frozen=True, eq=False)
-class ToolDesign:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolDesign(Result):
     """The best design found.
 
     tool, better : before and after.

@@ -14,6 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.exposure.iso_22867 import equivalent
 from equipoise.exposure.weighting import squared_factor
+from equipoise.results.result import Result
 from equipoise.tools.model import Tool, Work
 from equipoise.tools.response import ToolResponse, respond_tool
 
@@ -68,8 +69,8 @@ def grips(response: ToolResponse) -> dict[str, Grip]:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class ToolExposure:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolExposure(Result):
     """What the hands on a tool get, over a range of speeds and in a day.
 
     response : over the range of speeds.

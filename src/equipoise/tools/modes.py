@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.results.result import Result
 from equipoise.tools.damped import eigenvalues
 from equipoise.tools.frequencies import (
     floating,
@@ -78,8 +79,8 @@ class PlaneModes:
         return self.frequency / (2 * pi)
 
 
-@dataclass(frozen=True, eq=False)
-class ToolModes:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolModes(Result):
     """Free vibration of a tool.
 
     places : (X,), m from the left end, at which shapes are told.

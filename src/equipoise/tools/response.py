@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, ResponseError, UsageError
+from equipoise.results.result import Result
 from equipoise.tools.chain import Pair, carry, solve
 from equipoise.tools.fields import Field, Line
 from equipoise.tools.hands import check_coverage
@@ -20,8 +21,8 @@ from equipoise.tools.sources import Shake, orders_of, shakes
 Array = np.ndarray[Any, Any]
 
 
-@dataclass(frozen=True, eq=False)
-class ToolResponse:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolResponse(Result):
     """Steady vibration at speeds (S,) of the engine, by orders (K,): complex amplitudes.
 
     A signal of a speed is the sum over the orders of Re (amplitude * exp(i order speed t)); arrays

@@ -9,6 +9,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
+from equipoise.results.result import Result
 from equipoise.tools.damped import characteristic
 from equipoise.tools.frequencies import natural_frequencies, scale_of
 from equipoise.tools.layout import Layout
@@ -57,8 +58,8 @@ def number_of(tool: Tool, station: str, key: str) -> float:
     return value[0] if isinstance(value, tuple) else value
 
 
-@dataclass(frozen=True, eq=False)
-class Variation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Variation(Result):
     """Natural frequencies while a number of a station changes.
 
     values : (V,), SI units.

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.results.result import Result
 from equipoise.tools.model import PLANES, Tool
 from equipoise.tools.modes import swinging_below
 from equipoise.tools.response import NOTHING, ToolResponse, respond_tool, rms_over_time
@@ -48,8 +49,8 @@ class Places:
     moment: Array
 
 
-@dataclass(frozen=True, eq=False)
-class ToolSweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolSweep(Result):
     """A tool over speeds (S,) of its engine, rad/s.
 
     transmissions : of a unit force, to what holds the tool; None where nothing does.

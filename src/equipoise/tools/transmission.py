@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
+from equipoise.results.result import Result
 from equipoise.tools.model import PLANES, Excitation, Station, Tool
 from equipoise.tools.response import ToolResponse, checked_speeds, respond_tool
 
@@ -44,8 +45,8 @@ class Transmission:
         return np.angle(self.ratio)
 
 
-@dataclass(frozen=True, eq=False)
-class Transmissions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Transmissions(Result):
     """Of all stations where hands, a harness or the ground hold the tool.
 
     source : station at which a unit force shakes, once in a turn.

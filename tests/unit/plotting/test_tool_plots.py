@@ -17,7 +17,6 @@ from matplotlib.axes import Axes
 
 from equipoise.exposure.iso_5349 import partial_exposure
 from equipoise.exposure.weighting import factor
-from equipoise.io.tools import load_tool
 from equipoise.plotting.style import FAINT, INK, MAIN, STRESS, render
 from equipoise.plotting.tool import (
     design_drawings,
@@ -33,6 +32,7 @@ from equipoise.plotting.tool.response import speed_shown
 from equipoise.plotting.tool.shaft import MOST
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.tool.studies import UNITS, zeros_of
+from equipoise.schema.tools import load_tool
 from equipoise.tools.design import Before, ToolDesign
 from equipoise.tools.exposed import expose_tool, grips
 from equipoise.tools.frequencies import scale_of

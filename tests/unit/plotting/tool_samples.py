@@ -9,9 +9,9 @@ from hashlib import sha256
 import numpy as np
 from matplotlib.figure import Figure
 
-from equipoise.io.tools import load_tool
 from equipoise.plotting import tool as plotting
 from equipoise.plotting.style import render
+from equipoise.schema.tools import load_tool
 from equipoise.tools.exposed import expose_tool
 from equipoise.tools.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.tools.modes import vibrate_tool

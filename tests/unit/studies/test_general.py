@@ -13,9 +13,9 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.template import Template
 from equipoise.quantities import SI
 from equipoise.results.analysis import columns, unit_of
+from equipoise.schema.template import Template
 from equipoise.studies.commands import check_outputs
 from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
 from equipoise.studies.dimensions import dimension_of

@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.io.studies import restore
-from equipoise.io.template import Template
+from equipoise.schema.studies import restore
+from equipoise.schema.template import Template
 from equipoise.studies.design_space import (
     Choices,
     Correlation,

@@ -26,12 +26,12 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
+from equipoise.studies.design_space import Make
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.design_space import Make
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
 
 Array = np.ndarray[Any, Any]
