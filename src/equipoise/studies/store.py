@@ -26,6 +26,7 @@ import numpy as np
 
 import equipoise
 from equipoise.errors import UsageError
+from equipoise.results.result import Result
 from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Block, Outcome
 
@@ -44,8 +45,8 @@ ZSTD = 1
 """Level at which arrays are compressed, if they are."""
 
 
-@dataclass(frozen=True, eq=False)
-class Store:
+@dataclass(frozen=True, eq=False, repr=False)
+class Store(Result):
     """A store that has been opened.
 
     size : number of designs.  chunk : of those that are stored together; the last may be fewer.
