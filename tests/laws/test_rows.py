@@ -17,11 +17,10 @@ from equipoise.balancing.phase_tops import Tops
 from equipoise.balancing.phases import choose_phases
 from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
-from equipoise.structures.choice import usual_step
-from equipoise.structures.forced import respond
+from equipoise.vibration.forced import respond, usual_step
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
-from unit.structures.build import cart, rig
+from unit.vibration.build import cart, rig
 
 TYPE_II = eq.load("yamashita-2")
 SCALARS = (

@@ -15,7 +15,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.choice import check_moving
+from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]
 

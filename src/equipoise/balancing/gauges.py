@@ -21,10 +21,9 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.signals import Periodic
-from equipoise.structures.choice import usual_step
-from equipoise.structures.excitation import Step
-from equipoise.structures.linear import Linear, gauges_of
-from equipoise.structures.linkages import rows_of
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear, Step, gauges_of
+from equipoise.vibration.linkages import rows_of
 
 Array = np.ndarray[Any, Any]
 

@@ -8,15 +8,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
 from equipoise.errors import EquipoiseError, ModelError
+from equipoise.handheld.model import PLANES
 from equipoise.io.files import printable
 from equipoise.io.opening import Opened, bundled, opened, opened_example
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
-from equipoise.tools.model import PLANES
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Impedance
+    from equipoise.handheld.model import Impedance
 
 Value = TypeVar("Value")
 

@@ -13,13 +13,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import PLANES
 from equipoise.io.numbers import XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.io.opening import Kind
 from equipoise.io.problems import written_key
 from equipoise.io.schema_keys import Place, default_at, is_known, is_whole
 from equipoise.io.unit_problems import described
 from equipoise.mechanism.checks import unknown
-from equipoise.tools.model import PLANES
 
 Content = Mapping[str, Any]
 _STEP = re.compile(r'(?:(?:^|\.)(?:"((?:[^"\\]|\\.)*)"|([^."\[\]]+))|\[([0-9]{1,9})\])')

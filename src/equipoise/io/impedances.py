@@ -13,9 +13,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from equipoise.handheld.model import Impedance
 from equipoise.io import csv_columns
 from equipoise.io.points import from_polar
-from equipoise.tools.model import Impedance
 
 _IMPEDANCE: csv_columns.Forms = (
     ("frequency", "resistance", "reactance"),

@@ -13,11 +13,11 @@ from math import atan2, hypot
 from typing import Any
 
 from equipoise.errors import UsageError
+from equipoise.handheld.model import PLANES
 from equipoise.io.points import from_polar
 from equipoise.io.shares import format_share, parse_share
 from equipoise.io.unit_lists import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.io.units import parse
-from equipoise.tools.model import PLANES
 
 OF_UNIT: dict[str, Dimension] = {
     unit: dimension for dimension, kind in KINDS.items() for unit in kind.units

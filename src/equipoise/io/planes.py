@@ -10,11 +10,11 @@ from pydantic.json_schema import JsonSchemaValue
 from typing_extensions import TypeAliasType
 
 from equipoise.errors import UsageError
+from equipoise.handheld.model import PLANES
 from equipoise.io import units
 from equipoise.io.fields import LIST, problem
 from equipoise.io.unit_problems import described
 from equipoise.mechanism.checks import unknown
-from equipoise.tools.model import PLANES
 
 Value = TypeVar("Value")
 FILE = "hand.csv"

@@ -12,11 +12,11 @@ from equipoise.io.files import printable
 from equipoise.io.studies import restore
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.run import Told
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
-    from equipoise.tools.model import Tool
 
 __all__ = ["machine_of", "resume", "study_of"]
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import Impedance, Tool
 from equipoise.io.beside import Beside
 from equipoise.io.document import Document
 from equipoise.io.document_tool import ToolDocument
@@ -31,7 +32,6 @@ from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
-from equipoise.tools.model import Impedance, Tool
 
 if TYPE_CHECKING:
     from equipoise.io.schema_keys import Place

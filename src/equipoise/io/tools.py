@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import Impedance, Tool
 from equipoise.io.beside import Beside, impedance_keys
 from equipoise.io.files import printable
 from equipoise.io.models import files_of, loads, save, write_beside
 from equipoise.io.opening import bundled, content_of, kind_of_text, opened, opened_example
 from equipoise.mechanism.model import Machine
-from equipoise.tools.model import Impedance, Tool
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study

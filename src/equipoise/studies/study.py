@@ -12,8 +12,8 @@ from equipoise.studies.checks import check_numbers, problems
 from equipoise.studies.spread import SPREADS, Range, Spread
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
 Command = Literal["analyze", "plant", "respond", "balance", "tool"]

@@ -16,6 +16,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
+from equipoise.handheld.model import Tool
 from equipoise.io.models import examples
 from equipoise.io.numbers import OF_UNIT
 from equipoise.io.points import from_polar
@@ -23,7 +24,6 @@ from equipoise.io.schema_keys import is_whole
 from equipoise.io.template import Template
 from equipoise.io.unit_lists import KINDS
 from equipoise.mechanism.model import Machine
-from equipoise.tools.model import Tool
 from unit.io.samples import FOUR_BAR, SUPPORT
 from unit.io.tool_samples import TOOL
 

@@ -13,12 +13,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.model import Hand, Impedance, Tool
+from equipoise.handheld.shaft import Section
 from equipoise.io import examples, load
 from equipoise.io.impedances import format_impedance, read_impedance
 from equipoise.io.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.tools.model import Hand, Impedance, Tool
-from equipoise.tools.sections import Section
 from unit.io.tool_samples import EVERY_TOOL, TOOL
 
 TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")

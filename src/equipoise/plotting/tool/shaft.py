@@ -16,7 +16,7 @@ from equipoise.plotting.vibration.panels import WIDTH
 from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Station, Tool
+    from equipoise.handheld.model import Station, Tool
 
 Array = np.ndarray[Any, Any]
 

@@ -23,7 +23,7 @@ from equipoise.plotting.vibration.panels import RPM
 from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
 
 Array = np.ndarray[Any, Any]
 

@@ -25,7 +25,7 @@ from equipoise.plotting.vibration.panels import LEFT, RPM, WIDTH, name_x, name_y
 from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

@@ -46,7 +46,7 @@ from equipoise.words import say, to_say
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 
