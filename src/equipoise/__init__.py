@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "Absorber": "handheld.model",
     "AddedMass": "mechanism.balance",
-    "Analysis": "results",
+    "Analysis": "results.analysis",
     "Balance": "mechanism.balance",
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
@@ -24,7 +24,7 @@ _HOMES = {
     "Best": "studies.best",
     "CenterMove": "mechanism.balance",
     "Choices": "studies.spread",
-    "Conditions": "balancing.conditions",
+    "Conditions": "balancing.linear_conditions",
     "Correlation": "studies.study",
     "Decay": "measured.decay",
     "DesignLimit": "handheld.design_plan",
@@ -38,8 +38,8 @@ _HOMES = {
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
-    "FreeVibration": "vibration.free",
-    "Front": "balancing.front",
+    "FreeVibration": "structures.free",
+    "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
     "GearedWeight": "mechanism.balance",
@@ -64,7 +64,7 @@ _HOMES = {
     "Output": "studies.study",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
-    "Phasing": "balancing.phases",
+    "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
@@ -108,18 +108,19 @@ _HOMES = {
     "analyze": "pipeline",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
-    "balance": "balancing.balance",
+    "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
     "best": "studies.best",
-    "choose_phases": "balancing.phases",
-    "conditions": "balancing.conditions",
+    "choose_phases": "balancing.phase_search",
+    "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
     "design_tool": "handheld.design",
     "dumps": "io.models",
     "dumps_tool": "io.tools",
     "examples": "io.models",
     "export": "studies.export",
-    "expose_tool": "handheld.exposed",
+    "expose_tool": "tools.exposed",
+    "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
@@ -128,7 +129,7 @@ _HOMES = {
     "identify_decay": "measured.decay",
     "json_schema": "io.models",
     "landscape": "studies.landscape",
-    "least_moments": "balancing.least",
+    "least_moments": "balancing.least_norm",
     "load": "io.models",
     "load_study": "io.studies",
     "load_tool": "io.tools",
@@ -153,13 +154,12 @@ _HOMES = {
     "sweep_speed": "vibration.sweep",
     "sweep_tool": "handheld.sweep",
     "tolerance": "studies.tolerance",
-    "tool_sensitivities": "handheld.exposed",
-    "trade_off": "balancing.front",
-    "transmit": "handheld.transmission",
-    "vary_tool": "handheld.studies",
-    "verdict": "balancing.verdict",
-    "vibrate_freely": "vibration.free",
-    "vibrate_tool": "handheld.modes",
+    "tool_sensitivities": "tools.felt",
+    "trade_off": "balancing.pareto",
+    "transmit": "tools.transmission",
+    "vary_tool": "tools.studies",
+    "vibrate_freely": "structures.free",
+    "vibrate_tool": "tools.modes",
     "view": "web.widget",
     "weigh_orders": "exposure.measured",
     "weigh_signal": "exposure.measured",
@@ -171,18 +171,18 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 if TYPE_CHECKING:
-    from equipoise.balancing.balance import balance as balance
     from equipoise.balancing.balanced import Balanced as Balanced
-    from equipoise.balancing.conditions import Conditions as Conditions
-    from equipoise.balancing.conditions import conditions as conditions
-    from equipoise.balancing.front import Front as Front
-    from equipoise.balancing.front import trade_off as trade_off
-    from equipoise.balancing.least import least_moments as least_moments
+    from equipoise.balancing.least_norm import least_moments as least_moments
+    from equipoise.balancing.linear_conditions import Conditions as Conditions
+    from equipoise.balancing.linear_conditions import conditions as conditions
+    from equipoise.balancing.optimisation import balance as balance
+    from equipoise.balancing.pareto import Front as Front
+    from equipoise.balancing.pareto import trade_off as trade_off
     from equipoise.balancing.patterns import arranged as arranged
-    from equipoise.balancing.phases import Phasing as Phasing
-    from equipoise.balancing.phases import choose_phases as choose_phases
+    from equipoise.balancing.phase_search import Phasing as Phasing
+    from equipoise.balancing.phase_search import choose_phases as choose_phases
+    from equipoise.balancing.physical_consistency import feasibility as feasibility
     from equipoise.balancing.sensitivity import sensitivities as sensitivities
-    from equipoise.balancing.verdict import verdict as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task
@@ -312,7 +312,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
-    from equipoise.results import Analysis as Analysis
+    from equipoise.results.analysis import Analysis as Analysis
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

@@ -10,9 +10,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld import design_plan
 from equipoise.handheld.design_plan import KEYS, OUTPUTS
 from equipoise.io.fields import LIST, PAIR, AngularSpeed, Table, problem, sized
-from equipoise.io.unit_problems import described
-from equipoise.io.units import parse, pattern
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities import parse, pattern
+from equipoise.quantities.problems import described
 
 Speeds = Annotated[
     tuple[AngularSpeed, AngularSpeed], PAIR, sized('two such as ["6000 rpm", "8000 rpm"]', 2)

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from equipoise.handheld.exposed import IDLING, RACING, WORKING
+from equipoise.i18n import say, to_say
 from equipoise.plotting.tool.design import figure_named
 from equipoise.report.document import Block, Paragraph, Row, Table
 from equipoise.report.numbers import change, number, percent
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import Before, ToolDesign

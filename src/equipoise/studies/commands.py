@@ -29,7 +29,7 @@ SPLIT = {"by_cause", "by_link"}
 def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted."""
     from equipoise.pipeline import analyze
-    from equipoise.results import LEAST_ANGLES, order_values
+    from equipoise.results.analysis import LEAST_ANGLES, order_values
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
@@ -53,7 +53,7 @@ def _responded(model: Machine | Tool, wanted: Wanted) -> Values:
 
 
 def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
-    from equipoise.balancing.balance import balance
+    from equipoise.balancing.optimisation import balance
 
     return balance(cast("Machine", model)).to_dict(wanted)
 

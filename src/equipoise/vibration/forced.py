@@ -8,8 +8,9 @@ from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import HUGE, Machine
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import idle_parts
+from equipoise.quantities.units import HUGE
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.linear import Linear, Step

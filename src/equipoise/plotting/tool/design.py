@@ -14,6 +14,7 @@ from matplotlib.lines import Line2D
 from equipoise.handheld.design_plan import MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
+from equipoise.i18n import say, to_say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, INK, blank, fit, heading, inches, short, shown
 from equipoise.plotting.tool.speeds import (
@@ -29,7 +30,6 @@ from equipoise.plotting.tool.speeds import (
 from equipoise.plotting.tool.studies import UNITS
 from equipoise.plotting.vibration.curves import KINDS, LINE, Curve, draw_curves, legend_at, rows_of
 from equipoise.plotting.vibration.panels import FOOT, LEFT, RIGHT, RPM, WIDTH, name_x, name_y, place
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, blank, heading, shown
 from equipoise.plotting.tool.shaft import (
@@ -33,7 +34,6 @@ from equipoise.plotting.vibration.panels import (
     place,
     zero_line,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.handheld.response import ToolResponse
