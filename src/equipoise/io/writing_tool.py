@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.handheld.design_plan import KEYS, OUTPUTS, DesignLimit, DesignPlan, DesignVariable
 from equipoise.handheld.model import (
     CAUSES,
     NOTHING,
@@ -25,7 +26,6 @@ from equipoise.io import SCHEMA_VERSION
 from equipoise.io.beside import impedance_keys
 from equipoise.io.plain import listed, quantities, tidy, unless, usual_name
 from equipoise.io.tube_materials import Material, material_of
-from equipoise.io.units import Dimension, format_exact
 from equipoise.quantities import Dimension, format_exact
 
 
