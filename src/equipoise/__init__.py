@@ -221,22 +221,22 @@ if TYPE_CHECKING:
     from equipoise.handheld.sweep import sweep_tool as sweep_tool
     from equipoise.handheld.transmission import Transmissions as Transmissions
     from equipoise.handheld.transmission import transmit as transmit
-    from equipoise.io.accelerations import read_accelerations as read_accelerations
-    from equipoise.io.models import dumps as dumps
-    from equipoise.io.models import examples as examples
-    from equipoise.io.models import json_schema as json_schema
-    from equipoise.io.models import load as load
-    from equipoise.io.models import loads as loads
-    from equipoise.io.models import save as save
-    from equipoise.io.records import read_record as read_record
-    from equipoise.io.stored import machine_of as machine_of
-    from equipoise.io.stored import resume as resume
-    from equipoise.io.studies import load_study as load_study
-    from equipoise.io.template import Template as Template
-    from equipoise.io.tools import dumps_tool as dumps_tool
-    from equipoise.io.tools import load_tool as load_tool
-    from equipoise.io.tools import loads_tool as loads_tool
-    from equipoise.io.tools import save_tool as save_tool
+    from equipoise.schema.records import read_accelerations as read_accelerations
+    from equipoise.schema.models import dumps as dumps
+    from equipoise.schema.models import examples as examples
+    from equipoise.schema.models import json_schema as json_schema
+    from equipoise.schema.models import load as load
+    from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import save as save
+    from equipoise.schema.records import read_record as read_record
+    from equipoise.schema.study_units import machine_of as machine_of
+    from equipoise.schema.study_units import resume as resume
+    from equipoise.schema.studies import load_study as load_study
+    from equipoise.schema.template import Template as Template
+    from equipoise.schema.tools import dumps_tool as dumps_tool
+    from equipoise.schema.tools import load_tool as load_tool
+    from equipoise.schema.tools import loads_tool as loads_tool
+    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record

@@ -34,7 +34,7 @@ def modes(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
     from equipoise.vibration.free import vibrate_freely
 
     machine = load(file)

@@ -112,7 +112,7 @@ def _pictures(
     folder: str,
     kind: Kind,
 ) -> None:
-    from equipoise.io.output import write_all
+    from equipoise.schema.output import write_all
     from equipoise.plotting.style import render
     from equipoise.report.findings import ToolFindings, find
 
@@ -168,7 +168,7 @@ def _map(
     from equipoise.cli.progress import counted
     from equipoise.cli.results import draw
     from equipoise.cli.wishes import read_objective
-    from equipoise.io.template import Template
+    from equipoise.schema.template import Template
     from equipoise.plotting.landscape import drawings, told
     from equipoise.studies.landscape import landscape
 

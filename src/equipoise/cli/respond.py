@@ -60,7 +60,7 @@ def respond(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
     from equipoise.terminal.units import OF_VIBRATION, Units
 
     machine = load(file)

@@ -19,7 +19,7 @@ from equipoise.cli.options import (
 from equipoise.errors import UsageError
 from equipoise.handheld.model import Tool
 from equipoise.handheld.sweep import MODES, default_answers, default_speeds
-from equipoise.io.files import printable
+from equipoise.schema.files import printable
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ class Asked:
 
     def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
         """Results must have a place to go, before time is spent on them."""
-        from equipoise.io.tools import files_of_tool, parts_of
+        from equipoise.schema.tools import files_of_tool, parts_of
 
         if plot is not None:
             check_folder("--plot", plot)

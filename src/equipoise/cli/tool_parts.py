@@ -228,7 +228,7 @@ def give(
             raise UsageError("--plot: sensitivities have no picture; leave it out")
         draw(drawn, plot, kind)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         values: dict[str, Any] = {"title": asked.tool.title}
         for part in parts:
@@ -243,7 +243,7 @@ def give(
 
 
 def _save(asked: Asked, out: str) -> None:
-    from equipoise.io.tools import save_tool
+    from equipoise.schema.tools import save_tool
 
     save_tool(asked.better.better, out)
     print(f"wrote {out}; next: equipoise tool {out}", file=sys.stderr)

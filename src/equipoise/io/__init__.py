@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from equipoise.io.models import dumps, examples, json_schema, load, loads, save
+    from equipoise.schema.models import dumps, examples, json_schema, load, loads, save
 
 SCHEMA_VERSION = 1
 """Version of the model file that is read and written."""
@@ -18,7 +18,7 @@ __all__ = ["SCHEMA_VERSION", "dumps", "examples", "json_schema", "load", "loads"
 
 def __getattr__(name: str) -> Any:
     if name in __all__:
-        from equipoise.io import models
+        from equipoise.schema import models
 
         return getattr(models, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

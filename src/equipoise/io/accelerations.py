@@ -22,8 +22,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.exposure.checks import AXES
 from equipoise.exposure.daily import Task
 from equipoise.exposure.signal import UNEVEN_STEPS, uneven
-from equipoise.io import csv_columns
-from equipoise.io.files import FileError, printable, read_text
+from equipoise.schema import csv_columns
+from equipoise.schema.files import FileError, printable, read_text
 
 Array = np.ndarray[Any, Any]
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, TypeVar
 
 from equipoise.errors import EquipoiseError, ModelError
 from equipoise.handheld.model import PLANES
-from equipoise.io.files import printable
-from equipoise.io.opening import Opened, bundled, opened, opened_example
+from equipoise.schema.files import printable
+from equipoise.schema.opening import Opened, bundled, opened, opened_example
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
@@ -31,28 +31,28 @@ class Beside:
         self.folder = folder
 
     def load(self, file: str) -> LoadTable:
-        from equipoise.io.tables import read_load
+        from equipoise.schema.tables import read_load
 
         return read_load(file, self._folder(file))
 
     def soil(self, file: str) -> SoilTable:
-        from equipoise.io.tables import read_soil
+        from equipoise.schema.tables import read_soil
 
         return read_soil(file, self._folder(file))
 
     def motor(self, file: str) -> MotorTable:
-        from equipoise.io.tables import read_motor
+        from equipoise.schema.tables import read_motor
 
         return read_motor(file, self._folder(file))
 
     def impedance(self, file: str) -> Impedance:
-        from equipoise.io.impedances import read_impedance
+        from equipoise.schema.tables import read_impedance
 
         return read_impedance(file, self._folder(file))
 
     def linkage(self, file: str) -> Machine:
         """The linkage of another model file, or a bundled one; it has masses and turns fully."""
-        from equipoise.io.models import loads
+        from equipoise.schema.models import loads
         from equipoise.mechanism.dynamics import massless
         from equipoise.mechanism.linkage import assemble
 

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.files import FileError, printable, read_text
+from equipoise.schema.files import FileError, printable, read_text
 from equipoise.quantities.units import FACTORS, HUGE, TINY, plain_unit
 
 if TYPE_CHECKING:

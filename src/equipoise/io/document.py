@@ -11,27 +11,13 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field
 
 from equipoise.errors import ModelError
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.beside import Beside, table_at
-from equipoise.io.document_motor import Motor
-from equipoise.io.document_planting import Planting
-from equipoise.io.document_spring import Spring
-from equipoise.io.document_support import Row, Support
-from equipoise.io.fields import (
-    PAIR,
-    Acceleration,
-    Angle,
-    AngularAcceleration,
-    AngularSpeed,
-    Force,
-    Inertia,
-    Mass,
-    Point,
-    Table,
-    Torque,
-    vector,
-    vectors,
-)
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.opening import Beside, table_at
+from equipoise.schema.document_motor import Motor
+from equipoise.schema.document_planting import Planting
+from equipoise.schema.document_spring import Spring
+from equipoise.schema.document_support import Row, Support
+from equipoise.schema.fields import PAIR, Acceleration, Angle, AngularAcceleration, AngularSpeed, Force, Inertia, Mass, Point, Table, Torque, vector, vectors
 from equipoise.mechanism import model
 from equipoise.mechanism.model import Machine
 
@@ -258,7 +244,7 @@ class Document(Table):
         machine = self._without_balance(reader)
         if self.balance is None:
             return machine
-        from equipoise.io.document_balance import read_balance
+        from equipoise.schema.document_balance import read_balance
 
         return machine.with_balance(read_balance(self.balance, machine))
 

@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import ConfigDict, Field, JsonValue
 
-from equipoise.io.document_weights import AddedMass, BalanceShafts, GearedWeight
-from equipoise.io.document_wishes import Limit, Objective
-from equipoise.io.fields import PAIR, Angle, Length, Mass, Point, Stiffness, Table, vector
-from equipoise.io.problems import validated
+from equipoise.schema.document_weights import AddedMass, BalanceShafts, GearedWeight
+from equipoise.schema.document_wishes import Limit, Objective
+from equipoise.schema.fields import PAIR, Angle, Length, Mass, Point, Stiffness, Table, vector
+from equipoise.schema.problems import validated
 from equipoise.mechanism import balance
 from equipoise.mechanism.model import Machine
 

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, JsonValue, WithJsonSche
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld import design_plan
 from equipoise.handheld.design_plan import KEYS, OUTPUTS
-from equipoise.io.fields import LIST, PAIR, AngularSpeed, Table, problem, sized
+from equipoise.schema.fields import LIST, PAIR, AngularSpeed, Table, problem, sized
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import parse, pattern
 from equipoise.quantities.problems import described

@@ -6,8 +6,8 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from equipoise.io.beside import Beside, table_at
-from equipoise.io.fields import AngularSpeed, Inertia, Table, Torque
+from equipoise.schema.opening import Beside, table_at
+from equipoise.schema.fields import AngularSpeed, Inertia, Table, Torque
 from equipoise.mechanism import motor
 
 

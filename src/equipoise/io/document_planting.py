@@ -6,21 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import ConfigDict, Field
 
-from equipoise.io.beside import Beside, table_at
-from equipoise.io.fields import (
-    PAIR,
-    Acceleration,
-    Angle,
-    Damping,
-    DampingPerLength,
-    Force,
-    Length,
-    Point,
-    Speed,
-    Stiffness,
-    Table,
-    vector,
-)
+from equipoise.schema.opening import Beside, table_at
+from equipoise.schema.fields import PAIR, Acceleration, Angle, Damping, DampingPerLength, Force, Length, Point, Speed, Stiffness, Table, vector
 from equipoise.mechanism import field
 
 

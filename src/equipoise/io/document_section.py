@@ -8,8 +8,8 @@ from pydantic import ConfigDict, Field, JsonValue
 
 from equipoise.errors import ModelError
 from equipoise.handheld import shaft
-from equipoise.io.fields import BendingStiffness, Density, Length, MassPerLength, Modulus, Table
-from equipoise.io.tube_materials import MATERIALS, Material
+from equipoise.schema.fields import BendingStiffness, Density, Length, MassPerLength, Modulus, Table
+from equipoise.schema.tube_materials import MATERIALS, Material
 from equipoise.mechanism.checks import unknown
 
 OF_MATERIAL = ("youngs_modulus", "density", "poisson_ratio")

@@ -9,17 +9,10 @@ from pydantic import ConfigDict, Field
 from equipoise.errors import ModelError
 from equipoise.handheld import model, shaft
 from equipoise.handheld.model import NOTHING
-from equipoise.io.beside import Beside, impedance_keys, table_at
-from equipoise.io.document_section import Profile, section_keys
-from equipoise.io.fields import Length, Mass, Table
-from equipoise.io.planes import (
-    Dampings,
-    Files,
-    Inertias,
-    Stiffnesses,
-    TorsionalDampings,
-    TorsionalStiffnesses,
-)
+from equipoise.schema.opening import Beside, impedance_keys, table_at
+from equipoise.schema.document_section import Profile, section_keys
+from equipoise.schema.fields import Length, Mass, Table
+from equipoise.schema.planes import Dampings, Files, Inertias, Stiffnesses, TorsionalDampings, TorsionalStiffnesses
 
 _PLANES = "; a table for unlike planes"
 

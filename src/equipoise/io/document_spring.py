@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from equipoise.io.fields import Length, Stiffness, Table
+from equipoise.schema.fields import Length, Stiffness, Table
 from equipoise.mechanism import spring
 
 

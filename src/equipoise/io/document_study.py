@@ -11,8 +11,8 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, WithJsonSchema
 from typing_extensions import TypeAliasType
 
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.fields import LIST, PAIR, Table, sized
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.fields import LIST, PAIR, Table, sized
 from equipoise.quantities.units import NUMBER
 from equipoise.studies.checks import COMMANDS, METHODS
 

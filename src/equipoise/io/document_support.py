@@ -8,28 +8,7 @@ from pydantic import ConfigDict, Discriminator, Field, JsonValue, Tag
 from typing_extensions import TypeAliasType
 
 from equipoise.errors import ModelError
-from equipoise.io.fields import (
-    LIST,
-    LIST_TAG,
-    PAIR,
-    TABLE_TAG,
-    TEXT_TAG,
-    Angle,
-    Damping,
-    Force,
-    Inertia,
-    Length,
-    Mass,
-    Point,
-    PolarPoint,
-    Stiffness,
-    Table,
-    Torque,
-    TorsionalDamping,
-    TorsionalStiffness,
-    sized,
-    vector,
-)
+from equipoise.schema.fields import LIST, LIST_TAG, PAIR, TABLE_TAG, TEXT_TAG, Angle, Damping, Force, Inertia, Length, Mass, Point, PolarPoint, Stiffness, Table, Torque, TorsionalDamping, TorsionalStiffness, sized, vector
 from equipoise.mechanism import support
 
 Freedom = Literal["surge", "heave", "sway", "roll", "yaw", "pitch"]

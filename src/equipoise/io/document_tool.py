@@ -9,12 +9,12 @@ from pydantic import ConfigDict, Field
 from equipoise.errors import ModelError
 from equipoise.handheld import model
 from equipoise.handheld.model import CAUSES
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.beside import Beside, table_at
-from equipoise.io.document_design import Design, Speeds
-from equipoise.io.document_shaft import Shaft
-from equipoise.io.fields import Angle, AngularSpeed, Force, Table, Time, Unbalance
-from equipoise.io.plain import usual_name
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.opening import Beside, table_at
+from equipoise.schema.document_design import Design, Speeds
+from equipoise.schema.document_shaft import Shaft
+from equipoise.schema.fields import Angle, AngularSpeed, Force, Table, Time, Unbalance
+from equipoise.schema.plain import usual_name
 
 
 class Excitation(Table):

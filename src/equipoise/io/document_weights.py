@@ -15,21 +15,7 @@ from pydantic import (
 )
 
 from equipoise.errors import ModelError
-from equipoise.io.fields import (
-    LIST,
-    LIST_TAG,
-    PAIR,
-    TEXT_TAG,
-    Angle,
-    Density,
-    Length,
-    Mass,
-    Point,
-    Table,
-    problem,
-    sized,
-    vector,
-)
+from equipoise.schema.fields import LIST, LIST_TAG, PAIR, TEXT_TAG, Angle, Density, Length, Mass, Point, Table, problem, sized, vector
 from equipoise.mechanism import balance
 from equipoise.mechanism.balance import CUT, MATERIALS
 from equipoise.mechanism.balance_weights import HOLLOW

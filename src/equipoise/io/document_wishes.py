@@ -7,8 +7,8 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.fields import LIST, AngularSpeed, Table, problem, sized
-from equipoise.io.shares import SHARE, parse_share
+from equipoise.schema.fields import LIST, AngularSpeed, Table, problem, sized
+from equipoise.schema.numbers import SHARE, parse_share
 from equipoise.mechanism import balance
 from equipoise.mechanism.balance_outputs import quantity_of, wrong_limit
 from equipoise.mechanism.model import Machine

@@ -21,7 +21,7 @@ from typing_extensions import TypeAliasType
 
 from equipoise import quantities
 from equipoise.errors import UsageError
-from equipoise.io.points import from_polar
+from equipoise.schema.points import from_polar
 from equipoise.mechanism import model
 from equipoise.mechanism.model import Vector
 from equipoise.quantities.problems import described

@@ -14,10 +14,10 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.handheld.model import PLANES
-from equipoise.io.numbers import XYZ, Number, Planes, Vector, read_number, vector_of
-from equipoise.io.opening import Kind
-from equipoise.io.problems import written_key
-from equipoise.io.schema_keys import Place, default_at, is_known, is_whole
+from equipoise.schema.numbers import XYZ, Number, Planes, Vector, read_number, vector_of
+from equipoise.schema.opening import Kind
+from equipoise.schema.problems import written_key
+from equipoise.schema.schema_keys import Place, default_at, is_known, is_whole
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
 

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from equipoise.io.finding import Found
-from equipoise.io.numbers import XYZ, read_number
+from equipoise.schema.finding import Found
+from equipoise.schema.numbers import XYZ, read_number
 from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
 
 SHARE = "%"

@@ -14,8 +14,8 @@ from __future__ import annotations
 from pathlib import Path
 
 from equipoise.handheld.model import Impedance
-from equipoise.io import csv_columns
-from equipoise.io.points import from_polar
+from equipoise.schema import csv_columns
+from equipoise.schema.points import from_polar
 
 _IMPEDANCE: csv_columns.Forms = (
     ("frequency", "resistance", "reactance"),

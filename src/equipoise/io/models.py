@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.files import FileError, printable, write_text
-from equipoise.io.opening import FileKind, bundled, content_of, kind_of, opened
+from equipoise.schema.files import FileError, printable, write_text
+from equipoise.schema.opening import FileKind, bundled, content_of, kind_of, opened
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
@@ -74,7 +74,7 @@ def dumps(machine: Machine) -> str:
     ModelError
         A table has no file name.
     """
-    from equipoise.io.writing import document_of, toml_text
+    from equipoise.schema.old_writing import document_of, toml_text
 
     tables = tables_of(machine)
     for where, table in tables.items():
@@ -95,8 +95,8 @@ def save(machine: Machine, path: str | os.PathLike[str]) -> None:
     UsageError
         The file cannot be written; says why.
     """
-    from equipoise.io.tables import format_table
-    from equipoise.io.writing import document_of, toml_text
+    from equipoise.schema.tables import format_table
+    from equipoise.schema.old_writing import document_of, toml_text
 
     path = Path(path)
     tables = tables_of(machine)
@@ -155,7 +155,7 @@ def examples(kind: FileKind | None = None) -> dict[str, str]:
 
 def json_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the model file, for editors."""
-    from equipoise.io.schema import json_schema
+    from equipoise.schema.schema import json_schema
 
     return json_schema()
 
@@ -166,9 +166,9 @@ def json_schema() -> dict[str, Any]:
 def _machine(text: str, folder: Path | None) -> Machine:
     content = content_of(text, "linkage")
 
-    from equipoise.io.beside import Beside
-    from equipoise.io.document import Document
-    from equipoise.io.problems import validated
+    from equipoise.schema.opening import Beside
+    from equipoise.schema.document import Document
+    from equipoise.schema.problems import validated
 
     return validated(Document, content).to_machine(Beside(folder))
 

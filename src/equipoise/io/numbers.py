@@ -14,8 +14,8 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.handheld.model import PLANES
-from equipoise.io.points import from_polar
-from equipoise.io.shares import format_share, parse_share
+from equipoise.schema.points import from_polar
+from equipoise.schema.numbers import format_share, parse_share
 from equipoise.quantities import parse
 from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
 

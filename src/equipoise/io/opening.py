@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any, Literal
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.files import LARGEST, FileError, printable, read_text
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.files import LARGEST, FileError, printable, read_text
 from equipoise.mechanism.checks import unknown
 
 Kind = Literal["linkage", "tool"]

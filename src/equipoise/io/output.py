@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.io.files import FileError, make_folder, printable, write_bytes
+from equipoise.schema.files import FileError, make_folder, printable, write_bytes
 from equipoise.results.analysis import Analysis, columns, unit_of
 
 Array = np.ndarray[Any, Any]

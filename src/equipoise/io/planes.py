@@ -12,7 +12,7 @@ from typing_extensions import TypeAliasType
 from equipoise import quantities
 from equipoise.errors import UsageError
 from equipoise.handheld.model import PLANES
-from equipoise.io.fields import LIST, problem
+from equipoise.schema.fields import LIST, problem
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
 

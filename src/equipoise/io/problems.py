@@ -8,7 +8,7 @@ from json import dumps as quoted
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
-from equipoise.io.fields import TAGS
+from equipoise.schema.fields import TAGS
 from equipoise.quantities.problems import described
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from __future__ import annotations
 import os
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.csv_columns import Forms, arrays_of
-from equipoise.io.files import FileError, printable, read_text
+from equipoise.schema.csv_columns import Forms, arrays_of
+from equipoise.schema.files import FileError, printable, read_text
 from equipoise.measured.record import Record
 
 LARGEST = 100_000_000

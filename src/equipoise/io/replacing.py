@@ -7,9 +7,9 @@ from numbers import Real
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.io.finding import Content, Found
-from equipoise.io.numbers import POLAR, XYZ, Planes, Vector
-from equipoise.io.schema_keys import Place
+from equipoise.schema.finding import Content, Found
+from equipoise.schema.numbers import POLAR, XYZ, Planes, Vector
+from equipoise.schema.schema_keys import Place
 
 Given = tuple[str, Found, float]
 """Path of a number, where it stands, and what is to stand there."""

@@ -8,10 +8,10 @@ from pydantic import BaseModel, create_model
 from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
-from equipoise.io.document import Document
-from equipoise.io.document_balance import Balance
-from equipoise.io.document_study import StudyDocument
-from equipoise.io.document_tool import ToolDocument
+from equipoise.schema.document import Document
+from equipoise.schema.document_balance import Balance
+from equipoise.schema.document_study import StudyDocument
+from equipoise.schema.document_tool import ToolDocument
 
 
 class _Generator(GenerateJsonSchema):

@@ -13,9 +13,9 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from typing_extensions import TypeAliasType
 
-from equipoise.io.document import Document
-from equipoise.io.document_tool import ToolDocument
-from equipoise.io.opening import Kind
+from equipoise.schema.document import Document
+from equipoise.schema.document_tool import ToolDocument
+from equipoise.schema.opening import Kind
 
 Place = tuple[str | int, ...]
 
@@ -52,7 +52,7 @@ def _at(kind: Kind, place: Place) -> list[Any]:
     """Types of what stands at a place."""
     found: list[Any] = [ToolDocument if kind == "tool" else Document]
     if kind == "linkage" and place[:1] == ("balance",):
-        from equipoise.io.document_balance import Balance
+        from equipoise.schema.document_balance import Balance
 
         found, place = [Balance], place[1:]  # which the document reads in a second step
     for key in place:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
-from equipoise.io.files import printable
-from equipoise.io.studies import restore
+from equipoise.schema.files import printable
+from equipoise.schema.studies import restore
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool

@@ -12,8 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.io.files import printable
-from equipoise.io.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
+from equipoise.schema.files import printable
+from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
 from equipoise.quantities.problems import described
 from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.spread import Choices, Normal, Range, Spread, Uniform
@@ -27,8 +27,8 @@ from equipoise.studies.study import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.io import document_study
-    from equipoise.io.template import Template
+    from equipoise.schema import document_study
+    from equipoise.schema.template import Template
 
 __all__ = ["load_study", "restore", "study_schema"]
 
@@ -67,7 +67,7 @@ def restore(texts: Mapping[str, str]) -> Study:
     ------
     UsageError : the texts are not those of a study.
     """
-    from equipoise.io.template import Template
+    from equipoise.schema.template import Template
 
     try:
         of_model = {
@@ -84,7 +84,7 @@ def restore(texts: Mapping[str, str]) -> Study:
 
 def study_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the study file, for editors."""
-    from equipoise.io.schema import study_schema
+    from equipoise.schema.schema import study_schema
 
     return study_schema()
 
@@ -93,8 +93,8 @@ def study_schema() -> dict[str, Any]:
 
 
 def _study(text: str, folder: Path) -> Study:
-    from equipoise.io.document_study import StudyDocument
-    from equipoise.io.problems import validated
+    from equipoise.schema.document_study import StudyDocument
+    from equipoise.schema.problems import validated
 
     content = toml_content(text)
     if kind_of(content) in {"linkage", "tool"}:
@@ -128,7 +128,7 @@ def _study(text: str, folder: Path) -> Study:
 
 def _template(name: str, folder: Path) -> Template:
     """The model of a study: a file beside it goes before a bundled example."""
-    from equipoise.io.template import Template
+    from equipoise.schema.template import Template
 
     beside = os.path.isfile(folder / name)
     try:
@@ -181,7 +181,7 @@ def _spread(where: str, given: document_study.Vary, value: float, dimension: str
 
 def _value(where: str, given: Any, dimension: str | None) -> float:
     """A value of a number of the model, in SI units."""
-    from equipoise.io.numbers import read_number
+    from equipoise.schema.numbers import read_number
     from equipoise.quantities import parse
 
     if dimension is None:
@@ -226,7 +226,7 @@ def _output(where: str, given: document_study.Output, template: Template) -> Out
 
 def _limit(where: str, given: Any, dimension: str | None) -> float:
     """A limit in SI units; where its dimension is not known, a plain number or any quantity."""
-    from equipoise.io.numbers import read_number
+    from equipoise.schema.numbers import read_number
 
     if dimension is not None:
         return _value(where, given, dimension)

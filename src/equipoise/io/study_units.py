@@ -8,9 +8,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
-from equipoise.io.given_units import SHARE, handy, unit_of
-from equipoise.io.stored import study_of
-from equipoise.io.template import Template
+from equipoise.schema.given_units import SHARE, handy, unit_of
+from equipoise.schema.study_units import study_of
+from equipoise.schema.template import Template
 from equipoise.quantities.units import FACTORS, KINDS
 
 if TYPE_CHECKING:

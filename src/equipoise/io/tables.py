@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from equipoise import quantities
-from equipoise.io.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
+from equipoise.schema.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable
 from equipoise.mechanism.motor import MotorTable

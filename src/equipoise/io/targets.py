@@ -15,10 +15,10 @@ from pydantic import Field
 
 from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.fields import PAIR, Table
-from equipoise.io.files import FileError, printable, read_text
-from equipoise.io.opening import toml_content
-from equipoise.io.problems import validated
+from equipoise.schema.fields import PAIR, Table
+from equipoise.schema.files import FileError, printable, read_text
+from equipoise.schema.opening import toml_content
+from equipoise.schema.problems import validated
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal

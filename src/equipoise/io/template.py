@@ -16,25 +16,25 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
-from equipoise.io.beside import Beside
-from equipoise.io.document import Document
-from equipoise.io.document_tool import ToolDocument
-from equipoise.io.files import printable
-from equipoise.io.finding import Found, all_numbers, find, written_place
-from equipoise.io.given_units import unit_in
-from equipoise.io.models import tables_of
-from equipoise.io.numbers import Number
-from equipoise.io.opening import Kind, Opened, kind_of, model_content, opened
-from equipoise.io.problems import validated
-from equipoise.io.replacing import replaced, with_changes
-from equipoise.io.tools import parts_of
+from equipoise.schema.opening import Beside
+from equipoise.schema.document import Document
+from equipoise.schema.document_tool import ToolDocument
+from equipoise.schema.files import printable
+from equipoise.schema.finding import Found, all_numbers, find, written_place
+from equipoise.schema.given_units import unit_in
+from equipoise.schema.models import tables_of
+from equipoise.schema.numbers import Number
+from equipoise.schema.opening import Kind, Opened, kind_of, model_content, opened
+from equipoise.schema.problems import validated
+from equipoise.schema.finding import replaced, with_changes
+from equipoise.schema.tools import parts_of
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
 
 if TYPE_CHECKING:
-    from equipoise.io.schema_keys import Place
+    from equipoise.schema.schema_keys import Place
 
 Value = TypeVar("Value")
 Known = dict[tuple[str, str], Any]
@@ -99,8 +99,8 @@ class Template:
         ------
         ModelError : a tool has what no file can tell.
         """
-        from equipoise.io.writing import document_of, toml_text
-        from equipoise.io.writing_tool import tool_document
+        from equipoise.schema.old_writing import document_of, toml_text
+        from equipoise.schema.writing_tool import tool_document
 
         names, known = _named(model)
         if isinstance(model, Tool):

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
-from equipoise.io.beside import Beside, impedance_keys
-from equipoise.io.files import printable
-from equipoise.io.models import files_of, loads, save, write_beside
-from equipoise.io.opening import bundled, content_of, kind_of_text, opened, opened_example
+from equipoise.schema.opening import Beside, impedance_keys
+from equipoise.schema.files import printable
+from equipoise.schema.models import files_of, loads, save, write_beside
+from equipoise.schema.opening import bundled, content_of, kind_of_text, opened, opened_example
 from equipoise.mechanism.model import Machine
 
 if TYPE_CHECKING:
@@ -68,7 +68,7 @@ def load_any(path_or_name: str | os.PathLike[str]) -> Machine | Tool | Study:
     file = opened(path_or_name)
     kind = kind_of_text(file.text)
     if kind == "study":
-        from equipoise.io.studies import study_in
+        from equipoise.schema.studies import study_in
 
         return study_in(file)
     read = loads_tool if kind == "tool" else loads
@@ -78,15 +78,15 @@ def load_any(path_or_name: str | os.PathLike[str]) -> Machine | Tool | Study:
 def _tool(text: str, folder: Path | None) -> Tool:
     content = content_of(text, "tool")
 
-    from equipoise.io.document_tool import ToolDocument
-    from equipoise.io.problems import validated
+    from equipoise.schema.document_tool import ToolDocument
+    from equipoise.schema.problems import validated
 
     return validated(ToolDocument, content).to_tool(Beside(folder))
 
 
 def tool_schema() -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the tool's file, for editors."""
-    from equipoise.io.schema import tool_schema
+    from equipoise.schema.schema import tool_schema
 
     return tool_schema()
 
@@ -130,7 +130,7 @@ def save_tool(tool: Tool, path: str | os.PathLike[str]) -> None:
     ModelError
         A section has what no file can tell.
     """
-    from equipoise.io.impedances import format_impedance
+    from equipoise.schema.tables import format_impedance
 
     path = Path(path)
     names = {part.where: part.name_beside(path) for part in parts_of(tool)}
@@ -206,7 +206,7 @@ def _written(tool: Tool, path: Path) -> list[tuple[Part, Path]]:
 
 
 def _text(tool: Tool, names: dict[str, str]) -> str:
-    from equipoise.io.writing import toml_text
-    from equipoise.io.writing_tool import tool_document
+    from equipoise.schema.old_writing import toml_text
+    from equipoise.schema.writing_tool import tool_document
 
     return toml_text(tool_document(tool, names))

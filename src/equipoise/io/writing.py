@@ -6,11 +6,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.plain import listed, quantities, unless
-from equipoise.io.points import written
-from equipoise.io.writing_balance import balance_table
-from equipoise.io.writing_support import motor_table, row_table, support_table
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.plain import listed, quantities, unless
+from equipoise.schema.points import written
+from equipoise.schema.writing_balance import balance_table
+from equipoise.schema.writing_support import motor_table, row_table, support_table
 from equipoise.mechanism.balance_checks import LISTS
 from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import (

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from math import isfinite
 from typing import Any
 
-from equipoise.io.plain import listed, quantities, tidy, unless
-from equipoise.io.points import written
-from equipoise.io.shares import format_share
+from equipoise.schema.plain import listed, quantities, tidy, unless
+from equipoise.schema.points import written
+from equipoise.schema.numbers import format_share
 from equipoise.mechanism.balance import (
     AddedMass,
     Balance,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from equipoise.io.plain import listed, quantities, tidy, unless
-from equipoise.io.points import written
+from equipoise.schema.plain import listed, quantities, tidy, unless
+from equipoise.schema.points import written
 from equipoise.mechanism.motor import Motor
 from equipoise.mechanism.support import UP, Direction, Gauge, Mount, Place, Row, Support
 from equipoise.quantities import Dimension, format_exact

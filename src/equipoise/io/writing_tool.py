@@ -22,10 +22,10 @@ from equipoise.handheld.model import (
     Work,
 )
 from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
-from equipoise.io import SCHEMA_VERSION
-from equipoise.io.beside import impedance_keys
-from equipoise.io.plain import listed, quantities, tidy, unless, usual_name
-from equipoise.io.tube_materials import Material, material_of
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.opening import impedance_keys
+from equipoise.schema.plain import listed, quantities, tidy, unless, usual_name
+from equipoise.schema.tube_materials import Material, material_of
 from equipoise.quantities import Dimension, format_exact
 
 

@@ -241,9 +241,9 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.io.models import loads
-    from equipoise.io.opening import kind_of_text, opened
-    from equipoise.io.tools import loads_tool
+    from equipoise.schema.models import loads
+    from equipoise.schema.opening import kind_of_text, opened
+    from equipoise.schema.tools import loads_tool
 
     file = opened(path_or_name)
     name = os.path.basename(os.fspath(path_or_name))

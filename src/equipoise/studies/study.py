@@ -23,7 +23,7 @@ CHUNK, SLOW_CHUNK = 65_536, 256
 
 
 class Model(Protocol):
-    """A model file in which numbers can be replaced; `equipoise.io.template.Template`."""
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
 
     @property
     def kind(self) -> Literal["linkage", "tool"]: ...
@@ -173,7 +173,7 @@ class Study:
 
     @property
     def texts(self) -> dict[str, str]:
-        """All of it as texts by name, from which `equipoise.io.studies.restore` makes it again."""
+        """All of it as texts by name, from which `equipoise.schema.studies.restore` makes it again."""
         return {
             "study": json.dumps(to_plain(self), ensure_ascii=False, indent=1, default=int),
             **({"file": self.file} if self.file else {}),

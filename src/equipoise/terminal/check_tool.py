@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING
 
-from equipoise.io.files import printable
+from equipoise.schema.files import printable
 from equipoise.terminal.tables import PER_RPM, number
 
 if TYPE_CHECKING:

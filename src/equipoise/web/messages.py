@@ -9,7 +9,7 @@ from math import isfinite
 from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
-from equipoise.io.files import LARGEST
+from equipoise.schema.files import LARGEST
 from equipoise.quantities.problems import described
 from equipoise.quantities.units import HUGE
 

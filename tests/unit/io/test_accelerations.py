@@ -9,7 +9,7 @@ import pytest
 
 from equipoise.errors import ModelError
 from equipoise.exposure.daily import Task
-from equipoise.io.accelerations import Accelerations, parse_accelerations, read_accelerations
+from equipoise.schema.records import Accelerations, parse_accelerations, read_accelerations
 
 ROWS = 20
 SIGNAL = "time [s],x [m/s^2],y [m/s^2],z [m/s^2]"

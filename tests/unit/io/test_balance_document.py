@@ -10,9 +10,9 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, json_schema, loads
-from equipoise.io.document_weights import Weighted
-from equipoise.io.document_wishes import MEASURED_IN, Measured
+from equipoise.schema import dumps, json_schema, loads
+from equipoise.schema.document_weights import Weighted
+from equipoise.schema.document_wishes import MEASURED_IN, Measured
 from equipoise.mechanism.balance import (
     MATERIALS,
     MEASURES,

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from equipoise.io import dumps, json_schema, loads
+from equipoise.schema import dumps, json_schema, loads
 from equipoise.mechanism.balance import (
     MATERIALS,
     MEASURES,

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import EquipoiseError, ModelError
-from equipoise.io import examples, load, loads
+from equipoise.schema import examples, load, loads
 from equipoise.mechanism.model import STANDARD_GRAVITY, Gear
 from unit.io.samples import EVERYTHING, FOUR_BAR
 

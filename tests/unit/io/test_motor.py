@@ -13,9 +13,9 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, json_schema, load, loads, save
-from equipoise.io.models import files_of, tables_of
-from equipoise.io.tables import format_motor, read_motor
+from equipoise.schema import dumps, json_schema, load, loads, save
+from equipoise.schema.models import files_of, tables_of
+from equipoise.schema.tables import format_motor, read_motor
 from equipoise.mechanism.model import Load, LoadTable, Machine
 from equipoise.mechanism.motor import Motor, MotorTable
 from unit.io.samples import FOUR_BAR

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, json_schema, loads
+from equipoise.schema import dumps, json_schema, loads
 from equipoise.mechanism.field import Planting, Soil, SoilTable
 from unit.io.samples import FOUR_BAR
 

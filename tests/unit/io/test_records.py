@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.io.records import parse_record, read_record
+from equipoise.schema.records import parse_record, read_record
 
 ROWS = 20
 

@@ -12,7 +12,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.io import dumps, examples, load, loads, save
+from equipoise.schema import dumps, examples, load, loads, save
 from equipoise.mechanism.model import Drive, Link, Load, LoadTable, Machine, Position
 from equipoise.mechanism.support import UP
 from unit.io.samples import EVERYTHING, FOUR_BAR

@@ -12,12 +12,12 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, examples, json_schema, load, loads
-from equipoise.io.studies import load_study, study_schema
-from equipoise.io.tools import tool_schema
+from equipoise.schema import dumps, examples, json_schema, load, loads
+from equipoise.schema.studies import load_study, study_schema
+from equipoise.schema.tools import tool_schema
 from unit.io.samples import EVERYTHING, FOUR_BAR
 
-FOLDER = files("equipoise.io")
+FOLDER = files("equipoise.schema")
 SHIPPED = {
     "model.schema.json": json_schema,
     "study.schema.json": study_schema,

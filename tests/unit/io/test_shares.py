@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import UsageError
-from equipoise.io.shares import format_share, parse_share
+from equipoise.schema.numbers import format_share, parse_share
 
 
 def test_shares() -> None:

@@ -11,8 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, load, loads, save
-from equipoise.io.tables import format_soil, read_soil
+from equipoise.schema import dumps, load, loads, save
+from equipoise.schema.tables import format_soil, read_soil
 from equipoise.mechanism.field import Soil, SoilTable
 from equipoise.mechanism.model import Load, LoadTable
 from unit.io.samples import FOUR_BAR

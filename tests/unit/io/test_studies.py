@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.files import printable
-from equipoise.io.studies import load_study, restore
+from equipoise.schema.files import printable
+from equipoise.schema.studies import load_study, restore
 from equipoise.quantities import parse
 from equipoise.studies.sampling import samples
 from equipoise.studies.spread import Choices, Normal, Range, Uniform

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from equipoise.errors import ModelError
-from equipoise.io.studies import load_study
-from equipoise.io.study_units import Unit, units_of
-from equipoise.io.template import Template
+from equipoise.schema.studies import load_study
+from equipoise.schema.study_units import Unit, units_of
+from equipoise.schema.template import Template
 from equipoise.studies.spread import Range
 from equipoise.studies.study import Output, Sampling, Study, Vary
 

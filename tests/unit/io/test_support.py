@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.io import dumps, json_schema, loads
-from equipoise.io.document_support import Axis, Freedom
+from equipoise.schema import dumps, json_schema, loads
+from equipoise.schema.document_support import Axis, Freedom
 from equipoise.mechanism.support import AXES, FREEDOMS, UP, Gauge, Mount, Row, Support
 from unit.io.samples import FOUR_BAR, ROWS, SUPPORT
 

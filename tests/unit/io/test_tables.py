@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError
-from equipoise.io import load
-from equipoise.io.tables import format_load, parse_load, read_load
+from equipoise.schema import load
+from equipoise.schema.tables import format_load, parse_load, read_load
 from equipoise.mechanism.model import LoadTable
 from unit.io.samples import FOUR_BAR
 

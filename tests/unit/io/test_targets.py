@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.io.targets import Targets, read_targets
+from equipoise.schema.targets import Targets, read_targets
 from equipoise.planting.goals import Goal
 from equipoise.planting.judge import figure_names
 

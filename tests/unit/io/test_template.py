@@ -17,11 +17,11 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
-from equipoise.io.models import examples
-from equipoise.io.numbers import OF_UNIT
-from equipoise.io.points import from_polar
-from equipoise.io.schema_keys import is_whole
-from equipoise.io.template import Template
+from equipoise.schema.models import examples
+from equipoise.schema.numbers import OF_UNIT
+from equipoise.schema.points import from_polar
+from equipoise.schema.schema_keys import is_whole
+from equipoise.schema.template import Template
 from equipoise.mechanism.model import Machine
 from equipoise.quantities.units import KINDS
 from unit.io.samples import FOUR_BAR, SUPPORT

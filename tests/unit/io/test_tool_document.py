@@ -14,8 +14,8 @@ from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
 from equipoise.handheld.shaft import Section, Tube
-from equipoise.io import examples, load, loads
-from equipoise.io.tools import dumps_tool, load_any, load_tool, loads_tool, tool_schema
+from equipoise.schema import examples, load, loads
+from equipoise.schema.tools import dumps_tool, load_any, load_tool, loads_tool, tool_schema
 from unit.io.samples import FOUR_BAR
 from unit.io.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 

@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Hand, Impedance, Tool
 from equipoise.handheld.shaft import Section
-from equipoise.io import examples, load
-from equipoise.io.impedances import format_impedance, read_impedance
-from equipoise.io.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
+from equipoise.schema import examples, load
+from equipoise.schema.tables import format_impedance, read_impedance
+from equipoise.schema.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
 from equipoise.mechanism.model import LoadTable, Machine
 from unit.io.tool_samples import EVERY_TOOL, TOOL
 

@@ -25,7 +25,7 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import changed, determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
-from equipoise.io.tools import load_tool
+from equipoise.schema.tools import load_tool
 from equipoise.plotting.style import FAINT, INK, MAIN, STRESS, render
 from equipoise.plotting.tool import (
     design_drawings,

@@ -15,7 +15,7 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
-from equipoise.io.tools import load_tool
+from equipoise.schema.tools import load_tool
 from equipoise.plotting import tool as plotting
 from equipoise.plotting.style import render
 
