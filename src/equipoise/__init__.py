@@ -89,7 +89,7 @@ _HOMES = {
     "Support": "mechanism.support",
     "Sweep": "vibration.sweep",
     "Task": "exposure.daily",
-    "Template": "io.template",
+    "Template": "schema.template",
     "Tolerances": "studies.tolerance",
     "Tool": "handheld.model",
     "ToolDesign": "handheld.design",
@@ -115,9 +115,9 @@ _HOMES = {
     "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
     "design_tool": "handheld.design",
-    "dumps": "io.models",
-    "dumps_tool": "io.tools",
-    "examples": "io.models",
+    "dumps": "schema.models",
+    "dumps_tool": "schema.tools",
+    "examples": "schema.models",
     "export": "studies.export",
     "expose_tool": "handheld.exposed",
     "feasibility": "balancing.physical_consistency",
@@ -127,26 +127,26 @@ _HOMES = {
     "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
-    "json_schema": "io.models",
+    "json_schema": "schema.models",
     "landscape": "studies.landscape",
     "least_moments": "balancing.least_norm",
-    "load": "io.models",
-    "load_study": "io.studies",
-    "load_tool": "io.tools",
-    "loads": "io.models",
-    "loads_tool": "io.tools",
-    "machine_of": "io.stored",
+    "load": "schema.models",
+    "load_study": "schema.studies",
+    "load_tool": "schema.tools",
+    "loads": "schema.models",
+    "loads_tool": "schema.tools",
+    "machine_of": "schema.study_units",
     "move": "mechanism.motion",
     "open_store": "studies.store",
     "plant": "planting.summary",
-    "read_accelerations": "io.accelerations",
-    "read_record": "io.records",
+    "read_accelerations": "schema.records",
+    "read_record": "schema.records",
     "regressor": "mechanism.parameters",
     "respond": "vibration.forced",
     "respond_tool": "handheld.response",
-    "resume": "io.stored",
-    "save": "io.models",
-    "save_tool": "io.tools",
+    "resume": "schema.study_units",
+    "save": "schema.models",
+    "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
@@ -221,22 +221,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.sweep import sweep_tool as sweep_tool
     from equipoise.handheld.transmission import Transmissions as Transmissions
     from equipoise.handheld.transmission import transmit as transmit
-    from equipoise.schema.records import read_accelerations as read_accelerations
-    from equipoise.schema.models import dumps as dumps
-    from equipoise.schema.models import examples as examples
-    from equipoise.schema.models import json_schema as json_schema
-    from equipoise.schema.models import load as load
-    from equipoise.schema.models import loads as loads
-    from equipoise.schema.models import save as save
-    from equipoise.schema.records import read_record as read_record
-    from equipoise.schema.study_units import machine_of as machine_of
-    from equipoise.schema.study_units import resume as resume
-    from equipoise.schema.studies import load_study as load_study
-    from equipoise.schema.template import Template as Template
-    from equipoise.schema.tools import dumps_tool as dumps_tool
-    from equipoise.schema.tools import load_tool as load_tool
-    from equipoise.schema.tools import loads_tool as loads_tool
-    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
@@ -313,6 +297,22 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.schema.models import dumps as dumps
+    from equipoise.schema.models import examples as examples
+    from equipoise.schema.models import json_schema as json_schema
+    from equipoise.schema.models import load as load
+    from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import save as save
+    from equipoise.schema.records import read_accelerations as read_accelerations
+    from equipoise.schema.records import read_record as read_record
+    from equipoise.schema.studies import load_study as load_study
+    from equipoise.schema.study_units import machine_of as machine_of
+    from equipoise.schema.study_units import resume as resume
+    from equipoise.schema.template import Template as Template
+    from equipoise.schema.tools import dumps_tool as dumps_tool
+    from equipoise.schema.tools import load_tool as load_tool
+    from equipoise.schema.tools import loads_tool as loads_tool
+    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

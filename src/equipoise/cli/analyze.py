@@ -57,8 +57,8 @@ def analyze(
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
     from equipoise import pipeline
-    from equipoise.schema.models import load
     from equipoise.results.analysis import order_values
+    from equipoise.schema.models import load
 
     machine = load(file)
     check_belonging("--json", json or None, split=split or None)

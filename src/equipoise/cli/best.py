@@ -114,8 +114,8 @@ def _write(found: Best, store: Store, path: str) -> None:
 
 def _draw(found: Best, store: Store, folder: str, kind: Kind) -> None:
     from equipoise.cli.designs import title_of
-    from equipoise.schema.study_units import units_in
     from equipoise.plotting.studies import best_drawings
+    from equipoise.schema.study_units import units_in
 
     draw(best_drawings(found, title_of(store), units_in(store)), folder, kind)
 

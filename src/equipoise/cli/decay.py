@@ -73,8 +73,8 @@ def decay(
         _check_stiffness(stiffness, torsional, angles, spring_at)
     found = _identified(csv, record, stiff, at, spring_at, confidence)
     if plot is not None:
-        from equipoise.schema.files import printable
         from equipoise.plotting.decay import drawings
+        from equipoise.schema.files import printable
 
         draw(drawings(found, printable(os.path.basename(csv))), plot, format or "svg")
     if json:
@@ -95,8 +95,8 @@ def _identified(
     spring_arm: float | None,
     confidence: float,
 ) -> Decay:
-    from equipoise.schema.files import printable
     from equipoise.measured.decay import identify_decay
+    from equipoise.schema.files import printable
 
     try:
         return identify_decay(

@@ -38,8 +38,8 @@ def check(file: Annotated[str, FILE], /) -> None:
         Path of a model file or a study file, or the name of a bundled example.
     """
     from equipoise.handheld.model import Tool
-    from equipoise.schema.tools import load_any
     from equipoise.mechanism.model import Machine
+    from equipoise.schema.tools import load_any
 
     found = load_any(file)
     if isinstance(found, Tool):
@@ -100,7 +100,7 @@ def new(
     from equipoise.schema.output import write
 
     name, usual, command = STARTS[_kind(tool, study)]
-    start = files("equipoise").joinpath("io", name).read_text(encoding="utf-8")
+    start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
     path = usual if file is None else file
     write(path, start, replace=False)
     print(f"wrote {path}; next: {command.format(path)}", file=sys.stderr)

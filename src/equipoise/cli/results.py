@@ -67,8 +67,8 @@ def write_csv(columns: Columns, path: str) -> None:
 
 def draw(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
-    from equipoise.schema.output import write_all
     from equipoise.plotting.style import render
+    from equipoise.schema.output import write_all
 
     pictures = {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()}
     write_all(folder, pictures)

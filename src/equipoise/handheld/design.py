@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -187,8 +189,8 @@ class Before:
     after: float
 
 
-@dataclass(frozen=True, eq=False)
-class ToolDesign:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolDesign(Result):
     """The best design found.
 
     tool, better : before and after.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -80,8 +82,8 @@ def grips(response: ToolResponse) -> dict[str, Grip]:
     return found
 
 
-@dataclass(frozen=True, eq=False)
-class ToolExposure:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolExposure(Result):
     """What the hands on a tool get, over a range of speeds and in a day.
 
     response : over the range of speeds.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
@@ -78,8 +80,8 @@ class PlaneModes:
         return self.frequency / (2 * pi)
 
 
-@dataclass(frozen=True, eq=False)
-class ToolModes:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolModes(Result):
     """Free vibration of a tool.
 
     places : (X,), m from the left end, at which shapes are told.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -123,8 +125,8 @@ def loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake
     return tuple(one for one, size in zip(all_shakes, sizes, strict=True) if size >= limit)
 
 
-@dataclass(frozen=True, eq=False)
-class ToolResponse:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolResponse(Result):
     """Steady vibration at speeds (S,) of the engine, by orders (K,): complex amplitudes.
 
     A signal of a speed is the sum over the orders of Re (amplitude * exp(i order speed t)); arrays

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -56,8 +58,8 @@ def number_of(tool: Tool, station: str, key: str) -> float:
     return value[0] if isinstance(value, tuple) else value
 
 
-@dataclass(frozen=True, eq=False)
-class Variation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Variation(Result):
     """Natural frequencies while a number of a station changes.
 
     values : (V,), SI units.

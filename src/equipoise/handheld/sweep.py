@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -78,8 +80,8 @@ class Places:
     moment: Array
 
 
-@dataclass(frozen=True, eq=False)
-class ToolSweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolSweep(Result):
     """A tool over speeds (S,) of its engine, rad/s.
 
     transmissions : of a unit force, to what holds the tool; None where nothing does.

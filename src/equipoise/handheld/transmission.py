@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -44,8 +46,8 @@ class Transmission:
         return np.angle(self.ratio)
 
 
-@dataclass(frozen=True, eq=False)
-class Transmissions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Transmissions(Result):
     """Of all stations where hands, a harness or the ground hold the tool.
 
     source : station at which a unit force shakes, once in a turn.

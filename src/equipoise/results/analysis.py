@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from equipoise.mechanism.dynamics import Forces, SliderForce, VectorSignal, mass
 from equipoise.mechanism.fourbar import FourBar, four_bar
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, Named
+from equipoise.results.result import Result
 from equipoise.signals import Figures, Periodic, figures
 
 if TYPE_CHECKING:
@@ -27,12 +28,14 @@ LEAST_ANGLES = 90
 """In a turn, from which harmonics are taken: those that matter end before half of it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Analysis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(Result):
     """What a machine does over its crank angles.
 
     motion : always there.  solved : its forces, or None where masses are missing.
     """
+
+    shown_in: ClassVar[str] = "results.tables"
 
     motion: Motion
     solved: Forces | None
@@ -63,6 +66,12 @@ class Analysis:
         """Mean, RMS, peak and extremes of each output of the forces, by name."""
         signals = outputs(self).items()
         return Named("output", ((name, figures(self.crank_angle, s)) for name, s in signals))
+
+    @property
+    def has_orders(self) -> bool:
+        """Whether its crank angles are such that harmonics can be taken."""
+        motion = self.motion
+        return motion.whole_cycle and len(self.crank_angle) >= LEAST_ANGLES * motion.turns
 
     @cached_property
     def by_order(self) -> Mapping[str, Periodic]:

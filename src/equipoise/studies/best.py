@@ -12,6 +12,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
+from equipoise.results.result import Result
 from equipoise.studies.front import front, spread
 from equipoise.studies.study import Make, Output
 
@@ -24,8 +25,8 @@ COUNT = 10
 """Designs that are told, if not told otherwise."""
 
 
-@dataclass(frozen=True)
-class Best:
+@dataclass(frozen=True, repr=False)
+class Best(Result):
     """The best designs of a store, K of them.
 
     by : what makes them the best, and which way; several give a Pareto front.

@@ -14,6 +14,7 @@ from equipoise.errors import MassError, ModelError, UsageError
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.studies.study import Model
 from equipoise.studies.variants import (
     COUNTERWEIGHT,
@@ -34,8 +35,8 @@ CLOSE = 1e-7
 """Share of the ranges to which the best place is found."""
 
 
-@dataclass(frozen=True, eq=False)
-class Landscape:
+@dataclass(frozen=True, eq=False, repr=False)
+class Landscape(Result):
     """An objective over two numbers, SI units and radians.
 
     machine : as the model has it.

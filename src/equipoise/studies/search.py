@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
+from equipoise.results.result import Result
 from equipoise.studies.best import kept, why_none
 from equipoise.studies.breeding import breeder, settled, values_of
 from equipoise.studies.evaluate import Evaluator, evaluator
@@ -36,8 +37,8 @@ Told = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""
 
 
-@dataclass(frozen=True, eq=False)
-class Searched:
+@dataclass(frozen=True, eq=False, repr=False)
+class Searched(Result):
     """Result of a search: K designs that keep every limit and that no other beats in everything.
 
     front : number of all such designs; of more than a population some that lie far apart are told.

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.results.result import Result
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.extras import needed
 from equipoise.studies.lock import locked
@@ -47,8 +48,8 @@ class Block:
     outcome: Outcome
 
 
-@dataclass(frozen=True, eq=False)
-class Store:
+@dataclass(frozen=True, eq=False, repr=False)
+class Store(Result):
     """A store that has been opened.
 
     size : number of designs.  chunk : of those that are stored together; the last may be fewer.

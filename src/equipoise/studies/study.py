@@ -173,7 +173,7 @@ class Study:
 
     @property
     def texts(self) -> dict[str, str]:
-        """All of it as texts by name, from which `equipoise.schema.studies.restore` makes it again."""
+        """All of it as texts by name; `equipoise.schema.studies.restore` makes it again of them."""
         return {
             "study": json.dumps(to_plain(self), ensure_ascii=False, indent=1, default=int),
             **({"file": self.file} if self.file else {}),

@@ -16,6 +16,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
+from equipoise.results.result import Result
 from equipoise.studies.best import kept, why_none
 from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
 from equipoise.studies.scatter import Scatter, scatter_of, share_of
@@ -57,8 +58,8 @@ class Cause:
     removed: float | None
 
 
-@dataclass(frozen=True, eq=False)
-class Tolerances:
+@dataclass(frozen=True, eq=False, repr=False)
+class Tolerances(Result):
     """What the tolerances of a study do.
 
     designs : machines whose scatter is told.  failures : of these by reason.

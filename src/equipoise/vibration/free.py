@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -112,8 +114,8 @@ def _avoid(speed: float, mode: Mode) -> tuple[float, float] | None:
     return (speed * sqrt(max(low, 0.0)), speed * sqrt(high))
 
 
-@dataclass(frozen=True, eq=False)
-class FreeVibration:
+@dataclass(frozen=True, eq=False, repr=False)
+class FreeVibration(Result):
     """Modes of a machine on its support, standing in the mean of a turn.
 
     linear : the machine as a linear system.  modes : by frequency.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
@@ -105,8 +107,8 @@ class Joint:
     on_ground: float
 
 
-@dataclass(frozen=True, eq=False)
-class Response:
+@dataclass(frozen=True, eq=False, repr=False)
+class Response(Result):
     """Steady vibration of a machine on its support.
 
     speed : of the crank in the mean, rad/s.  turns : of the crank in a period.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -68,8 +70,8 @@ class MountCurve:
     torsional: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Sweep:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
     """Steady vibration of a machine on its support over a range of speeds.
 
     speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from equipoise.results.result import Result
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -26,8 +28,8 @@ MOST_TURNS = 2000
 LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
 
 
-@dataclass(frozen=True, eq=False)
-class Transient:
+@dataclass(frozen=True, eq=False, repr=False)
+class Transient(Result):
     """A machine on its support from rest, at M instants.
 
     time : (M,) s.  states : (n, M), displacements and velocities of the free coordinates.
