@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
@@ -18,6 +16,7 @@ from equipoise.handheld.model import Tool
 from equipoise.handheld.response import respond_tool, rms_over_time
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 

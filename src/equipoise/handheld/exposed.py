@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -30,6 +28,7 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.handheld.studies import has, number_of
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
@@ -22,6 +20,7 @@ from equipoise.handheld.frequencies import (
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import PLANES, Tool
 from equipoise.handheld.shapes import scaled, shapes_beside, still_shapes, zeros_of
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,6 +17,7 @@ from equipoise.handheld.shapes import Field, Line
 from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
+from equipoise.results.result import Result
 from equipoise.signals import Periodic
 
 Array = np.ndarray[Any, Any]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -15,6 +13,7 @@ from equipoise.handheld.frequencies import characteristic, natural_frequencies, 
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import Station, Tool
 from equipoise.mechanism.checks import unknown
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +21,7 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.handheld.transmission import Transmissions, held, transmit
+from equipoise.results.result import Result
 
 MODES = 6
 """Natural frequencies."""

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -13,6 +11,7 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.handheld.model import PLANES, Excitation, Station, Tool
 from equipoise.handheld.response import ToolResponse, checked_speeds, respond_tool
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 

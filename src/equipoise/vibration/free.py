@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
@@ -12,6 +10,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.signals import Periodic
 from equipoise.vibration.modes import Mode
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from equipoise.results.result import Result
-
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -15,6 +13,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 from equipoise.signals import Periodic
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import (
