@@ -12,10 +12,10 @@ from equipoise.cli.results import Kind, draw
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
-    from equipoise.tools.model import Tool
 
 MOST_TOLD = 100_000
 ENDINGS = (".csv", ".parquet")

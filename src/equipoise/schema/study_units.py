@@ -17,12 +17,12 @@ from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.design_space import Output, Vary
     from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
-    from equipoise.tools.model import Tool
 
 
 def resume(

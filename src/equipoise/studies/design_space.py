@@ -16,8 +16,8 @@ import numpy as np
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 

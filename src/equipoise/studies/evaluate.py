@@ -42,9 +42,9 @@ from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:
     from equipoise.codegen.figures import Figure
+    from equipoise.handheld.model import Tool
     from equipoise.studies.design_space import Model, Output
     from equipoise.studies.study import Study
-    from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 

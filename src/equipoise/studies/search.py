@@ -25,8 +25,8 @@ from equipoise.studies.selection import why_none
 from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 
