@@ -148,7 +148,6 @@ _HOMES = {
     "run_study": "studies.run",
     "save": "schema.models",
     "save_tool": "schema.tools",
-    "run_study": "studies.run",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
