@@ -14,11 +14,15 @@ Kind = Literal["svg", "png", "pdf"]
 __all__ = ["Kind", "plot", "render"]
 
 
-def render(chart: Chart, kind: Kind = "svg") -> bytes:
-    """The picture as a file; the same bytes for the same chart."""
+def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:
+    """The picture as a file; the same bytes for the same picture."""
+    if not isinstance(picture, Chart):
+        from equipoise.plotting.style import render as drawn
+
+        return drawn(picture, kind)
     from equipoise.figures.layout import lay_out
 
-    sheet = lay_out(chart)
+    sheet = lay_out(picture)
     if kind == "svg":
         from equipoise.figures.vector import svg_of
 

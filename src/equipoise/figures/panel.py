@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.texts import Labels, Text, spread
 from equipoise.figures.metrics import DOWN, UP, width_of
 from equipoise.figures.scales import Scale, Ticks, ticks_of
 from equipoise.figures.sheet import Anchor, Box, Sheet, Signs, Stroke, Words
 from equipoise.figures.style import GRID, INK, LINES, NORMAL, PALE, SMALL, Look, look_of
+from equipoise.figures.texts import Labels, Text, spread
 from equipoise.results.charts import Area, Bars, Curve, Mark, Panel
 
 Array = np.ndarray[Any, Any]
