@@ -316,18 +316,18 @@ if TYPE_CHECKING:
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
-    from equipoise.studies.best import Best as Best
-    from equipoise.studies.best import best as best
-    from equipoise.studies.export import export as export
-    from equipoise.studies.landscape import Landscape as Landscape
-    from equipoise.studies.landscape import landscape as landscape
-    from equipoise.studies.run import sweep as sweep
+    from equipoise.studies.selection import Best as Best
+    from equipoise.studies.selection import best as best
+    from equipoise.studies.table_files import export as export
+    from equipoise.studies.objective_map import Landscape as Landscape
+    from equipoise.studies.objective_map import landscape as landscape
+    from equipoise.studies.run import run_study as sweep
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
-    from equipoise.studies.spread import Choices as Choices
-    from equipoise.studies.spread import Normal as Normal
-    from equipoise.studies.spread import Range as Range
-    from equipoise.studies.spread import Uniform as Uniform
+    from equipoise.studies.design_space import Choices as Choices
+    from equipoise.studies.design_space import Normal as Normal
+    from equipoise.studies.design_space import Range as Range
+    from equipoise.studies.design_space import Uniform as Uniform
     from equipoise.studies.store import Store as Store
     from equipoise.studies.store import open_store as open_store
     from equipoise.studies.study import Correlation as Correlation
@@ -335,8 +335,8 @@ if TYPE_CHECKING:
     from equipoise.studies.study import Sampling as Sampling
     from equipoise.studies.study import Study as Study
     from equipoise.studies.study import Vary as Vary
-    from equipoise.studies.tolerance import Tolerances as Tolerances
-    from equipoise.studies.tolerance import tolerance as tolerance
+    from equipoise.studies.tolerances import Tolerances as Tolerances
+    from equipoise.studies.tolerances import tolerance as tolerance
     from equipoise.vibration.forced import respond as respond
     from equipoise.vibration.free import FreeVibration as FreeVibration
     from equipoise.vibration.free import vibrate_freely as vibrate_freely

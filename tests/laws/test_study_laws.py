@@ -12,9 +12,9 @@ from scipy.stats import norm, sobol_indices, uniform
 
 from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
 from equipoise.studies.search import search_designs
-from equipoise.studies.spread import Normal, Range, Uniform
+from equipoise.studies.design_space import Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Study, Vary
-from equipoise.studies.tolerance import Tolerances, tolerance
+from equipoise.studies.tolerances import Tolerances, tolerance
 from equipoise.studies.variance import effects, tables
 from unit.studies.samples import PATHS, study
 

@@ -23,8 +23,8 @@ from equipoise.errors import UsageError
 from equipoise.studies import run
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.executors import Task
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Choices, Normal, Range
+from equipoise.studies.study import samples
+from equipoise.studies.design_space import Choices, Normal, Range
 from equipoise.studies.store import Block
 from equipoise.studies.study import Output, Sampling, Study, Vary, from_plain
 
@@ -154,7 +154,7 @@ def main(command: str, path: str) -> None:
     """In a process that is going to be killed: a sweep of the short study, or its resumption."""
     run.evaluator = lambda study, threads: Formulas(pause=0.02)
     if command == "sweep":
-        run.sweep(short_study(), path, workers=2)
+        run.run_study(short_study(), path, workers=2)
     else:
         run.resume(path, restore, workers=1)
 

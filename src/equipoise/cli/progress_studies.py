@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from equipoise.schema.study_units import Unit
     from equipoise.studies.evaluate import Outcome
-    from equipoise.studies.progress import Progress
+    from equipoise.studies.outcomes import Progress
     from equipoise.studies.study import Study
 
 GROWTH, LONGEST = 0.5, 600.0
@@ -54,7 +54,7 @@ class Watched:
     """
 
     def __init__(self, study: Study, told: Told) -> None:
-        from equipoise.studies.progress import Tally
+        from equipoise.studies.outcomes import Tally
 
         self.study, self.told = study, told
         self.tally = Tally(study.outputs, 0)

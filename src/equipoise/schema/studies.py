@@ -16,7 +16,7 @@ from equipoise.quantities.problems import described
 from equipoise.schema.files import printable
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
 from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.spread import Choices, Normal, Range, Spread, Uniform
+from equipoise.studies.design_space import Choices, Normal, Range, Spread, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary, from_plain
 
 if TYPE_CHECKING:

@@ -85,9 +85,9 @@ def _parted(study: Study, model: Machine | Tool, asked: Asked) -> list[Asked]:
     """What can be had of many designs at once, and the rest."""
     if asked.command != "plant":
         return [asked]
-    from equipoise.studies.planted import can_have
+    from equipoise.studies.evaluate import can_plant_together
 
-    together = can_have(cast("Machine", model), study.paths, asked.steps)
+    together = can_plant_together(cast("Machine", model), study.paths, asked.steps)
     parts = []
     for command, wanted in (("planted", True), ("plant", False)):
         chosen = [k for k, one in enumerate(together) if one == wanted]
@@ -98,7 +98,7 @@ def _parted(study: Study, model: Machine | Tool, asked: Asked) -> list[Asked]:
 
 def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
     """The model, then some designs of the study, each to be called for."""
-    from equipoise.studies.sampling import samples
+    from equipoise.studies.study import samples
 
     yield study.model.base
     for row in samples(study, 0, min(TRIED, study.size)):

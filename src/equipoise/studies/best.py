@@ -13,7 +13,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
-from equipoise.studies.front import front, spread
+from equipoise.studies.selection import non_dominated, far_apart
 from equipoise.studies.study import Make, Output
 
 if TYPE_CHECKING:
@@ -164,7 +164,7 @@ class _Search:
     def best(self) -> Array:
         """Places of the rows that may still be among the best."""
         if len(self.ways) > 1:
-            return front(self.costs)
+            return non_dominated(self.costs)
         return np.argsort(self.costs[:, 0], kind="stable")[: self.count]
 
     def check(self) -> None:
@@ -181,7 +181,7 @@ class _Search:
 
     def result(self) -> Best:
         size = len(self.designs) if len(self.ways) > 1 else 1
-        told = spread(self.costs, self.count) if len(self.ways) > 1 else slice(None)
+        told = far_apart(self.costs, self.count) if len(self.ways) > 1 else slice(None)
         designs, rows = self.designs[told], self.rows[told]
         if len(self.ways) > 1:
             order = np.argsort(self.costs[told][:, 0], kind="stable")

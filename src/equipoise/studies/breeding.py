@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.studies.extras import needed
-from equipoise.studies.spread import Choices
+from equipoise.studies.design_space import Choices
 from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]

@@ -10,7 +10,7 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown, wrong_text
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
+from equipoise.studies.design_space import Choices, Normal, Range, Uniform
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Output, Study, Vary

@@ -16,8 +16,8 @@ from typing import Any
 
 from equipoise.studies.executors import DEAD, Pool, StoppedError, Task
 from equipoise.studies.extras import needed
-from equipoise.studies.making import versions
-from equipoise.studies.store import Block, reason
+from equipoise.studies.run import versions
+from equipoise.studies.store import Block, brief
 
 ANSWER = 5.0
 """Time in which a scheduler has to answer, s."""
@@ -72,7 +72,7 @@ class Cluster(Pool):
                 found = aside.submit(asyncio.run, self._identity()).result()
         except Exception as error:  # whatever may listen there
             raise SilentError(
-                f"no Dask scheduler answers at {self.address} ({reason(error)}); see whether it "
+                f"no Dask scheduler answers at {self.address} ({brief(error)}); see whether it "
                 "runs, and whether a firewall is between"
             ) from error
         threads: int = found["total_threads"]

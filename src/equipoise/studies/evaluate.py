@@ -55,14 +55,14 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     ------
     ModelError : an output cannot be computed of any design.
     """
-    from equipoise.studies.general import general
+    from equipoise.studies.evaluate import one_by_one
 
     quick = _quick(study, threads)
     columns = [] if quick is None else quick[1]
     others = [output for k, output in enumerate(study.outputs) if k not in columns]
     if quick is None:
-        return general(study, study.outputs)
-    return Routes(study, quick[0], columns, general(study, others) if others else None)
+        return one_by_one(study, study.outputs)
+    return Routes(study, quick[0], columns, one_by_one(study, others) if others else None)
 
 
 class Routes:
@@ -107,9 +107,9 @@ class Routes:
 
     def _one_by_one(self, values: Array) -> Outcome:
         """Designs that differ too much from the model for a loop: other turns of a geared link."""
-        from equipoise.studies.general import general
+        from equipoise.studies.evaluate import one_by_one
 
-        return general(self.study, self.study.outputs)(values)
+        return one_by_one(self.study, self.study.outputs)(values)
 
 
 def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:

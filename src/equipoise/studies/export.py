@@ -15,10 +15,10 @@ import numpy as np
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.best import kept as keep
-from equipoise.studies.best import outputs_of
+from equipoise.studies.selection import kept as keep
+from equipoise.studies.selection import outputs_of
 from equipoise.studies.extras import needed
-from equipoise.studies.store import REASON, UNKNOWN, Block, Store, told
+from equipoise.studies.store import REASON, UNKNOWN, Block, Store, as_usage_error
 
 Array = np.ndarray[Any, Any]
 Write = Callable[[Any], None]
@@ -49,7 +49,7 @@ def export(store: Store, path: str | os.PathLike[str], *, kept: bool = False) ->
     outputs = outputs_of(store)
     rows = 0
     with (
-        told(target, "the file cannot be written", "choose another place or name"),
+        as_usage_error(target, "the file cannot be written", "choose another place or name"),
         _replaced(target) as file,
         writers[target.suffix.lower()](file, schema, store) as write,
     ):

@@ -31,7 +31,7 @@ from equipoise.errors import (
     MotionError,
     RangeError,
 )
-from equipoise.studies.asking import ANGLES, Asked, find, is_place, is_smooth
+from equipoise.studies.commands import ANGLES, Request, find_outputs, is_place, is_smooth
 from equipoise.studies.commands import COMMANDS, analyzed
 from equipoise.studies.evaluate import Evaluator, Outcome
 from equipoise.studies.figures import Step, read, scale
@@ -56,14 +56,14 @@ FAINT = 1e-9
 
 def general(study: Study, outputs: Sequence[Output]) -> Evaluator:
     """The general route to some outputs of a study, in their order; errors as `check_outputs`."""
-    return _General(study.model, study.paths, find(study, outputs), study.angles, study.tolerance)
+    return _General(study.model, study.paths, find_outputs(study, outputs), study.angles, study.tolerance)
 
 
 @dataclass(frozen=True)
 class _General:
     model: Model
     paths: tuple[str, ...]
-    asked: tuple[Asked, ...]
+    asked: tuple[Request, ...]
     angles: int | None
     tolerance: float
 
@@ -107,7 +107,7 @@ class _General:
             return NO_MACHINE if isinstance(error, ModelError) else reason_of(error, model)
         return model
 
-    def ask(self, model: Machine | Tool, asked: Asked, figures: Array) -> int:
+    def ask(self, model: Machine | Tool, asked: Request, figures: Array) -> int:
         """Fill the figures (m,) that one command gives; returns why some are missing."""
         try:
             found, still = _figures_of(model, asked, self.angles, self.tolerance)
@@ -123,10 +123,10 @@ class _General:
         return COMPUTED if all(map(isfinite, found)) else NO_FIGURE
 
 
-def _together(models: Mapping[int, Any], asked: Asked, figures: Array) -> dict[int, int]:
+def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
     """Fill the figures of planting fingers; returns why some are missing, by design."""
     from equipoise.mechanism.linkage import assemble
-    from equipoise.studies.planted import planted
+    from equipoise.studies.evaluate import planting_figures
 
     failed, turning = {}, {}
     for k, machine in models.items():
@@ -137,7 +137,7 @@ def _together(models: Mapping[int, Any], asked: Asked, figures: Array) -> dict[i
         else:
             turning[k] = machine
     if turning:
-        found = planted([*turning.values()], asked.steps)
+        found = planting_figures([*turning.values()], asked.steps)
         figures[np.ix_([*turning], asked.columns)] = np.where(np.isfinite(found), found, nan)
         there = np.all(np.isfinite(found), axis=1)
         failed |= {k: COMPUTED if one else NO_FIGURE for k, one in zip(turning, there, strict=True)}
@@ -167,7 +167,7 @@ def _assembled(model: Machine | Tool) -> None:
 
 
 def _figures_of(
-    model: Machine | Tool, asked: Asked, angles: int | None, tolerance: float
+    model: Machine | Tool, asked: Request, angles: int | None, tolerance: float
 ) -> tuple[list[float], bool]:
     """Figures, and whether they stand still."""
     if asked.command != "analyze":

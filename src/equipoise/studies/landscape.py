@@ -16,15 +16,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
 from equipoise.studies.study import Model
-from equipoise.studies.variants import (
-    COUNTERWEIGHT,
-    Maker,
-    Value,
-    dimension,
-    linear,
-    linkage_of,
-    value_of,
-)
+from equipoise.studies.objective_map import COUNTERWEIGHT, Variants, Value, dimension, linear_value, linkage_of, value_of
 
 Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
@@ -122,7 +114,7 @@ def landscape(
     given = dict(given or {})
     paths, values = _checked(over, given)
     dimensions = {path: dimension(model, path) for path in (*paths, *given)}
-    maker = Maker(model, given)
+    maker = Variants(model, given)
     base = maker.machine({})
     if missing := massless(base):
         raise MassError(missing)
@@ -130,7 +122,7 @@ def landscape(
     _check_weights({**given, **{path: one[-1] for path, one in zip(paths, values, strict=True)}})
     x, y = values
     points = [dict(zip(paths, pair, strict=True)) for pair in _pairs(x, y)]
-    value = linear(maker, of, points) or (lambda point: value_of(maker, of, point))
+    value = linear_value(maker, of, points) or (lambda point: value_of(maker, of, point))
     found = np.empty(len(points))
     for k, point in enumerate(points):
         found[k] = value(point)

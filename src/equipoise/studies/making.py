@@ -18,8 +18,8 @@ import equipoise
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
 from equipoise.studies.extras import needed
-from equipoise.studies.spread import Choices
-from equipoise.studies.store import LAYOUT, REASON, UNKNOWN, ZSTD, Store, open_store, told
+from equipoise.studies.design_space import Choices
+from equipoise.studies.store import LAYOUT, REASON, UNKNOWN, ZSTD, Store, open_store, as_usage_error
 from equipoise.studies.units import SI
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def create(path: str | os.PathLike[str], study: Study, chunk: int, engine: str) 
     # Made beside its place, so that a store is a whole one from the moment it is there.
     begun = target.with_name(f".{target.name}.{os.getpid()}.tmp")
     try:
-        with told(target, "the store cannot be made", "choose another place or name"):
+        with as_usage_error(target, "the store cannot be made", "choose another place or name"):
             target.parent.mkdir(parents=True, exist_ok=True)
             _make(begun, study, chunk, engine)
             os.rename(begun, target)

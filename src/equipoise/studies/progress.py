@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.studies.best import kept
+from equipoise.studies.selection import kept
 
 if TYPE_CHECKING:
     from equipoise.studies.evaluate import Outcome

@@ -11,13 +11,13 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.studies.cluster import Cluster
+from equipoise.studies.executors import Cluster
 from equipoise.studies.evaluate import Evaluator, evaluator
 from equipoise.studies.executors import Pool, Processes, StoppedError, Task, Threads, computed
-from equipoise.studies.making import create, versions
-from equipoise.studies.progress import Progress, Tally
-from equipoise.studies.sampling import samples
-from equipoise.studies.store import NUMBERS, Block, Store, open_store, reason
+from equipoise.studies.run import create_store, versions
+from equipoise.studies.outcomes import Progress, Tally
+from equipoise.studies.study import samples
+from equipoise.studies.store import NUMBERS, Block, Store, open_store, brief
 from equipoise.studies.study import SLOW_CHUNK
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def sweep(
     """
     route = Route.of(study)
     with closing(route.pool(workers, cluster)) as pool:
-        store = create(path, study, route.chunk, route.engine)
+        store = create_store(path, study, route.chunk, route.engine)
         _fill(store, study, pool, progress)
     return store
 
@@ -124,7 +124,7 @@ def _store(store: Store, designs: range, block: Block) -> None:
                 f"{store.path}: the folder has gone, and what was stored with it; sweep anew"
             ) from error
         raise StoppedError(
-            f"designs cannot be written ({reason(error)}); make room or mend that"
+            f"designs cannot be written ({brief(error)}); make room or mend that"
         ) from error
 
 

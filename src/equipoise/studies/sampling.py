@@ -17,7 +17,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.studies.checks import correlation_matrix
-from equipoise.studies.spread import LEAST, MOST
+from equipoise.studies.design_space import LEAST, MOST
 
 if TYPE_CHECKING:
     from scipy.stats.qmc import Sobol

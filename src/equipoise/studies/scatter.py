@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.studies.best import kept
+from equipoise.studies.selection import kept
 from equipoise.studies.variance import Estimate
 
 if TYPE_CHECKING:

@@ -17,11 +17,11 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.best import kept, why_none
-from equipoise.studies.breeding import breeder, settled, values_of
+from equipoise.studies.selection import kept, why_none
+from equipoise.studies.evolution import evolution, canonical, values_of
 from equipoise.studies.evaluate import Evaluator, evaluator
-from equipoise.studies.seen import Seen, Volumes
-from equipoise.studies.spread import Choices, Range
+from equipoise.studies.evolution import Archive, Hypervolumes
+from equipoise.studies.design_space import Choices, Range
 from equipoise.studies.study import Make, Study
 
 if TYPE_CHECKING:
@@ -121,14 +121,14 @@ def search_designs(
     _check(study)
     _check_size(population, generations)
     seed = study.sampling.seed if seed is None else seed
-    seen = Seen(study, compute or evaluator(study))
-    breeding = breeder(study, population, seed, seen.known)
-    volumes = Volumes()
+    seen = Archive(study, compute or evaluator(study))
+    breeding = evolution(study, population, seed, seen.known)
+    volumes = Hypervolumes()
     for generation in range(1, generations + 1):
         bred = breeding.ask()
         if bred is None:
             break  # there is hardly another design
-        places = settled(study, bred.get("X"))
+        places = canonical(study, bred.get("X"))
         rows = seen.rows(values_of(study, places))
         bred.set("X", places, "F", seen.costs[rows], "G", seen.violations[rows])
         breeding.tell(infills=bred)
@@ -172,7 +172,7 @@ def _check_size(population: int, generations: int) -> None:
 
 
 def _result(
-    study: Study, seen: Seen, volumes: Volumes, told: Array, still: bool, seed: int
+    study: Study, seen: Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
 ) -> Searched:
     counts = np.bincount(seen.outcome.reason, minlength=256)
     if not len(seen.front):

@@ -8,7 +8,7 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.studies.evaluate import Evaluator, Outcome
-from equipoise.studies.front import front, spread
+from equipoise.studies.selection import non_dominated, far_apart
 from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]
@@ -58,7 +58,7 @@ class Seen:
         """
         first = np.intersect1d(chosen, self.front)[:count]
         others = np.setdiff1d(self.front, first)
-        far = others[spread(self.costs[others], max(count - len(first), 0))]
+        far = others[far_apart(self.costs[others], max(count - len(first), 0))]
         return np.concatenate([first, far])
 
     def rows(self, values: Array) -> Array:
@@ -91,7 +91,7 @@ class Seen:
         )
         fine = begin + np.flatnonzero(np.all(violations <= 0, axis=1))
         known = np.concatenate([self.front, fine])
-        self.front = known[front(self.costs[known])]
+        self.front = known[non_dominated(self.costs[known])]
 
     def beyond(self, found: Outcome) -> list[Array]:
         """By how much each limit is exceeded (P,), over the range of the first figures."""

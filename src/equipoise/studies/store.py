@@ -23,7 +23,7 @@ from equipoise.errors import UsageError
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.extras import needed
-from equipoise.studies.lock import locked
+from equipoise.studies.store import locked
 
 if TYPE_CHECKING:
     import zarr

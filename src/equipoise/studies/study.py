@@ -9,7 +9,7 @@ from math import prod
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from equipoise.studies.checks import check_numbers, problems
-from equipoise.studies.spread import SPREADS, Range, Spread
+from equipoise.studies.design_space import SPREADS, Range, Spread
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool

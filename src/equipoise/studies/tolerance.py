@@ -17,9 +17,9 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.best import kept, why_none
+from equipoise.studies.selection import kept, why_none
 from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
-from equipoise.studies.scatter import Scatter, scatter_of, share_of
+from equipoise.studies.variance import Scatter, scatter_of, share_of
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import Effect, Estimate, causes_of, effects, tables
 
@@ -222,7 +222,7 @@ class _Run:
 
 def _drawn(study: Study) -> Iterator[Array]:
     """Machines drawn from the tolerances, part by part."""
-    from equipoise.studies.sampling import samples
+    from equipoise.studies.study import samples
 
     for start in range(0, study.size, study.chunk):
         yield samples(study, start, min(study.chunk, study.size - start))

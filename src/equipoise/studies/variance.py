@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.studies.sampling import BITS, values_at
-from equipoise.studies.spread import Normal, Uniform
+from equipoise.studies.study import BITS, values_at
+from equipoise.studies.design_space import Normal, Uniform
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study

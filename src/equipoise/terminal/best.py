@@ -9,7 +9,7 @@ from equipoise.terminal.designs import columns_of, designs_table, limits, wanted
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.best import Best
+    from equipoise.studies.selection import Best
     from equipoise.studies.study import Output
 
 

@@ -13,7 +13,7 @@ from equipoise.terminal.tables import Row, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.best import Best
+    from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
     from equipoise.studies.study import Output
 

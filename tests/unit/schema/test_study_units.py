@@ -10,7 +10,7 @@ from equipoise.errors import ModelError
 from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import Unit, units_of
 from equipoise.schema.template import Template
-from equipoise.studies.spread import Range
+from equipoise.studies.design_space import Range
 from equipoise.studies.study import Output, Sampling, Study, Vary
 
 UNITS = {

@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 
 from equipoise.schema.template import Template
-from equipoise.studies.spread import Normal, Range, Spread, Uniform
+from equipoise.studies.design_space import Normal, Range, Spread, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
 
 MASS, LENGTH, SPEED = "links.crank.mass", "links.coupler.points.C.x", "drive.speed"

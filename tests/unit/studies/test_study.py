@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
+from equipoise.studies.design_space import Choices, Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 

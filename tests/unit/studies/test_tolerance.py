@@ -14,9 +14,9 @@ import equipoise as eq
 from equipoise.codegen.figures import NO_ASSEMBLY
 from equipoise.errors import ModelError, UsageError
 from equipoise.studies.evaluate import Outcome
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
+from equipoise.studies.design_space import Choices, Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Study
-from equipoise.studies.tolerance import rows_of, tolerance
+from equipoise.studies.tolerances import rows_of, tolerance
 from equipoise.studies.variance import causes_of, tables
 from unit.studies.samples import LENGTH, MASS, SPEED, study
 
