@@ -24,11 +24,10 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.designs import all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.schema.template import Template
+from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.run import run_study
-from equipoise.studies.study import samples
-from equipoise.studies.design_space import Range
 from equipoise.studies.store import open_store
-from equipoise.studies.study import Output, Sampling, Study, Vary
+from equipoise.studies.study import Study, samples
 from timing import in_turn
 
 MACHINE = eq.load("yamashita-1")

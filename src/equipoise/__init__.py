@@ -21,11 +21,11 @@ _HOMES = {
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
-    "Best": "studies.best",
+    "Best": "studies.selection",
     "CenterMove": "mechanism.balance",
-    "Choices": "studies.spread",
+    "Choices": "studies.design_space",
     "Conditions": "balancing.linear_conditions",
-    "Correlation": "studies.study",
+    "Correlation": "studies.design_space",
     "Decay": "measured.decay",
     "DesignLimit": "handheld.design_plan",
     "DesignPlan": "handheld.design_plan",
@@ -47,7 +47,7 @@ _HOMES = {
     "Hand": "handheld.model",
     "Harness": "handheld.model",
     "Impedance": "handheld.model",
-    "Landscape": "studies.landscape",
+    "Landscape": "studies.objective_map",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -58,22 +58,22 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
-    "Normal": "studies.spread",
+    "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
     "Operation": "handheld.model",
-    "Output": "studies.study",
+    "Output": "studies.design_space",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
     "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
-    "Range": "studies.spread",
+    "Range": "studies.design_space",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
     "Response": "vibration.response",
     "Row": "mechanism.support",
-    "Sampling": "studies.study",
+    "Sampling": "studies.design_space",
     "Searched": "studies.search",
     "Section": "handheld.shaft",
     "Segment": "handheld.shaft",
@@ -90,7 +90,7 @@ _HOMES = {
     "Sweep": "vibration.sweep",
     "Task": "exposure.daily",
     "Template": "schema.template",
-    "Tolerances": "studies.tolerance",
+    "Tolerances": "studies.tolerances",
     "Tool": "handheld.model",
     "ToolDesign": "handheld.design",
     "ToolExposure": "handheld.exposed",
@@ -100,8 +100,8 @@ _HOMES = {
     "Transient": "vibration.transient",
     "Transmissions": "handheld.transmission",
     "Tube": "handheld.shaft",
-    "Uniform": "studies.spread",
-    "Vary": "studies.study",
+    "Uniform": "studies.design_space",
+    "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighting",
     "Work": "handheld.model",
@@ -110,7 +110,7 @@ _HOMES = {
     "assemble": "mechanism.linkage",
     "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
-    "best": "studies.best",
+    "best": "studies.selection",
     "choose_phases": "balancing.phase_search",
     "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
@@ -118,7 +118,7 @@ _HOMES = {
     "dumps": "schema.models",
     "dumps_tool": "schema.tools",
     "examples": "schema.models",
-    "export": "studies.export",
+    "export": "studies.table_files",
     "expose_tool": "handheld.exposed",
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
@@ -128,7 +128,7 @@ _HOMES = {
     "harmonics": "signals",
     "identify_decay": "measured.decay",
     "json_schema": "schema.models",
-    "landscape": "studies.landscape",
+    "landscape": "studies.objective_map",
     "least_moments": "balancing.least_norm",
     "load": "schema.models",
     "load_study": "schema.studies",
@@ -145,15 +145,15 @@ _HOMES = {
     "respond": "vibration.forced",
     "respond_tool": "handheld.response",
     "resume": "schema.study_units",
+    "run_study": "studies.run",
     "save": "schema.models",
     "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.record",
-    "sweep": "studies.run",
     "sweep_speed": "vibration.sweep",
     "sweep_tool": "handheld.sweep",
-    "tolerance": "studies.tolerance",
+    "tolerance": "studies.tolerances",
     "tool_sensitivities": "handheld.exposed",
     "trade_off": "balancing.pareto",
     "transmit": "handheld.transmission",
@@ -316,25 +316,18 @@ if TYPE_CHECKING:
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
-    from equipoise.studies.selection import Best as Best
-    from equipoise.studies.selection import best as best
-    from equipoise.studies.table_files import export as export
+    from equipoise.studies.design_space import Vary as Vary
     from equipoise.studies.objective_map import Landscape as Landscape
     from equipoise.studies.objective_map import landscape as landscape
-    from equipoise.studies.run import run_study as sweep
+    from equipoise.studies.run import run_study as run_study
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
-    from equipoise.studies.design_space import Choices as Choices
-    from equipoise.studies.design_space import Normal as Normal
-    from equipoise.studies.design_space import Range as Range
-    from equipoise.studies.design_space import Uniform as Uniform
+    from equipoise.studies.selection import Best as Best
+    from equipoise.studies.selection import best as best
     from equipoise.studies.store import Store as Store
     from equipoise.studies.store import open_store as open_store
-    from equipoise.studies.study import Correlation as Correlation
-    from equipoise.studies.study import Output as Output
-    from equipoise.studies.study import Sampling as Sampling
     from equipoise.studies.study import Study as Study
-    from equipoise.studies.study import Vary as Vary
+    from equipoise.studies.table_files import export as export
     from equipoise.studies.tolerances import Tolerances as Tolerances
     from equipoise.studies.tolerances import tolerance as tolerance
     from equipoise.vibration.forced import respond as respond

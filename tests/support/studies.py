@@ -21,12 +21,10 @@ import numpy as np
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
 from equipoise.studies import run
-from equipoise.studies.evaluate import Outcome
+from equipoise.studies.design_space import Choices, Normal, Output, Range, Sampling, Vary
 from equipoise.studies.executors import Task
-from equipoise.studies.study import samples
-from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.store import Block
-from equipoise.studies.study import Output, Sampling, Study, Vary, from_plain
+from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.study import Study, from_plain, samples
 
 Array = np.ndarray[Any, Any]
 LENGTH, MASS, SPEED = "links.rod.length", "links.crank.mass", "drive.speed"

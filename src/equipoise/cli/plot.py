@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.report.pictures import Picture
-    from equipoise.studies.study import Model
+    from equipoise.studies.design_space import Model
 
 POINTS, MOST_POINTS = 51, 400
 """Values of each number of a map."""

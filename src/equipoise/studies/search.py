@@ -17,12 +17,12 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.selection import kept, why_none
-from equipoise.studies.evolution import evolution, canonical, values_of
-from equipoise.studies.evaluate import Evaluator, evaluator
-from equipoise.studies.evolution import Archive, Hypervolumes
-from equipoise.studies.design_space import Choices, Range
-from equipoise.studies.study import Make, Study
+from equipoise.studies.design_space import Choices, Make, Range
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution, values_of
+from equipoise.studies.outcomes import Evaluator, kept
+from equipoise.studies.selection import why_none
+from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -33,7 +33,7 @@ Array = np.ndarray[Any, Any]
 POPULATION, GENERATIONS = 100, 200
 LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
 
-Told = Callable[[int, int, int, int], None]
+OnGeneration = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""
 
 
@@ -96,7 +96,7 @@ def search_designs(
     population: int = POPULATION,
     generations: int = GENERATIONS,
     seed: int | None = None,
-    progress: Told | None = None,
+    progress: OnGeneration | None = None,
     compute: Evaluator | None = None,
 ) -> Searched:
     """Look for the best designs of a study.
@@ -110,7 +110,7 @@ def search_designs(
     population, generations : designs in a generation, and the most generations; the search ends
         before where the front stands still.
     seed : of the random numbers, that of the study where None; the same gives the same result.
-    progress : see `Told`.
+    progress : see `OnGeneration`.
     compute : computes designs instead of the study's own evaluator.
 
     Raises

@@ -12,9 +12,8 @@ from equipoise.terminal.tables import Row, number, percent, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.variance import Scatter
     from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import Estimate
+    from equipoise.studies.variance import Estimate, Scatter
 
 Units = Mapping[str, "Unit"]
 LITTLE = 0.01

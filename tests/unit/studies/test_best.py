@@ -12,13 +12,11 @@ import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
-from equipoise.studies.selection import best
-from equipoise.studies.evaluate import Outcome
-from equipoise.studies.selection import non_dominated, far_apart
+from equipoise.studies.design_space import Make, Output, Range
+from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.run import create_store
-from equipoise.studies.design_space import Range
-from equipoise.studies.store import Block, Store
-from equipoise.studies.study import Make, Output
+from equipoise.studies.selection import best, far_apart, non_dominated
+from equipoise.studies.store import Store
 from unit.studies.samples import LENGTH, MASS, study
 
 Array = np.ndarray[Any, Any]

@@ -21,11 +21,10 @@ import pytest
 
 from equipoise.errors import UsageError
 from equipoise.studies import executors
-from equipoise.studies.executors import Cluster
-from equipoise.studies.executors import Processes, StoppedError, Threads, computed
+from equipoise.studies.design_space import Sampling
+from equipoise.studies.executors import Cluster, Processes, StoppedError, Threads, computed
+from equipoise.studies.outcomes import Block
 from equipoise.studies.study import samples
-from equipoise.studies.store import Block
-from equipoise.studies.study import Sampling
 from support import studies
 from support.studies import Formulas, Orders, short_study
 

@@ -14,10 +14,11 @@ import pytest
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.table_files import export
+from equipoise.studies.outcomes import Block
 from equipoise.studies.run import create_store
+from equipoise.studies.store import Store
 from equipoise.studies.study import samples
-from equipoise.studies.store import Block, Store
+from equipoise.studies.table_files import export
 from support.studies import LENGTH, MASS, SPEED, Formulas, short_study
 
 STUDY = short_study(250)
@@ -108,7 +109,7 @@ def test_many_designs_are_written_a_block_at_a_time(
 
 
 def test_names_with_quotes_and_commas_stand_in_the_header(tmp_path: Path) -> None:
-    from equipoise.studies.study import Output
+    from equipoise.studies.design_space import Output
 
     name = 'joint_forces."A, b".rms'
     study = short_study(5, outputs=(Output(name, dimension="force"),))

@@ -13,16 +13,16 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
+from equipoise.quantities import SI
 from equipoise.results.analysis import columns, unit_of
 from equipoise.schema.template import Template
 from equipoise.studies.commands import check_outputs
+from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
 from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.evaluate import Outcome
-from equipoise.studies.figures import read, resolve, scale
 from equipoise.studies.evaluate import one_by_one
-from equipoise.studies.design_space import Range
-from equipoise.studies.study import Command, Output, Sampling, Study, Vary
-from equipoise.studies.units import SI
+from equipoise.studies.figures import read, resolve, scale
+from equipoise.studies.outcomes import Outcome
+from equipoise.studies.study import Study
 from surface.running import equipoise, example_text, succeeded
 from unit.studies.samples import template
 

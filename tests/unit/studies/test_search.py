@@ -12,12 +12,12 @@ import pytest
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.model import Machine
-from equipoise.studies.selection import kept
-from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
-from equipoise.studies.selection import non_dominated
+from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, kept
 from equipoise.studies.search import search_designs
-from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.study import Correlation, Make, Output, Study, Vary
+from equipoise.studies.selection import non_dominated
+from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
 Array = np.ndarray[Any, Any]

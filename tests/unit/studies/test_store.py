@@ -16,13 +16,13 @@ import zarr
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
+from equipoise.quantities import SI
 from equipoise.quantities.units import KINDS
-from equipoise.studies.run import create_store, versions
+from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.outcomes import Block
+from equipoise.studies.run import create_store
+from equipoise.studies.store import UNKNOWN, Store, open_store, versions
 from equipoise.studies.study import samples
-from equipoise.studies.design_space import Range
-from equipoise.studies.store import UNKNOWN, Block, Store, open_store
-from equipoise.studies.study import Output, Sampling, Vary
-from equipoise.studies.units import SI
 from support.studies import LENGTH, MASS, SPEED, Formulas, contents, restore, short_study
 
 STUDY = short_study(250)

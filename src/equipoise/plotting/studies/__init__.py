@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.selection import Best
     from equipoise.studies.search import Searched
+    from equipoise.studies.selection import Best
     from equipoise.studies.tolerances import Tolerances
 
 Units = Mapping[str, "Unit"]

@@ -1,4 +1,4 @@
-"""How far a sweep is, as a value, and the sums behind it."""
+"""What came of designs: figures and reasons, sums over them, and how far a run is."""
 
 from __future__ import annotations
 
@@ -6,20 +6,53 @@ from collections import Counter, deque
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from time import monotonic
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.studies.selection import kept
 
 if TYPE_CHECKING:
-    from equipoise.studies.evaluate import Outcome
-    from equipoise.studies.store import Block
-    from equipoise.studies.study import Output
+    from equipoise.studies.design_space import Output
+
+Array = np.ndarray[Any, Any]
 
 WINDOW = 60.0
 """Time over which the rate is taken, s."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """What was computed of some designs (P).
+
+    figures : (P, m) in SI units, one column an output; NaN where a design failed.
+    reason : (P,) uint8, a key of `REASONS`; 0 where all figures are there.
+    """
+
+    figures: Array
+    reason: Array
+
+
+class Evaluator(Protocol):
+    """Computes designs given as values (P, d) in SI units, one column a varied number."""
+
+    def __call__(self, values: Array) -> Outcome: ...
+
+
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Some designs (P), one after the other: values (P, d) in SI units, and what came of them."""
+
+    values: Array
+    outcome: Outcome
+
+
+def kept(outputs: Sequence[Output], figures: Array) -> Array:
+    """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
+    low = [-np.inf if output.at_least is None else output.at_least for output in outputs]
+    high = [np.inf if output.at_most is None else output.at_most for output in outputs]
+    inside: Array = (figures >= low) & (figures <= high)
+    return inside
 
 
 @dataclass(frozen=True)

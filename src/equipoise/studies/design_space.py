@@ -1,16 +1,23 @@
-"""How one number of a study varies: in a range, over a list, or by a tolerance; SI units."""
+"""What varies of a model, how designs are drawn, and what is computed of them: as values.
+
+One number varies in a range, over a list, or by a tolerance; SI units.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
 
 import numpy as np
 
 from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.model import Machine
 
 Array = np.ndarray[Any, Any]
 
@@ -28,6 +35,7 @@ class Range:
     whole : whole numbers only, such as those of teeth.
     """
 
+    tolerance: ClassVar[bool] = False
     low: float
     high: float
     steps: int | None = None
@@ -41,11 +49,6 @@ class Range:
             _check_whole((self.low, self.high))
         if self.steps is not None and not 2 <= self.steps <= MOST_STEPS:
             raise UsageError(f"got {self.steps} steps; give 2 to {MOST_STEPS}")
-
-    @property
-    def tolerance(self) -> bool:
-        """Whether it is what making a thing leaves open."""
-        return False
 
     @property
     def levels(self) -> Array:
@@ -74,6 +77,7 @@ class Range:
 class Choices:
     """One of some values, all alike."""
 
+    tolerance: ClassVar[bool] = False
     values: tuple[float, ...]
 
     def __post_init__(self) -> None:
@@ -83,11 +87,6 @@ class Choices:
             raise UsageError("the list is empty; give at least one value")
         if len(set(self.values)) < len(self.values):
             raise UsageError("the list has a value twice; give each once")
-
-    @property
-    def tolerance(self) -> bool:
-        """Whether it is what making a thing leaves open."""
-        return False
 
     @property
     def levels(self) -> Array:
@@ -110,6 +109,7 @@ class Normal:
         that what is left has a somewhat smaller one.
     """
 
+    tolerance: ClassVar[bool] = True
     mean: float
     deviation: float
     cut: float | None = None
@@ -120,11 +120,6 @@ class Normal:
             raise UsageError(f"got a deviation of {self.deviation:g}; give more than 0")
         if self.cut is not None and not 0 < self.cut < np.inf:
             raise UsageError(f"got cut = {self.cut:g}; give deviations, more than 0, such as 3")
-
-    @property
-    def tolerance(self) -> bool:
-        """Whether it is what making a thing leaves open."""
-        return True
 
     @property
     def levels(self) -> Array:
@@ -146,6 +141,7 @@ class Normal:
 class Uniform:
     """Anything within `half_width` of the centre, all alike."""
 
+    tolerance: ClassVar[bool] = True
     centre: float
     half_width: float
 
@@ -153,11 +149,6 @@ class Uniform:
         _check_finite((self.centre, self.half_width))
         if self.half_width <= 0:
             raise UsageError(f"got a half width of {self.half_width:g}; give more than 0")
-
-    @property
-    def tolerance(self) -> bool:
-        """Whether it is what making a thing leaves open."""
-        return True
 
     @property
     def levels(self) -> Array:
@@ -170,6 +161,7 @@ class Uniform:
 
 
 Spread = Range | Choices | Normal | Uniform
+"""`tolerance` tells whether it is what making a thing leaves open."""
 SPREADS: dict[str, type[Spread]] = {
     "range": Range,
     "list": Choices,
@@ -177,6 +169,7 @@ SPREADS: dict[str, type[Spread]] = {
     "uniform": Uniform,
 }
 """Each by the key that gives it in a study file."""
+KEYS = {kind: key for key, kind in SPREADS.items()}
 
 
 def _check_finite(values: Iterable[float]) -> None:
@@ -189,3 +182,91 @@ def _check_whole(values: Iterable[float]) -> None:
     for value in values:
         if not float(value).is_integer():
             raise UsageError(f"got {value:g}; give whole numbers")
+
+
+Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
+Command = Literal["analyze", "plant", "respond", "balance", "tool"]
+Make = Literal["smallest", "largest"]
+
+
+class Model(Protocol):
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
+
+    @property
+    def kind(self) -> Literal["linkage", "tool"]: ...
+
+    def number(self, path: str) -> tuple[float, str | None]:
+        """Number in the file in SI units, and its dimension; None for a plain number.
+
+        An `int` where only whole numbers will do.
+        """
+
+    def base(self) -> Machine | Tool:
+        """The model as its file has it."""
+
+    def machine(self, values: Mapping[str, float]) -> Machine | Tool:
+        """The model with other numbers, by path, in SI units."""
+
+    def texts(self) -> dict[str, str]:
+        """Everything that is needed to have the same model elsewhere."""
+
+
+@dataclass(frozen=True)
+class Vary:
+    """A number of the model that varies.
+
+    path : in the model file, such as ``links.crank.points.B.x``.
+    dimension : of its quantity, None for a plain number; a study has it from its model.
+    """
+
+    path: str
+    spread: Spread
+    dimension: str | None = None
+
+
+@dataclass(frozen=True)
+class Output:
+    """A figure that is computed of every design.
+
+    name : of its column.
+    of : the command that has it.  value : its place in that command's JSON object.
+    dimension : where it is known.
+    at_least, at_most : limits in SI units; a design outside of them is not kept.
+    make : whether it is to become small or large.
+    """
+
+    name: str
+    of: Command = "analyze"
+    value: str = ""
+    dimension: str | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    make: Make | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", self.value or self.name)
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Two tolerances that go together.
+
+    coefficient : of the normal variables behind both; of two normal spreads it is their own.
+    """
+
+    first: str
+    second: str
+    coefficient: float
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Which designs are computed.
+
+    designs : their number; None of a grid.
+    seed : of all random numbers.
+    """
+
+    method: Method = "sobol"
+    designs: int | None = None
+    seed: int = 1

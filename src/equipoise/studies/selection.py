@@ -13,13 +13,51 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
-from equipoise.studies.selection import non_dominated, far_apart
-from equipoise.studies.study import Make, Output
+from equipoise.studies.design_space import Make, Output
+from equipoise.studies.extras import needed
+from equipoise.studies.outcomes import kept
 
 if TYPE_CHECKING:
-    from equipoise.studies.store import Block, Store
+    from equipoise.studies.outcomes import Block
+    from equipoise.studies.store import Store
 
 Array = np.ndarray[Any, Any]
+
+
+def non_dominated(costs: Array) -> Array:
+    """Places of the rows of costs (n, M) that no other row dominates, in order; all to be small.
+
+    Of equal rows only the first is taken.
+
+    Raises
+    ------
+    UsageError : the library for several costs is not installed.
+    """
+    if costs.shape[1] == 1 or len(costs) < 2:
+        return np.array([np.argmin(costs[:, 0])] if len(costs) else [], np.intp)
+    moocore = needed("moocore", "a choice by several figures")
+    return np.flatnonzero(moocore.is_nondominated(costs, keep_weakly=False))
+
+
+def far_apart(costs: Array, count: int) -> Array:
+    """Places of so many rows of costs (n, M) that lie far from each other, in order.
+
+    The best of each cost first, then whichever is furthest from all that are taken, each cost
+    measured over its range.
+    """
+    if not 0 < count < len(costs):
+        return np.arange(min(count, len(costs)))
+    low, high = costs.min(axis=0), costs.max(axis=0)
+    places = (costs - low) / np.where(high > low, high - low, 1.0)
+    taken = list(dict.fromkeys(int(k) for k in np.argmin(places, axis=0)))[:count]
+    gap = np.min([np.sum((places - places[k]) ** 2, axis=1) for k in taken], axis=0)
+    while len(taken) < count:
+        gap[taken] = -1.0
+        furthest = int(np.argmax(gap))
+        taken.append(furthest)
+        gap = np.minimum(gap, np.sum((places - places[furthest]) ** 2, axis=1))
+    return np.sort(taken)
+
 
 COUNT = 10
 """Designs that are told, if not told otherwise."""
@@ -86,7 +124,7 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
         raise UsageError(f"got {count} designs; give 1 or more")
     outputs = outputs_of(store)
     ways = _ways(store, outputs, by)
-    search = _Search(store, outputs, ways, count)
+    search = _Choice(store, outputs, ways, count)
     for start, block in store.blocks():
         search.add(start, block)
     search.check()
@@ -116,15 +154,7 @@ def _ways(
     return {name: way or makes.get(name) or "smallest" for name, way in by.items()}
 
 
-def kept(outputs: Sequence[Output], figures: Array) -> Array:
-    """Whether each design keeps each limit, (P, m); `figures` are (P, m)."""
-    low = [-np.inf if output.at_least is None else output.at_least for output in outputs]
-    high = [np.inf if output.at_most is None else output.at_most for output in outputs]
-    inside: Array = (figures >= low) & (figures <= high)
-    return inside
-
-
-class _Search:
+class _Choice:
     """What is known of the designs so far."""
 
     def __init__(

@@ -17,16 +17,23 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.selection import kept, why_none
-from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
-from equipoise.studies.variance import Scatter, scatter_of, share_of
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, kept
+from equipoise.studies.selection import why_none
 from equipoise.studies.study import SLOW_CHUNK
-from equipoise.studies.variance import Effect, Estimate, causes_of, effects, tables
+from equipoise.studies.variance import (
+    Effect,
+    Estimate,
+    Scatter,
+    causes_of,
+    effects,
+    scatter_of,
+    share_of,
+    tables,
+)
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
-
-__all__ = ["Cause", "Scatter", "Told", "Tolerances", "rows_of", "tolerance"]
 
 Array = np.ndarray[Any, Any]
 
@@ -35,7 +42,7 @@ QUICK = 0.1
 LEAST_ROWS = 32
 """Rows of A with which causes are told apart."""
 
-Told = Callable[[int, int], None]
+OnProgress = Callable[[int, int], None]
 """Is called with how many machines are computed, and how many there are."""
 
 
@@ -108,7 +115,7 @@ class Tolerances(Result):
 
 
 def tolerance(
-    study: Study, *, progress: Told | None = None, compute: Evaluator | None = None
+    study: Study, *, progress: OnProgress | None = None, compute: Evaluator | None = None
 ) -> Tolerances:
     """What the tolerances of a study do to its outputs, and which to tighten first.
 
@@ -116,7 +123,7 @@ def tolerance(
     ----------
     study : varies by normal and uniform tolerances; `sampling.designs` machines are drawn for the
         scatter, and about as many again to tell the tolerances apart.
-    progress : see `Told`.
+    progress : see `OnProgress`.
     compute : computes designs instead of the study's own evaluator.
 
     Raises
@@ -191,7 +198,7 @@ class _Run:
     compute: Evaluator
     step: int
     most: int
-    progress: Told | None
+    progress: OnProgress | None
     total: int = 0
     done: int = 0
 

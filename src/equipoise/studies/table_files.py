@@ -15,10 +15,11 @@ import numpy as np
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.selection import kept as keep
-from equipoise.studies.selection import outputs_of
 from equipoise.studies.extras import needed
-from equipoise.studies.store import REASON, UNKNOWN, Block, Store, as_usage_error
+from equipoise.studies.outcomes import Block
+from equipoise.studies.outcomes import kept as keep
+from equipoise.studies.selection import outputs_of
+from equipoise.studies.store import REASON, UNKNOWN, Store, as_usage_error
 
 Array = np.ndarray[Any, Any]
 Write = Callable[[Any], None]
