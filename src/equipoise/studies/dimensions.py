@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from equipoise.planting.names import dimension_of as of_planting
+from equipoise.planting.goals import dimension_of as of_planting
 from equipoise.results.analysis import unit_of
 from equipoise.studies.figures import OF_LISTS, PLACES
 
