@@ -332,7 +332,7 @@ def _parts(places: Array) -> tuple[Array, Array]:
 def _told_sizes(
     analysis: Analysis, values: Array, axis: Axis
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
-    """An arrow to the peak and a circle of the mean size, with their values; or why there are none."""
+    """An arrow to the peak and a circle of the mean size, with their values, or why not."""
     sizes = np.abs(values)
     k = int(np.argmax(sizes))
     if not sizes[k]:

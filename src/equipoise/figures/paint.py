@@ -144,9 +144,9 @@ def _path(stroke: Stroke) -> Path:
         codes = np.full(len(line), Path.LINETO, Path.code_type)
         codes[0] = Path.MOVETO
         if stroke.closed:
-            line = np.vstack([line, line[:1]])
             codes = np.append(codes, np.array([Path.CLOSEPOLY], Path.code_type))
-        parts.append(Path(line, codes))
+        corners = np.vstack([line, line[:1]]) if stroke.closed else line
+        parts.append(Path(corners, codes))
     return Path.make_compound_path(*parts)
 
 

@@ -1,4 +1,4 @@
-"""The charts of a planting machine: ratios, velocity and acceleration of the tip, torque, joints."""
+"""The charts of a planting machine: ratios, motion of the tip, torque and joints."""
 
 from __future__ import annotations
 
