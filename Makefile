@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo page test coverage lint bench clean
+.PHONY: demo page test narrow coverage lint bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -38,6 +38,11 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
 	$(BIN)/python -m pytest --numprocesses auto
+
+# Unit tests and laws as on a processor without wide instructions, where sums round otherwise.
+WIDE = import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
+narrow: $(VENV)/.installed-test
+	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(BIN)/python -m pytest --numprocesses auto tests/unit tests/laws
 
 coverage: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
