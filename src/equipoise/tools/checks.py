@@ -10,7 +10,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.checks import not_finite, positive, unknown, wrong_text
+from equipoise.mechanism.checks import positive, unknown, wrong_text, wrong_values
 from equipoise.tools.design_checks import wrong_design
 from equipoise.tools.places import places, unknown_station, wrong_range
 
@@ -49,10 +49,10 @@ def problems(tool: Tool) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a tool, the first things first."""
     yield from _too_much(tool)
     yield from _wrong_names(tool)
-    yield from not_finite("shaft", tool.shaft)
-    yield from not_finite("shaft.stations", tool.stations)
+    yield from wrong_values("shaft", tool.shaft)
+    yield from wrong_values("shaft.stations", tool.stations)
     for key in ("excitations", "operation", "work", "design"):
-        yield from not_finite(key, getattr(tool, key))
+        yield from wrong_values(key, getattr(tool, key))
     yield from _wrong_shaft(tool.shaft)
     for where, station in places("shaft.stations", tool.stations):
         yield from _wrong_station(where, station, tool.shaft)

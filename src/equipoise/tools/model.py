@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.keys import Frozen
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
 from equipoise.mechanism.model import Machine
 from equipoise.tools.sections import Shaft
 from equipoise.tools.wishes import DesignPlan

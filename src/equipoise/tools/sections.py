@@ -7,7 +7,7 @@ from functools import cached_property
 from math import inf, pi
 from typing import Any, ClassVar, Literal
 
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import Frozen
 
 Theory = Literal["euler-bernoulli", "timoshenko"]
 

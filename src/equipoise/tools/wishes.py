@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import Frozen
 
 Measure = Literal["rms", "peak"]
 MEASURES: tuple[Measure, ...] = ("rms", "peak")
