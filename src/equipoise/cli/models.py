@@ -37,9 +37,9 @@ def check(file: Annotated[str, FILE], /) -> None:
     file
         Path of a model file or a study file, or the name of a bundled example.
     """
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.schema.tools import load_any
-    from equipoise.tools.model import Tool
 
     found = load_any(file)
     if isinstance(found, Tool):

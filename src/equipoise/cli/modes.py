@@ -35,7 +35,7 @@ def modes(
         With --plot: kind of the pictures, svg if not given.
     """
     from equipoise.schema.models import load
-    from equipoise.structures.free import vibrate_freely
+    from equipoise.vibration.free import vibrate_freely
 
     machine = load(file)
     wanted = Wanted(json, None, plot, format)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
-"""As in `structures.response`, which would bring NumPy into every start of the command line."""
+"""As in `vibration.response`, which would bring NumPy into every start of the command line."""
 
 
 @contextmanager

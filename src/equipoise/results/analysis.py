@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.dynamics import Forces, SliderForce, VectorSignal, massless
-from equipoise.mechanism.fourbar import FourBar, four_bar
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, Named
 from equipoise.results.result import Result

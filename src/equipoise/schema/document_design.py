@@ -7,12 +7,12 @@ from typing import Annotated, Any, Literal
 from pydantic import BeforeValidator, ConfigDict, Field, JsonValue, WithJsonSchema
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.handheld import design_plan
+from equipoise.handheld.design_plan import KEYS, OUTPUTS
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import parse, pattern
 from equipoise.quantities.problems import described
 from equipoise.schema.fields import LIST, PAIR, AngularSpeed, Table, problem, sized
-from equipoise.tools import wishes
-from equipoise.tools.wishes import KEYS, OUTPUTS
 
 Speeds = Annotated[
     tuple[AngularSpeed, AngularSpeed], PAIR, sized('two such as ["6000 rpm", "8000 rpm"]', 2)
@@ -66,12 +66,12 @@ class Variable(Table):
     low: Size = Field(alias="from", description="the least", examples=["0.1 m"])
     high: Size = Field(alias="to", description="the most", examples=["0.5 m"])
 
-    def to_variable(self, where: str) -> wishes.DesignVariable:
+    def to_variable(self, where: str) -> design_plan.DesignVariable:
         if self.key not in KEYS:
             raise ModelError(f"{where}.key", unknown(self.key, KEYS, "key of a station"))
         low = _size(f"{where}.from", self.low, KEYS[self.key])
         high = _size(f"{where}.to", self.high, KEYS[self.key])
-        return wishes.DesignVariable(self.station, self.key, low, high)
+        return design_plan.DesignVariable(self.station, self.key, low, high)
 
 
 class Limit(Table):
@@ -88,11 +88,11 @@ class Limit(Table):
     station: str | None = Field(None, description="of an acceleration or force")
     at_most: Size = Field(description="in a unit of the output", examples=["5 m/s^2"])
 
-    def to_ceiling(self, where: str) -> wishes.DesignLimit:
+    def to_ceiling(self, where: str) -> design_plan.DesignLimit:
         if self.output not in OUTPUTS:
             raise ModelError(f"{where}.output", unknown(self.output, OUTPUTS, "output"))
         at_most = _size(f"{where}.at_most", self.at_most, OUTPUTS[self.output])
-        return wishes.DesignLimit(self.output, at_most, self.station)
+        return design_plan.DesignLimit(self.output, at_most, self.station)
 
 
 class Design(Table):
@@ -112,8 +112,8 @@ class Design(Table):
         None, description="stations that count; all that are held if left out"
     )
 
-    def to_design(self) -> wishes.DesignPlan:
-        return wishes.DesignPlan(
+    def to_design(self) -> design_plan.DesignPlan:
+        return design_plan.DesignPlan(
             speeds=self.speeds,
             variables=tuple(
                 variable.to_variable(f"design.variables[{number}]")

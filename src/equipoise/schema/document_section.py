@@ -7,10 +7,10 @@ from typing import Any
 from pydantic import ConfigDict, Field, JsonValue
 
 from equipoise.errors import ModelError
+from equipoise.handheld import shaft
 from equipoise.mechanism.checks import unknown
 from equipoise.schema.fields import BendingStiffness, Density, Length, MassPerLength, Modulus, Table
 from equipoise.schema.tube_materials import MATERIALS, Material
-from equipoise.tools import sections
 
 OF_MATERIAL = ("youngs_modulus", "density", "poisson_ratio")
 OF_TUBE = ("outer_diameter", "inner_diameter", "material", *OF_MATERIAL, "carried")
@@ -62,7 +62,7 @@ class Profile(Table):
     poisson_ratio: float | None = Field(
         None,
         description="goes with youngs_modulus",
-        json_schema_extra={"default": sections.Tube.poisson_ratio},
+        json_schema_extra={"default": shaft.Tube.poisson_ratio},
     )
     carried: MassPerLength = Field(
         0.0,
@@ -70,9 +70,7 @@ class Profile(Table):
         json_schema_extra={"default": "0 kg/m"},
     )
 
-    def to_profile(
-        self, where: str, linear: float | None = None
-    ) -> sections.Section | sections.Tube:
+    def to_profile(self, where: str, linear: float | None = None) -> shaft.Section | shaft.Tube:
         """Return the section; `linear` is its mass per length (kg/m) where that follows from more.
 
         Raises
@@ -92,9 +90,9 @@ class Profile(Table):
             raise ModelError(
                 f"{where}.mass_per_length", "missing; give it together with bending_stiffness"
             )
-        return sections.Section(self.bending_stiffness, mass_per_length)
+        return shaft.Section(self.bending_stiffness, mass_per_length)
 
-    def _to_tube(self, where: str) -> sections.Tube:
+    def _to_tube(self, where: str) -> shaft.Tube:
         if self.outer_diameter is None:
             raise ModelError(where, EITHER)
         for key in OF_SECTION:
@@ -103,9 +101,7 @@ class Profile(Table):
                     f"{where}.{key}", "has no place beside outer_diameter; carried adds to a tube"
                 )
         material = self._material(where)
-        return sections.Tube(
-            self.outer_diameter, self.inner_diameter, *material, carried=self.carried
-        )
+        return shaft.Tube(self.outer_diameter, self.inner_diameter, *material, carried=self.carried)
 
     def _material(self, where: str) -> Material:
         given = [key for key in OF_MATERIAL if key in self.model_fields_set]
@@ -122,7 +118,7 @@ class Profile(Table):
             return Material(
                 self.youngs_modulus,
                 self.density,
-                sections.Tube.poisson_ratio if ratio is None else ratio,
+                shaft.Tube.poisson_ratio if ratio is None else ratio,
             )
         if given:
             raise ModelError(

@@ -7,6 +7,8 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from equipoise.errors import ModelError
+from equipoise.handheld import model, shaft
+from equipoise.handheld.model import NOTHING
 from equipoise.schema.document_section import Profile, section_keys
 from equipoise.schema.fields import Length, Mass, Table
 from equipoise.schema.opening import Beside, impedance_keys, table_at
@@ -18,8 +20,6 @@ from equipoise.schema.planes import (
     TorsionalDampings,
     TorsionalStiffnesses,
 )
-from equipoise.tools import model, sections
-from equipoise.tools.model import NOTHING
 
 _PLANES = "; a table for unlike planes"
 
@@ -145,8 +145,8 @@ class Segment(Profile):
     start: Length = Field(alias="from", description="where it begins", examples=["1.2 m"])
     stop: Length = Field(alias="to", description="where it ends", examples=["1.35 m"])
 
-    def to_segment(self, where: str) -> sections.Segment:
-        return sections.Segment(self.start, self.stop, self.to_profile(where))
+    def to_segment(self, where: str) -> shaft.Segment:
+        return shaft.Segment(self.start, self.stop, self.to_profile(where))
 
 
 class Shaft(Profile):
@@ -171,8 +171,8 @@ class Shaft(Profile):
     segments: list[Segment] = Field([], description="parts with another section")
     stations: list[Station] = Field([], description="what sits on it and holds it")
 
-    def to_shaft(self) -> sections.Shaft:
-        return sections.Shaft(
+    def to_shaft(self) -> shaft.Shaft:
+        return shaft.Shaft(
             length=self.length,
             profile=self.to_profile("shaft", self._linear()),
             segments=tuple(

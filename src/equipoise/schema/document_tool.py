@@ -7,14 +7,14 @@ from typing import Literal
 from pydantic import ConfigDict, Field
 
 from equipoise.errors import ModelError
+from equipoise.handheld import model
+from equipoise.handheld.model import CAUSES
 from equipoise.schema import SCHEMA_VERSION
 from equipoise.schema.document_design import Design, Speeds
 from equipoise.schema.document_shaft import Shaft
 from equipoise.schema.fields import Angle, AngularSpeed, Force, Table, Time, Unbalance
 from equipoise.schema.opening import Beside, table_at
 from equipoise.schema.plain import usual_name
-from equipoise.tools import model
-from equipoise.tools.checks import CAUSES
 
 
 class Excitation(Table):

@@ -14,13 +14,13 @@ from numbers import Real
 from typing import Any
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import PLANES
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.schema.opening import Kind
 from equipoise.schema.problems import written_key
 from equipoise.schema.schema_keys import Place, default_at, is_known, is_whole
-from equipoise.tools.model import PLANES
 
 Content = Mapping[str, Any]
 _STEP = re.compile(r'(?:(?:^|\.)(?:"((?:[^"\\]|\\.)*)"|([^."\[\]]+))|\[([0-9]{1,9})\])')

@@ -13,16 +13,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.handheld.model import PLANES
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.mechanism.motor import MotorTable
 from equipoise.schema import SCHEMA_VERSION
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
-from equipoise.tools.model import PLANES
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Impedance
+    from equipoise.handheld.model import Impedance
 
 Kind = Literal["linkage", "tool"]
 FileKind = Literal["linkage", "tool", "study"]

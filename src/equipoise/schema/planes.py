@@ -11,10 +11,10 @@ from typing_extensions import TypeAliasType
 
 from equipoise import quantities
 from equipoise.errors import UsageError
+from equipoise.handheld.model import PLANES
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
 from equipoise.schema.fields import LIST, problem
-from equipoise.tools.model import PLANES
 
 Value = TypeVar("Value")
 FILE = "hand.csv"

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import Impedance, Tool
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
@@ -29,7 +30,6 @@ from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
 from equipoise.schema.problems import validated
 from equipoise.schema.tools import parts_of
-from equipoise.tools.model import Impedance, Tool
 
 if TYPE_CHECKING:
     from equipoise.schema.schema_keys import Place

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import ModelError
+from equipoise.handheld.model import Impedance, Tool
 from equipoise.mechanism.model import Machine
 from equipoise.schema.files import printable
 from equipoise.schema.models import files_of, loads, save, write_beside
@@ -24,7 +25,6 @@ from equipoise.schema.opening import (
     opened,
     opened_example,
 )
-from equipoise.tools.model import Impedance, Tool
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study

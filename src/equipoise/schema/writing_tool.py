@@ -6,13 +6,9 @@ from collections.abc import Mapping
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.quantities import Dimension, format_exact
-from equipoise.schema import SCHEMA_VERSION
-from equipoise.schema.opening import impedance_keys
-from equipoise.schema.plain import listed, quantities, tidy, unless, usual_name
-from equipoise.schema.tube_materials import Material, material_of
-from equipoise.tools.checks import CAUSES
-from equipoise.tools.model import (
+from equipoise.handheld.design_plan import KEYS, OUTPUTS, DesignLimit, DesignPlan, DesignVariable
+from equipoise.handheld.model import (
+    CAUSES,
     NOTHING,
     PLANES,
     Absorber,
@@ -25,8 +21,12 @@ from equipoise.tools.model import (
     Tool,
     Work,
 )
-from equipoise.tools.sections import Section, Segment, Shaft, Tube
-from equipoise.tools.wishes import KEYS, OUTPUTS, DesignLimit, DesignPlan, DesignVariable
+from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
+from equipoise.quantities import Dimension, format_exact
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.opening import impedance_keys
+from equipoise.schema.plain import listed, quantities, tidy, unless, usual_name
+from equipoise.schema.tube_materials import Material, material_of
 
 
 def tool_document(tool: Tool, files: Mapping[str, str]) -> dict[str, Any]:

@@ -16,6 +16,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, MotionError
+from equipoise.handheld.model import Tool
 from equipoise.mechanism.model import Machine
 from equipoise.quantities.units import KINDS
 from equipoise.schema.models import examples
@@ -23,7 +24,6 @@ from equipoise.schema.numbers import OF_UNIT
 from equipoise.schema.points import from_polar
 from equipoise.schema.schema_keys import is_whole
 from equipoise.schema.template import Template
-from equipoise.tools.model import Tool
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL
 

@@ -11,11 +11,11 @@ import pytest
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
+from equipoise.handheld.design_plan import DesignLimit, DesignVariable
+from equipoise.handheld.model import Harness, Impedance, Tool
+from equipoise.handheld.shaft import Section, Tube
 from equipoise.schema import examples, load, loads
 from equipoise.schema.tools import dumps_tool, load_any, load_tool, loads_tool, tool_schema
-from equipoise.tools.model import Harness, Impedance, Tool
-from equipoise.tools.sections import Section, Tube
-from equipoise.tools.wishes import DesignLimit, DesignVariable
 from unit.schema.samples import FOUR_BAR
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 

@@ -13,12 +13,12 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.model import Hand, Impedance, Tool
+from equipoise.handheld.shaft import Section
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema import examples, load
 from equipoise.schema.tables import format_impedance, read_impedance
 from equipoise.schema.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
-from equipoise.tools.model import Hand, Impedance, Tool
-from equipoise.tools.sections import Section
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 
 TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")
