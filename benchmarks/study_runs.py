@@ -19,11 +19,10 @@ import numpy as np
 
 import equipoise as eq
 from asked import Limit, Table, agree
-from equipoise.fused.batch import Batch
-from equipoise.fused.compiled import FOLDER, run
-from equipoise.fused.figures import Figure
-from equipoise.fused.grid import all_angles, grid_of
-from equipoise.fused.table import table_of
+from equipoise.codegen.backends import FOLDER, run_loop
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.figures import Figure
 from equipoise.io.template import Template
 from equipoise.studies.run import sweep
 from equipoise.studies.sampling import samples
@@ -50,8 +49,8 @@ DENSE, ENOUGH = 3600, MILLION
 CLOSE = 1e-12
 FIRST_FIGURES = f"""
 import equipoise as eq
-from equipoise.fused.batch import Batch
-from equipoise.fused.figures import Figure
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
 wanted = [Figure(signal, "rms") for signal in {SIGNALS}]
 Batch(eq.load("yamashita-1"), ["links.rocker.mass"], wanted, {ANGLES})([[0.2]])
 """
@@ -115,13 +114,13 @@ def stored(table: Table) -> None:
     study = study_of(MILLION)
     values = samples(study, 0, MILLION)
     batch = Batch(MACHINE, study.paths, [Figure(signal, "rms") for signal in SIGNALS], ANGLES)
-    numbers = table_of(batch.source, batch.base, batch.paths, values).table
+    numbers = designs_of(batch.source, batch.base, batch.paths, values).table
     grid = grid_of(batch.source, all_angles(ANGLES, 1))
 
     def bare() -> np.ndarray:
         with ThreadPoolExecutor(2) as pool:
             parts = pool.map(
-                lambda part: run(batch.source, part, grid), np.array_split(numbers, 16)
+                lambda part: run_loop(batch.source, part, grid), np.array_split(numbers, 16)
             )
             return np.concatenate(list(parts))
 

@@ -16,7 +16,7 @@ __version__ = "0.1.0"
 _HOMES = {
     "Absorber": "tools.model",
     "AddedMass": "mechanism.balance",
-    "Analysis": "results",
+    "Analysis": "results.analysis",
     "Balance": "mechanism.balance",
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
@@ -282,7 +282,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
-    from equipoise.results import Analysis as Analysis
+    from equipoise.results.analysis import Analysis as Analysis
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

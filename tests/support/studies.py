@@ -18,8 +18,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.studies import run
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.executors import Task

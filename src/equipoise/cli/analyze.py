@@ -58,7 +58,7 @@ def analyze(
     """
     from equipoise import pipeline
     from equipoise.io.models import load
-    from equipoise.results import order_values
+    from equipoise.results.analysis import order_values
 
     machine = load(file)
     check_belonging("--json", json or None, split=split or None)
@@ -99,7 +99,7 @@ def analyze(
 
 
 def _angles(text: str) -> int | list[float]:
-    from equipoise.io.units import parse
+    from equipoise.quantities import parse
 
     if re.fullmatch("[+-]?[0-9]{1,20}", text):
         return int(text)

@@ -12,7 +12,7 @@ from equipoise.cli.options import check_belonging, check_target, naming, quantit
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 KINDS = ("svg", "gif", "mp4")
 SVG_FRAMES = 60

@@ -120,7 +120,7 @@ def _above_zero(option: str, text: str, value: float) -> float:
 
 def _stiffness(text: str | None) -> tuple[float | None, bool]:
     """A stiffness, N/m or N m/rad, and whether it is torsional."""
-    from equipoise.io.unit_lists import KINDS, plain_unit
+    from equipoise.quantities.units import KINDS, plain_unit
 
     if text is None:
         return None, False

@@ -46,7 +46,7 @@ def check_belonging(owner: str, given: object, **options: object) -> None:
 
 
 def quantity(option: str, text: str, dimension: str) -> float:
-    from equipoise.io.units import parse
+    from equipoise.quantities import parse
 
     try:
         return parse(text, dimension)  # type: ignore[arg-type]

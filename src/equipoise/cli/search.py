@@ -151,7 +151,7 @@ def _own(study: Study) -> Own | None:
     """Values and figures of the model itself, for comparison; None where it cannot be computed."""
     import numpy as np
 
-    from equipoise.fused.reasons import COMPUTED
+    from equipoise.codegen.figures import COMPUTED
     from equipoise.studies.evaluate import evaluator
 
     values = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)

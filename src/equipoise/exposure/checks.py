@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.mechanism.checks import HUGE, TINY
+from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]
 

@@ -17,19 +17,17 @@ from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
-from equipoise.io import units
 from equipoise.io.files import FileError, printable, read_text
-from equipoise.io.unit_factors import FACTORS
-from equipoise.io.unit_lists import plain_unit
-from equipoise.mechanism.checks import HUGE, TINY
+from equipoise.quantities.units import FACTORS, HUGE, TINY, plain_unit
 
 if TYPE_CHECKING:
     import numpy as np
 
     Array = np.ndarray[Any, Any]
 
-COLUMNS: dict[str, units.Dimension] = {
+COLUMNS: dict[str, quantities.Dimension] = {
     "crank_angle": "angle",
     "force_x": "force",
     "force_y": "force",
@@ -70,13 +68,13 @@ COLUMN_UNITS = {"crank_angle": "deg", "force_x": "N", "force_y": "N", "torque": 
 """Units that a header is shown with."""
 Forms = tuple[tuple[str, ...], ...]
 """Columns of each form of a table; the first must rise from row to row."""
-OTHERWISE: dict[tuple[str, str], tuple[units.Dimension, str]] = {
+OTHERWISE: dict[tuple[str, str], tuple[quantities.Dimension, str]] = {
     ("frequency", "resistance"): ("damping", "N s/m"),
 }
 """Columns that are something else in a table with that first column."""
 
 
-def _sort(name: str, forms: Forms) -> tuple[units.Dimension, str]:
+def _sort(name: str, forms: Forms) -> tuple[quantities.Dimension, str]:
     """Dimension of a column, and the unit that it is shown with."""
     first = forms[0][0] if forms else ""
     return OTHERWISE.get((first, name)) or (COLUMNS[name], COLUMN_UNITS[name])
@@ -189,7 +187,7 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
                 "", f"line {line}: got the column {shortened(cell)}; {told_forms(forms)}"
             )
         if match is None:
-            unit = units.KINDS[_sort(name, forms)[0]].units[0]
+            unit = quantities.KINDS[_sort(name, forms)[0]].si
             raise ModelError(
                 "", f"line {line}, column {name}: the unit is missing; {name} [{unit}]"
             )
@@ -208,7 +206,7 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
 def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> float:
     """A cell in SI units."""
     try:
-        return units.parse(f"{cell} {unit}", _sort(name, forms)[0])
+        return quantities.parse(f"{cell} {unit}", _sort(name, forms)[0])
     except UsageError as error:
         where = f"line {line}, column {name}"
         if not _is_number(cell):

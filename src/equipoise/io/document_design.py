@@ -8,9 +8,9 @@ from pydantic import BeforeValidator, ConfigDict, Field, JsonValue, WithJsonSche
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.io.fields import LIST, PAIR, AngularSpeed, Table, problem, sized
-from equipoise.io.unit_problems import described
-from equipoise.io.units import parse, pattern
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities import parse, pattern
+from equipoise.quantities.problems import described
 from equipoise.tools import wishes
 from equipoise.tools.wishes import KEYS, OUTPUTS
 

@@ -13,7 +13,7 @@ from typing_extensions import TypeAliasType
 
 from equipoise.io import SCHEMA_VERSION
 from equipoise.io.fields import LIST, PAIR, Table, sized
-from equipoise.io.unit_lists import NUMBER
+from equipoise.quantities.units import NUMBER
 from equipoise.studies.checks import COMMANDS, METHODS
 
 Value = TypeAliasType(

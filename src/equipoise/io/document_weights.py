@@ -30,10 +30,10 @@ from equipoise.io.fields import (
     sized,
     vector,
 )
-from equipoise.io.unit_problems import described
 from equipoise.mechanism import balance
 from equipoise.mechanism.balance import CUT, MATERIALS
 from equipoise.mechanism.balance_weights import HOLLOW
+from equipoise.quantities.problems import described
 
 # -- JSON Schema -----------------------------------------------------------------------------------
 

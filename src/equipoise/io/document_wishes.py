@@ -9,11 +9,11 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 from equipoise.errors import ModelError, UsageError
 from equipoise.io.fields import LIST, AngularSpeed, Table, problem, sized
 from equipoise.io.shares import SHARE, parse_share
-from equipoise.io.unit_problems import described
-from equipoise.io.units import Dimension, parse, pattern
 from equipoise.mechanism import balance
 from equipoise.mechanism.balance_outputs import quantity_of, wrong_limit
 from equipoise.mechanism.model import Machine
+from equipoise.quantities import Dimension, parse, pattern
+from equipoise.quantities.problems import described
 
 MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "energy", "length", "angle")
 """What measures of outputs can be."""

@@ -19,12 +19,12 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 from typing_extensions import TypeAliasType
 
+from equipoise import quantities
 from equipoise.errors import UsageError
-from equipoise.io import units
 from equipoise.io.points import from_polar
-from equipoise.io.unit_problems import described
 from equipoise.mechanism import model
 from equipoise.mechanism.model import Vector
+from equipoise.quantities.problems import described
 
 
 def problem(sentence: str, key: str = "") -> PydanticCustomError:
@@ -33,23 +33,23 @@ def problem(sentence: str, key: str = "") -> PydanticCustomError:
     return PydanticCustomError("equipoise", "{sentence}", context)
 
 
-def _reader(dimension: units.Dimension) -> BeforeValidator:
+def _reader(dimension: quantities.Dimension) -> BeforeValidator:
     def read(text: object) -> float:
         try:
-            return units.parse(text, dimension)
+            return quantities.parse(text, dimension)
         except UsageError as error:
             raise problem(str(error)) from error
 
     return BeforeValidator(read)
 
 
-def _json(dimension: units.Dimension) -> WithJsonSchema:
-    kind = units.KINDS[dimension]
+def _json(dimension: quantities.Dimension) -> WithJsonSchema:
+    kind = quantities.KINDS[dimension]
     return WithJsonSchema(
         {
             "type": "string",
             "description": f"{kind.noun}: number, space and one of {', '.join(kind.units)}",
-            "pattern": units.pattern(dimension),
+            "pattern": quantities.pattern(dimension),
             "examples": [kind.example],
         }
     )

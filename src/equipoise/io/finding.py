@@ -17,8 +17,8 @@ from equipoise.io.numbers import XYZ, Number, Planes, Vector, read_number, vecto
 from equipoise.io.opening import Kind
 from equipoise.io.problems import written_key
 from equipoise.io.schema_keys import Place, default_at, is_known, is_whole
-from equipoise.io.unit_problems import described
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities.problems import described
 from equipoise.tools.model import PLANES
 
 Content = Mapping[str, Any]

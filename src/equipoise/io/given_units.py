@@ -8,7 +8,7 @@ from typing import Any
 
 from equipoise.io.finding import Found
 from equipoise.io.numbers import XYZ, read_number
-from equipoise.io.unit_lists import KINDS, NUMBER, Dimension, plain_unit
+from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
 
 SHARE = "%"
 _QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")

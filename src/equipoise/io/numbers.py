@@ -15,8 +15,8 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.io.points import from_polar
 from equipoise.io.shares import format_share, parse_share
-from equipoise.io.unit_lists import KINDS, NUMBER, Dimension, plain_unit
-from equipoise.io.units import parse
+from equipoise.quantities import parse
+from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.tools.model import PLANES
 
 OF_UNIT: dict[str, Dimension] = {
@@ -54,7 +54,7 @@ class Number:
 
 def quantity(value: float, dimension: Dimension) -> str:
     """A value in SI units with all its digits."""
-    return f"{float(value)!r} {KINDS[dimension].units[0]}"
+    return f"{float(value)!r} {KINDS[dimension].si}"
 
 
 def read_number(given: Any, whole: bool = False) -> Number | None:

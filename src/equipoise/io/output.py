@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.io.files import FileError, make_folder, printable, write_bytes
-from equipoise.results import Analysis, columns, unit_of
+from equipoise.results.analysis import Analysis, columns, unit_of
 
 Array = np.ndarray[Any, Any]
 

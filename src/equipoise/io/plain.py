@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from equipoise.io.units import Dimension, format_exact
+from equipoise.quantities import Dimension, format_exact
 
 
 def unless(default: bool, **items: Any) -> dict[str, Any]:

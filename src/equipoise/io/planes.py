@@ -9,11 +9,11 @@ from pydantic import BeforeValidator, WithJsonSchema
 from pydantic.json_schema import JsonSchemaValue
 from typing_extensions import TypeAliasType
 
+from equipoise import quantities
 from equipoise.errors import UsageError
-from equipoise.io import units
 from equipoise.io.fields import LIST, problem
-from equipoise.io.unit_problems import described
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities.problems import described
 from equipoise.tools.model import PLANES
 
 Value = TypeVar("Value")
@@ -53,14 +53,14 @@ def _schema(text: JsonSchemaValue, description: str) -> WithJsonSchema:
     return WithJsonSchema({"anyOf": [text, table], "description": description})
 
 
-def _quantity(dimension: units.Dimension) -> tuple[BeforeValidator, WithJsonSchema]:
-    kind = units.KINDS[dimension]
+def _quantity(dimension: quantities.Dimension) -> tuple[BeforeValidator, WithJsonSchema]:
+    kind = quantities.KINDS[dimension]
 
     def read(given: Any) -> tuple[float, ...]:
-        found = _in_planes(given, lambda text: units.parse(text, dimension), kind.example)
+        found = _in_planes(given, lambda text: quantities.parse(text, dimension), kind.example)
         return found if len(found) == 2 else found * 2
 
-    text = {"type": "string", "pattern": units.pattern(dimension), "examples": [kind.example]}
+    text = {"type": "string", "pattern": quantities.pattern(dimension), "examples": [kind.example]}
     description = (
         f"{kind.noun}: number, space and one of {', '.join(kind.units)}; or a table with that for "
         "the vertical and the lateral plane"

@@ -5,8 +5,8 @@ from __future__ import annotations
 from math import atan2, cos, hypot, pi, sin
 
 from equipoise.errors import UsageError
-from equipoise.io.units import format_exact, parse, rounded
 from equipoise.mechanism.model import Vector
+from equipoise.quantities import format_exact, parse, rounded
 
 
 def from_polar(distance: float, direction: float) -> Vector:

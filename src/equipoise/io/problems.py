@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from equipoise.errors import ModelError
 from equipoise.io.fields import TAGS
-from equipoise.io.unit_problems import described
+from equipoise.quantities.problems import described
 
 if TYPE_CHECKING:
     from pydantic import BaseModel, ValidationError

@@ -6,9 +6,8 @@ import re
 from decimal import Decimal, localcontext
 
 from equipoise.errors import UsageError
-from equipoise.io.unit_lists import NUMBER
-from equipoise.io.unit_problems import too_far
-from equipoise.mechanism.checks import HUGE, TINY
+from equipoise.quantities.problems import too_far
+from equipoise.quantities.units import HUGE, NUMBER, TINY
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60

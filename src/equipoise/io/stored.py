@@ -6,8 +6,8 @@ import os
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
+from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import COMPUTED, REASONS
 from equipoise.io.files import printable
 from equipoise.io.studies import restore
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.io.files import printable
 from equipoise.io.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
-from equipoise.io.unit_problems import described
+from equipoise.quantities.problems import described
 from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.spread import Choices, Normal, Range, Spread, Uniform
 from equipoise.studies.study import (
@@ -182,7 +182,7 @@ def _spread(where: str, given: document_study.Vary, value: float, dimension: str
 def _value(where: str, given: Any, dimension: str | None) -> float:
     """A value of a number of the model, in SI units."""
     from equipoise.io.numbers import read_number
-    from equipoise.io.units import parse
+    from equipoise.quantities import parse
 
     if dimension is None:
         number = read_number(given)

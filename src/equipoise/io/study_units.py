@@ -11,8 +11,7 @@ from equipoise.errors import UsageError
 from equipoise.io.given_units import SHARE, handy, unit_of
 from equipoise.io.stored import study_of
 from equipoise.io.template import Template
-from equipoise.io.unit_factors import FACTORS
-from equipoise.io.unit_lists import KINDS
+from equipoise.quantities.units import FACTORS, KINDS
 
 if TYPE_CHECKING:
     from equipoise.studies.store import Store

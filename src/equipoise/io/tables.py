@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
-from equipoise.io import units
+from equipoise import quantities
 from equipoise.io.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.model import LoadTable
@@ -74,7 +74,7 @@ def format_load(table: LoadTable) -> str:
     """Write a load table as CSV such that reading it gives exactly the same numbers."""
     names = _LOAD[0] if len(table.values) == 2 else _LOAD[1]
     unit, angles = _handy(table.crank_angle, "angle", "deg", "rad")
-    unit_of = [unit, *(units.KINDS[COLUMNS[name]].units[0] for name in names[1:])]
+    unit_of = [unit, *(quantities.KINDS[COLUMNS[name]].si for name in names[1:])]
     return csv_text(names, unit_of, [angles, *(map(repr, column) for column in table.values)])
 
 
@@ -90,10 +90,10 @@ def format_motor(table: MotorTable) -> str:
 
 
 def _handy(
-    values: Iterable[float], dimension: units.Dimension, usual: str, si: str
+    values: Iterable[float], dimension: quantities.Dimension, usual: str, si: str
 ) -> tuple[str, list[str]]:
     """A unit and the numbers of a column in it: the usual one if it is exact for all of them."""
-    texts = [units.format_exact(value, dimension).split(" ", 1) for value in values]
+    texts = [quantities.format_exact(value, dimension).split(" ", 1) for value in values]
     if all(unit == usual for _, unit in texts):
         return usual, [number for number, _ in texts]
     return si, [repr(float(value)) for value in values]

@@ -13,8 +13,8 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
-from equipoise.io import units
 from equipoise.io.fields import PAIR, Table
 from equipoise.io.files import FileError, printable, read_text
 from equipoise.io.opening import toml_content
@@ -137,7 +137,7 @@ def _value(where: str, given: Quantity, dimension: str | None) -> float:
             raise ModelError(where, f"got {given!r}; give a plain number, such as -0.9")
         return float(given)
     try:
-        return units.parse(given, dimension)  # type: ignore[arg-type]
+        return quantities.parse(given, dimension)  # type: ignore[arg-type]
     except UsageError as error:
         raise ModelError(where, str(error)) from error
 

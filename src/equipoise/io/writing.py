@@ -9,7 +9,6 @@ from typing import Any
 from equipoise.io import SCHEMA_VERSION
 from equipoise.io.plain import listed, quantities, unless
 from equipoise.io.points import written
-from equipoise.io.units import Dimension, format_exact
 from equipoise.io.writing_balance import balance_table
 from equipoise.io.writing_support import motor_table, row_table, support_table
 from equipoise.mechanism.balance_checks import LISTS
@@ -27,6 +26,7 @@ from equipoise.mechanism.model import (
     Spring,
     Vector,
 )
+from equipoise.quantities import Dimension, format_exact
 
 _PRESSURE_ANGLE = next(field.default for field in fields(Gear) if field.name == "pressure_angle")
 

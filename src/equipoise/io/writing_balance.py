@@ -9,7 +9,6 @@ from typing import Any
 from equipoise.io.plain import listed, quantities, tidy, unless
 from equipoise.io.points import written
 from equipoise.io.shares import format_share
-from equipoise.io.units import Dimension, format_exact
 from equipoise.mechanism.balance import (
     AddedMass,
     Balance,
@@ -26,6 +25,7 @@ from equipoise.mechanism.balance import (
 from equipoise.mechanism.balance_outputs import quantity_of
 from equipoise.mechanism.balance_weights import material_of
 from equipoise.mechanism.model import Machine
+from equipoise.quantities import Dimension, format_exact
 
 
 def balance_table(balance: Balance, machine: Machine) -> dict[str, Any]:

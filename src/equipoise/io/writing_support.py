@@ -6,9 +6,9 @@ from typing import Any
 
 from equipoise.io.plain import listed, quantities, tidy, unless
 from equipoise.io.points import written
-from equipoise.io.units import Dimension, format_exact
 from equipoise.mechanism.motor import Motor
 from equipoise.mechanism.support import UP, Direction, Gauge, Mount, Place, Row, Support
+from equipoise.quantities import Dimension, format_exact
 
 
 def support_table(support: Support) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from equipoise.io import SCHEMA_VERSION
 from equipoise.io.beside import impedance_keys
 from equipoise.io.plain import listed, quantities, tidy, unless, usual_name
 from equipoise.io.tube_materials import Material, material_of
-from equipoise.io.units import Dimension, format_exact
+from equipoise.quantities import Dimension, format_exact
 from equipoise.tools.checks import CAUSES
 from equipoise.tools.model import (
     NOTHING,

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from equipoise.balancing.naming import objective_named
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
@@ -27,7 +28,6 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place, told_speed
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

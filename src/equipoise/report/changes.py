@@ -7,8 +7,8 @@ from math import degrees
 from typing import Any
 
 from equipoise.balancing.parts import Change
+from equipoise.i18n import say
 from equipoise.report.numbers import number, place
-from equipoise.words import say
 
 
 def told(change: Change) -> Iterator[str]:

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
     from equipoise.structures.free import FreeVibration
     from equipoise.structures.response import Response
     from equipoise.structures.sweep import Sweep

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from equipoise.words import say, spoken, to_say
+from equipoise.i18n import say, spoken, to_say
 
 SENTENCES = (
     # structures

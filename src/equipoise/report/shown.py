@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import to_say
 from equipoise.plotting.style import styled
 from equipoise.report.findings import Findings
-from equipoise.words import to_say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

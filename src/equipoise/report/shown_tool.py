@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import to_say
 from equipoise.report.findings import ToolFindings
 from equipoise.report.shown import Entry, Part, pages
-from equipoise.words import to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.exposed import ToolExposure

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.i18n import say, spoken, to_say
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import ToolFindings
 from equipoise.report.numbers import PER_RPM, brief, capital, change, percent
 from equipoise.report.tool_tables import in_units, varied_named
 from equipoise.tools.exposed import WORKING, grips
 from equipoise.tools.response import respond_tool
-from equipoise.words import say, spoken, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.design import ToolDesign

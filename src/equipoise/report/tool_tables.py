@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.tool.design import figure_named
 from equipoise.report.document import Block, Paragraph, Row, Table
 from equipoise.report.numbers import change, number, percent
 from equipoise.tools.exposed import IDLING, RACING, WORKING
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.design import Before, ToolDesign

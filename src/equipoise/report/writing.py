@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.words import LANGUAGES
+from equipoise.i18n import LANGUAGES
 
 if TYPE_CHECKING:
     from equipoise.report.document import Document

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.model import HUGE, Machine
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import idle_parts
+from equipoise.quantities.units import HUGE
 from equipoise.structures.body import MISSING
 from equipoise.structures.excitation import Step
 from equipoise.structures.response import MODELS, Model

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import COMPUTED, REASONS
 from equipoise.mechanism.checks import unknown
 from equipoise.studies.front import front, spread
 from equipoise.studies.study import Make, Output

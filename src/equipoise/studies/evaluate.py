@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from equipoise.codegen.figures import COMPUTED, NOT_COMPUTED
 from equipoise.errors import EquipoiseError
-from equipoise.fused.reasons import COMPUTED, NOT_COMPUTED
 
 if TYPE_CHECKING:
-    from equipoise.fused.figures import Figure
+    from equipoise.codegen.figures import Figure
     from equipoise.mechanism.model import Machine
     from equipoise.studies.study import Output, Study
 
@@ -38,7 +38,7 @@ class Evaluator(Protocol):
 
 
 class Quick(Protocol):
-    """Figures (P, m) and reasons (P,) of designs (P, d): `fused.Batch` or `fused.MassBatch`."""
+    """Figures (P, m) and reasons (P,) of designs (P, d), as `Batch` and `MassBatch` give."""
 
     def __call__(self, values: Array) -> tuple[Array, Array]: ...
 
@@ -80,7 +80,7 @@ class Routes:
     @property
     def engine(self) -> str:
         """What computes: ``numba`` or ``numpy``."""
-        from equipoise.fused.compiled import engine
+        from equipoise.codegen.backends import engine
 
         return engine()
 
@@ -116,14 +116,14 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
     """What computes some outputs quickly, and their columns; None where nothing can."""
     if study.model.kind != "linkage" or all(output.of != "analyze" for output in study.outputs):
         return None
-    from equipoise.fused.batch import Batch
-    from equipoise.fused.gram import MassBatch, can_use
-    from equipoise.fused.limits import can_have
+    from equipoise.codegen.batch import Batch
+    from equipoise.codegen.emit import can_compute
+    from equipoise.codegen.gram import MassBatch, can_use
 
     machine: Machine = study.model.base()  # type: ignore[assignment]
     try:
         figures = {k: _figure(output) for k, output in enumerate(study.outputs)}
-        wanted = {k: f for k, f in figures.items() if f and can_have(machine, study.paths, f)}
+        wanted = {k: f for k, f in figures.items() if f and can_compute(machine, study.paths, f)}
         masses = {k: f for k, f in figures.items() if f and can_use(machine, study.paths, [f])}
         if masses and len(masses) >= len(wanted):
             of_masses = MassBatch(
@@ -141,6 +141,6 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
 
 
 def _figure(output: Output) -> Figure | None:
-    from equipoise.fused.figures import figure_of
+    from equipoise.codegen.figures import figure_of
 
     return figure_of(output.value) if output.of == "analyze" else None

@@ -13,8 +13,8 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.studies.best import kept as keep
 from equipoise.studies.best import outputs_of
 from equipoise.studies.extras import needed

@@ -13,14 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.errors import (
-    ChangePointError,
-    EquipoiseError,
-    ModelError,
-    MotionError,
-    RangeError,
-)
-from equipoise.fused.reasons import (
+from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
     MOST_ANGLES,
@@ -30,6 +23,13 @@ from equipoise.fused.reasons import (
     NO_MACHINE,
     NOT_COMPUTED,
     NOT_STILL,
+)
+from equipoise.errors import (
+    ChangePointError,
+    EquipoiseError,
+    ModelError,
+    MotionError,
+    RangeError,
 )
 from equipoise.studies.asking import ANGLES, Asked, find, is_place, is_smooth
 from equipoise.studies.commands import COMMANDS, analyzed

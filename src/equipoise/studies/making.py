@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import equipoise
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.studies.extras import needed
 from equipoise.studies.spread import Choices
 from equipoise.studies.store import LAYOUT, REASON, UNKNOWN, ZSTD, Store, open_store, told

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.fused.reasons import COMPUTED, REASONS
+from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.studies.best import kept
 
 if TYPE_CHECKING:

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import COMPUTED, REASONS
 from equipoise.studies.best import kept, why_none
 from equipoise.studies.breeding import breeder, settled, values_of
 from equipoise.studies.evaluate import Evaluator, evaluator

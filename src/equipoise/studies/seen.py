@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.fused.reasons import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.studies.evaluate import Evaluator, Outcome
 from equipoise.studies.front import front, spread
 from equipoise.studies.study import Study

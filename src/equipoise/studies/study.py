@@ -49,7 +49,7 @@ class Vary:
     """A number of the model that varies.
 
     path : in the model file, such as ``links.crank.points.B.x``.
-    dimension : as in `equipoise.io.units`, None for a plain number; a study has it from its model.
+    dimension : of its quantity, None for a plain number; a study has it from its model.
     """
 
     path: str

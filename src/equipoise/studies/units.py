@@ -28,4 +28,4 @@ SI = {
     "modulus": "Pa",
     "unbalance": "kg m",
 }
-"""Dimension, as in `equipoise.io.units`, -> unit."""
+"""Dimension, as in `equipoise.quantities.reading`, -> unit."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.fused.reasons import COMPUTED, REASONS
+from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.studies.evaluate import Outcome, evaluator
 from equipoise.studies.spread import Choices, Normal, Range
 from equipoise.terminal.tables import Row, number, table

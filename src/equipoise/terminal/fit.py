@@ -12,10 +12,10 @@ from equipoise.terminal.tables import Row, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
     from equipoise.planting.goals import Goal
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.quantities.units import Dimension
 
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (

@@ -12,8 +12,8 @@ from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.quantities.units import Dimension
 
 INSTANTS = ("pick_up", "entry", "lowest", "release", "exit", "highest")
 """Columns of the table of instants; it begins with the first that there is."""

@@ -247,9 +247,9 @@ def print_variation(found: Variation, units: Units) -> None:
 
 def in_units(key: str, units: Units) -> tuple[float, str]:
     """Factor and unit in which a number of a station is printed."""
-    from equipoise.io.unit_lists import KINDS
+    from equipoise.quantities.units import KINDS
 
     dimension = KEYS[key]
     if dimension in units.chosen:
         return units.value(1.0, dimension), units.name(dimension)  # type: ignore[arg-type]
-    return 1.0, KINDS[dimension].units[0]  # type: ignore[index]
+    return 1.0, KINDS[dimension].si  # type: ignore[index]

@@ -10,7 +10,7 @@ from equipoise.terminal.tables import Array, Row, number, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
+    from equipoise.quantities.units import Dimension
     from equipoise.structures.transient import Transient
 
 PARTS = 5

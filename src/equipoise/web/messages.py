@@ -10,8 +10,8 @@ from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
 from equipoise.io.files import LARGEST
-from equipoise.io.unit_problems import described
-from equipoise.mechanism.checks import HUGE
+from equipoise.quantities.problems import described
+from equipoise.quantities.units import HUGE
 
 KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "download")
 SLOW = ("balance", "download")

@@ -13,7 +13,7 @@ import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.io.files import printable
 from equipoise.io.studies import load_study, restore
-from equipoise.io.units import parse
+from equipoise.quantities import parse
 from equipoise.studies.sampling import samples
 from equipoise.studies.spread import Choices, Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study

@@ -21,8 +21,8 @@ from equipoise.io.numbers import OF_UNIT
 from equipoise.io.points import from_polar
 from equipoise.io.schema_keys import is_whole
 from equipoise.io.template import Template
-from equipoise.io.unit_lists import KINDS
 from equipoise.mechanism.model import Machine
+from equipoise.quantities.units import KINDS
 from equipoise.tools.model import Tool
 from unit.io.samples import FOUR_BAR, SUPPORT
 from unit.io.tool_samples import TOOL

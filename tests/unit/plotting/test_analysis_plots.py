@@ -31,7 +31,7 @@ from equipoise.plotting.analysis.plane import clear_angle, traced
 from equipoise.plotting.cartoon import cartoon
 from equipoise.plotting.stage import Arrow
 from equipoise.plotting.style import render
-from equipoise.results import Analysis
+from equipoise.results.analysis import Analysis
 from equipoise.scene import Scene
 from equipoise.signals import Periodic
 from unit.plotting.samples import long_cycle, one_link, sketched, words

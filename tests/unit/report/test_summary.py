@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.i18n import speaking
 from equipoise.report.build import MODELS
 from equipoise.report.effects import balance_blocks
 from equipoise.report.findings import find
@@ -20,7 +21,6 @@ from equipoise.report.pictures import pictures
 from equipoise.report.shaking import Shaking, shares
 from equipoise.report.summary import answers, tiles
 from equipoise.structures.response import EQUATIONS
-from equipoise.words import speaking
 
 
 def text_of(found) -> str:

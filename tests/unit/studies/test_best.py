@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.studies.best import best
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.front import front, spread

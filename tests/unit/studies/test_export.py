@@ -12,8 +12,8 @@ import pandas
 import pyarrow.parquet
 import pytest
 
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.studies.export import export
 from equipoise.studies.making import create
 from equipoise.studies.sampling import samples

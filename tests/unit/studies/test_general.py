@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import REASONS
 from equipoise.io.template import Template
-from equipoise.results import columns, unit_of
+from equipoise.results.analysis import columns, unit_of
 from equipoise.studies.asking import check_outputs
 from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.evaluate import Outcome

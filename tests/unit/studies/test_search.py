@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import NO_ASSEMBLY, NO_MACHINE
 from equipoise.mechanism.model import Machine
 from equipoise.studies.best import kept
 from equipoise.studies.evaluate import Evaluator, Outcome, evaluator

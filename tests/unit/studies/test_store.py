@@ -14,9 +14,9 @@ import pytest
 import xarray
 import zarr
 
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.fused.reasons import REASONS
-from equipoise.io.unit_lists import KINDS
+from equipoise.quantities.units import KINDS
 from equipoise.studies.making import create, versions
 from equipoise.studies.sampling import samples
 from equipoise.studies.spread import Range
@@ -126,7 +126,7 @@ def test_names_of_outputs_may_have_any_signs(tmp_path: Path) -> None:
 
 
 def test_each_dimension_has_the_si_unit_of_the_door() -> None:
-    assert {kind: known.units[0] for kind, known in KINDS.items()} == SI
+    assert {kind: known.si for kind, known in KINDS.items()} == SI
 
 
 # -- chunks that are not whole ---------------------------------------------------------------------

@@ -11,8 +11,8 @@ import pytest
 from scipy.stats import norm
 
 import equipoise as eq
+from equipoise.codegen.figures import NO_ASSEMBLY
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import NO_ASSEMBLY
 from equipoise.studies.evaluate import Outcome
 from equipoise.studies.spread import Choices, Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Study

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.i18n import say
 from equipoise.plotting.balancing.looks import MM, SHORT, grams
 from equipoise.plotting.style import short, shown
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.balancing.parts import Change

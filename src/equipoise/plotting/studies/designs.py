@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, MAIN, blank, heading, short
 from equipoise.plotting.vibration.panels import (
@@ -25,7 +26,6 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, INK, MAIN, STRESS, short, shown
 from equipoise.plotting.vibration.panels import (
     continued,
@@ -19,7 +20,6 @@ from equipoise.plotting.vibration.panels import (
     name_panel,
     name_y,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

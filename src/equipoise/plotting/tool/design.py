@@ -11,6 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, INK, blank, fit, heading, inches, short, shown
 from equipoise.plotting.tool.speeds import (
@@ -29,7 +30,6 @@ from equipoise.plotting.vibration.panels import FOOT, LEFT, RIGHT, RPM, WIDTH, n
 from equipoise.tools.exposed import grips
 from equipoise.tools.response import respond_tool
 from equipoise.tools.wishes import MEASURES
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.tools.design import ToolDesign

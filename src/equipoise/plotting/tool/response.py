@@ -9,6 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, blank, heading, shown
 from equipoise.plotting.tool.shaft import (
@@ -33,7 +34,6 @@ from equipoise.plotting.vibration.panels import (
 )
 from equipoise.tools.exposed import grips
 from equipoise.tools.response import respond_tool
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.tools.fields import Line

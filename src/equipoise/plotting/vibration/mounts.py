@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from equipoise.i18n import say
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, MAIN, PALE, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -36,7 +37,6 @@ from equipoise.plotting.vibration.signals import (
 )
 from equipoise.structures.choice import usual_step
 from equipoise.structures.linear import Linear
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.structures.response import GaugeSignals, MountForce, Response

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -19,7 +20,6 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
