@@ -26,18 +26,19 @@ Part = Literal["", "x", "y", "size"]
 Read = Callable[..., Any]
 """From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
 
-KINEMATIC = to_say("{what} is a part of the motion, which masses do not change")
-ONLY_READ = to_say("{what} is only read; it is not known to be linear in the masses")
+KINEMATIC = "{what} is a part of the motion, which masses do not change"
+ONLY_READ = "{what} is only read; it is not known to be linear in the masses"
+"""Why balancing cannot take an output."""
 GROUPS = {
-    "links": to_say("links"),
-    "points": to_say("points"),
-    "sliders": to_say("sliders"),
-    "transmission": to_say("transmission angles"),
-    "forces": to_say("frame and drive"),
-    "joints": to_say("joints"),
-    "gears": to_say("gears"),
-    "rows": to_say("all rows together"),
-    "gauges": to_say("gauges"),
+    "links": "links",
+    "points": "points",
+    "sliders": "sliders",
+    "transmission": "transmission angles",
+    "forces": "frame and drive",
+    "joints": "joints",
+    "gears": "gears",
+    "rows": "all rows together",
+    "gauges": "gauges",
 }
 """Groups of outputs and their headings, in the order in which they are offered."""
 
@@ -194,9 +195,7 @@ def output(
         DECLARED[parts[0]] = replace(one, name=parts[0], part="x", summed=of_parts)
         DECLARED[parts[1]] = replace(one, name=parts[1], part="y", summed=of_parts)
         if sized:
-            DECLARED[name] = replace(
-                one, part="size", array=False, summed=of_size, ordered=False
-            )
+            DECLARED[name] = replace(one, part="size", array=False, summed=of_size, ordered=False)
         return read
 
     return declare

@@ -238,8 +238,23 @@ class Motion:
         if all(reaction.kind == "pin" for reaction in group.reactions):
             first, second, pin = (self.state[f"p({reaction.at})"] for reaction in group.reactions)
             return self._full(np.abs(np.angle((first - pin) / (second - pin))))
-        number = np.clip(self.state[group.number], 0.0, 1.0)
-        return self._full(np.arcsin(np.sqrt(number)))
+        number = self.state[group.number]
+        if [reaction.kind for reaction in group.reactions] == ["pin", "pin", "slider"]:
+            number = self._of_block(group, number)
+        return self._full(np.arcsin(np.sqrt(np.clip(number, 0.0, 1.0))))
+
+    def _of_block(self, group: Group, number: Any) -> Any:
+        """Squared sine of a block on a guide, but where the block comes to the guide's pivot.
+
+        There the dyad's own number has to be smooth, and is it by being a little too small.
+        """
+        block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
+        slider = next(one for one in self.machine.sliders if one.name == group.reactions[2].name)
+        along = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        way = block - pivot
+        apart = np.abs(way) ** 2
+        there = apart > 0
+        return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), number)
 
     def _link(self, link: str) -> LinkMotion:
         _, first, second = (self.state[name] for name in u(link))

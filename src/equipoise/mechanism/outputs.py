@@ -101,7 +101,7 @@ _POINTS: dict[str, Any] = {"needs": "motion", "members": point_names, "summed": 
 output(
     "points.{}.place",
     "length",
-    to_say("place of {name}"),
+    to_say("position of {name}"),
     parts=("points.{}.x", "points.{}.y"),
     sized=False,
     loop="{place:name}",
@@ -194,12 +194,12 @@ output(
 )(lambda found: found.forces.frame_moment)
 
 _WEIGHT: dict[str, Any] = {
-    "linear": to_say("{what} shakes nothing; take the force or moment on the frame instead"),
+    "linear": "{what} shakes nothing; take the force or moment on the frame instead",
     "summed": False,
 }
-output(
-    "weight", "force", to_say("weight"), parts=("weight.x", "weight.y"), sized=False, **_WEIGHT
-)(lambda found: found.forces.weight.value)
+output("weight", "force", to_say("weight"), parts=("weight.x", "weight.y"), sized=False, **_WEIGHT)(
+    lambda found: found.forces.weight.value
+)
 output("weight_moment", "torque", to_say("moment of the weight"), about=True, **_WEIGHT)(
     lambda found: found.forces.weight_moment
 )
@@ -208,7 +208,7 @@ output(
     "acceleration",
     to_say("acceleration of the common centre of mass"),
     parts=("mass_center.ax", "mass_center.ay"),
-    linear=to_say("{what} is the shaking force over the mass; take the shaking force instead"),
+    linear="{what} is the shaking force over the mass; take the shaking force instead",
     items=lambda found: ("",) if found.machine.mass else (),
     ordered=True,
     summed=False,
@@ -237,11 +237,11 @@ _RAILS: dict[str, Any] = {
         name for name, joint in found.forces.joints.items() if hasattr(joint, "moment")
     ],
     "spoken": joint_named,
-    "linear": to_say("{what} is only read; take the whole force in the joint instead"),
+    "linear": "{what} is only read; take the whole force in the joint instead",
 }
-output(
-    "joints.{}.normal", "force", to_say("normal force in joint {name}"), summed=False, **_RAILS
-)(lambda found, joint: found.forces.joints[joint].normal)
+output("joints.{}.normal", "force", to_say("normal force in joint {name}"), summed=False, **_RAILS)(
+    lambda found, joint: found.forces.joints[joint].normal
+)
 output(
     "joints.{}.moment",
     "torque",
@@ -253,7 +253,7 @@ output(
 _GEARS: dict[str, Any] = {
     "members": lambda machine: [gear.name for gear in machine.gears],
     "spoken": lambda name: name.replace(" to ", " → "),
-    "linear": to_say("{what} goes with the flank in contact, which other masses may change"),
+    "linear": "{what} goes with the flank in contact, which other masses may change",
 }
 output(
     "gears.{}",

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from equipoise.planting.names import dimension_of as of_planting
-from equipoise.results.analysis import unit_of
+from equipoise.results.outputs import unit_of
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:
