@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import equipoise as eq
-from equipoise.balancing.closed import closed_form
+from equipoise.balancing.solution import closed_form
 from equipoise.balancing.measures import measured
 from equipoise.balancing.problem import Problem
 from timing import in_turn, report

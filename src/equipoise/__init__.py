@@ -171,18 +171,18 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 if TYPE_CHECKING:
-    from equipoise.balancing.balance import balance as balance
+    from equipoise.balancing.optimisation import balance as balance
     from equipoise.balancing.balanced import Balanced as Balanced
-    from equipoise.balancing.conditions import Conditions as Conditions
-    from equipoise.balancing.conditions import conditions as conditions
-    from equipoise.balancing.front import Front as Front
-    from equipoise.balancing.front import trade_off as trade_off
-    from equipoise.balancing.least import least_moments as least_moments
+    from equipoise.balancing.linear_conditions import Conditions as Conditions
+    from equipoise.balancing.linear_conditions import conditions as conditions
+    from equipoise.balancing.pareto import Front as Front
+    from equipoise.balancing.pareto import trade_off as trade_off
+    from equipoise.balancing.least_norm import least_moments as least_moments
     from equipoise.balancing.patterns import arranged as arranged
-    from equipoise.balancing.phases import Phasing as Phasing
-    from equipoise.balancing.phases import choose_phases as choose_phases
+    from equipoise.balancing.phase_search import Phasing as Phasing
+    from equipoise.balancing.phase_search import choose_phases as choose_phases
     from equipoise.balancing.sensitivity import sensitivities as sensitivities
-    from equipoise.balancing.verdict import verdict as verdict
+    from equipoise.balancing.physical_consistency import feasibility as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task

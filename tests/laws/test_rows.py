@@ -12,10 +12,10 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.phase_cost import Term
 from equipoise.balancing.phase_grid import Grid
-from equipoise.balancing.phase_search import Search
-from equipoise.balancing.phase_tops import Tops
-from equipoise.balancing.phases import choose_phases
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phase_cost import Tops
+from equipoise.balancing.phase_search import choose_phases
+from equipoise.balancing.multi_row import Rows
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
 from equipoise.structures.choice import usual_step
 from equipoise.structures.forced import respond
@@ -123,7 +123,7 @@ def test_orders_that_count() -> None:
 def test_grid_by_pairs_of_rows(wishes: list[Objective]) -> None:
     """Tables of pairs give what the orders' sums give, on every arrangement of three rows."""
     machine = side_by_side(TYPE_II, (0.0, 0.4, 0.9))
-    cost = Search(machine, tuple(wishes), Phases(), "sum").cost
+    cost = PhaseSearch(machine, tuple(wishes), Phases(), "sum").cost
     grid = Grid(cost, 12)
     assert grid.count == 12 * 13 // 2
     told: list[int] = []

@@ -9,7 +9,7 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
 from unit.structures.build import Array

@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.choices import solve
-from equipoise.balancing.rows import balance_rows
-from equipoise.balancing.telling import told
+from equipoise.balancing.optimisation import solve_plan
+from equipoise.balancing.optimisation import balance_rows
+from equipoise.balancing.balanced import result_of
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.dynamics import massless
@@ -44,8 +44,8 @@ def balance(
     machine = machine.with_balance(None)  # whose names the new links may take
     if plan.phases is not None:
         return balance_rows(machine, plan, progress)
-    found = solve(machine, plan, progress)
-    return told(machine, plan, found)
+    found = solve_plan(machine, plan, progress)
+    return result_of(machine, plan, found)
 
 
 def _checked(machine: Machine, plan: Balance | None) -> Balance:

@@ -16,8 +16,8 @@ from equipoise.balancing.figures import (
     signal_columns,
 )
 from equipoise.balancing.measures import unit_of
-from equipoise.balancing.parts import Change
-from equipoise.balancing.phases import Phasing
+from equipoise.balancing.design_variables import Change
+from equipoise.balancing.phase_search import Phasing
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
 

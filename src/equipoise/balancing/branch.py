@@ -16,7 +16,7 @@ from math import inf, isfinite
 
 import numpy as np
 
-from equipoise.balancing.parts import Square
+from equipoise.balancing.design_variables import Square
 from equipoise.balancing.program import Array, NoSolutionError, Program, Solved, StalledError
 
 MISSED = 1e-8

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.geared import Gearing, Mesh, with_shafts
-from equipoise.balancing.optimum import Solution, solve_problem
-from equipoise.balancing.parts import Change
+from equipoise.balancing.solution import Solution, solve_problem
+from equipoise.balancing.design_variables import Change
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError

@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.branch import Best
+from equipoise.balancing.branch_and_bound import Best
 from equipoise.balancing.measures import mean_square_rows
-from equipoise.balancing.parts import MovedCenter, Part
+from equipoise.balancing.design_variables import MovedCenter, DesignVariables
 from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Program
 from equipoise.balancing.weights import AddedWeight
@@ -40,7 +40,7 @@ def closed_form(problem: Problem) -> list[Array] | None:
     return problem.tightened(np.split(found, counts[1:-1]))
 
 
-def _free_numbers(part: Part) -> Array | None:
+def _free_numbers(part: DesignVariables) -> Array | None:
     """Which numbers of a part are first moments without limits; None where it has limits."""
     if isinstance(part, MovedCenter):
         move = part.move

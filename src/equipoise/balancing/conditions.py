@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.balancing.wording import UNITS, Reading, machine_size, reading
+from equipoise.balancing.linear_conditions import UNITS, Reading, machine_size, reading
 from equipoise.errors import UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, unknown

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.measures import Signal
-from equipoise.balancing.parts import Part
-from equipoise.balancing.springs import FreeSpring
+from equipoise.balancing.design_variables import DesignVariables
+from equipoise.balancing.design_variables import FreeSpring
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import unknown
@@ -37,7 +37,7 @@ class Effects:
     def __init__(
         self,
         machine: Machine,
-        parts: Sequence[Part],
+        parts: Sequence[DesignVariables],
         motion: Motion | None = None,
         like: Machine | None = None,
     ) -> None:
@@ -141,7 +141,7 @@ class Effects:
             for part, end in zip(self.parts, ends, strict=True)
         ]
 
-    def _about_anchor(self, part: Part) -> tuple[Array, Array, Array]:
+    def _about_anchor(self, part: DesignVariables) -> tuple[Array, Array, Array]:
         """Mass, first moment and inertia about the link's anchor of each number, (count, 1)."""
         anchor = complex(*self.machine.links[part.link].points[self._start.anchor(part.link)])
         mass, x, y, inertia = part.effect.T[:, :, None]

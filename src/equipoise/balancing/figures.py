@@ -76,7 +76,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     if len(machine.rows) < 2:
         return {}
     from equipoise.balancing.phase_cost import Term
-    from equipoise.balancing.row_outputs import Rows
+    from equipoise.balancing.multi_row import Rows
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.balance import balance
+from equipoise.balancing.optimisation import balance
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of
 from equipoise.balancing.problem import Problem

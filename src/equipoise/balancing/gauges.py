@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.measures import Signal
-from equipoise.balancing.parts import with_parameters
+from equipoise.balancing.design_variables import with_parameters
 from equipoise.errors import ModelError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown

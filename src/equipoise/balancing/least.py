@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.conditions import Conditions, conditions, parameter_scales
+from equipoise.balancing.linear_conditions import Conditions, conditions, parameter_scales
 from equipoise.errors import UsageError
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.parameters import parameter_values

@@ -13,9 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.conditions import Conditions, parameter_scales
+from equipoise.balancing.linear_conditions import Conditions, parameter_scales
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.wording import machine_size
+from equipoise.balancing.linear_conditions import machine_size
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import QUANTITIES
 

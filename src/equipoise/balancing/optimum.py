@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.branch import Best, minimise
-from equipoise.balancing.clash import explained
-from equipoise.balancing.closed import as_best, closed_form
-from equipoise.balancing.parts import Change
+from equipoise.balancing.branch_and_bound import Best, minimise
+from equipoise.balancing.solution import infeasibility
+from equipoise.balancing.solution import as_best, closed_form
+from equipoise.balancing.design_variables import Change
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.program import Affine, NoSolutionError, StalledError
 from equipoise.errors import UsageError
@@ -125,7 +125,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     except StalledError as error:
         raise UsageError(f"{error}; change a limit a little, or free less") from error
     except NoSolutionError:
-        raise explained(problem) from None
+        raise infeasibility(problem) from None
     numbers = problem.split(best.x) if above < inf else _lightest(problem, best)
     numbers = problem.lightened(numbers)
     method = "cone program" if best.nodes == 1 else "branch and bound"

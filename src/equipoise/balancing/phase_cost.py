@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.balancing.row_outputs import RowSignals
+from equipoise.balancing.multi_row import RowSignals
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.signals import Periodic
 

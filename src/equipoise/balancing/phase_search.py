@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.balancing.phase_cost import NOTHING, Combine, Cost, Term
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct
 from equipoise.balancing.phase_polish import polished
-from equipoise.balancing.row_outputs import Rows, RowSignals
+from equipoise.balancing.multi_row import Rows, RowSignals
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine

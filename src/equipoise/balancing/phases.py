@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.phase_cost import Combine, Term
-from equipoise.balancing.phase_search import Progress, Search
+from equipoise.balancing.phase_search import Progress, PhaseSearch
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.balance_outputs import OF_ROWS
 from equipoise.mechanism.model import Machine
@@ -93,7 +93,7 @@ def choose_phases(
     UsageError : no phase changes an objective, or there is none.
     MassError, MotionError, ResponseError : the machine cannot be computed.
     """
-    search = Search(machine, tuple(objectives), phases or Phases(), combine)
+    search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine)
     found = search.best(search.pool(progress or (lambda done, total: None)))
     present, cost, grid = search.present, search.cost, search.grid
     placed = _placed(search, found)
@@ -119,7 +119,7 @@ def _varying(output: str) -> Objective:
     return Objective(output, "ripple")
 
 
-def _placed(search: Search, found: Array) -> Machine:
+def _placed(search: PhaseSearch, found: Array) -> Machine:
     """The machine with phases (m,) relative to row 1."""
     if found is search.present or np.all(found == search.present):
         return search.machine
@@ -129,7 +129,7 @@ def _placed(search: Search, found: Array) -> Machine:
     return search.machine.with_rows([first, *moved])
 
 
-def _remaining(search: Search, phases: Array) -> tuple[float, ...]:
+def _remaining(search: PhaseSearch, phases: Array) -> tuple[float, ...]:
     force = search.force
     left = np.max(np.abs(force.total(phases)[0]), axis=0)
     loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(phases)
@@ -137,7 +137,7 @@ def _remaining(search: Search, phases: Array) -> tuple[float, ...]:
     return tuple(float(order) for order in force.orders[1:][loud])
 
 
-def _notes(search: Search, found: Array) -> Iterator[str]:
+def _notes(search: PhaseSearch, found: Array) -> Iterator[str]:
     if np.all(found == search.present):
         yield "no phases were found that are better than the present ones"
     grid = search.grid

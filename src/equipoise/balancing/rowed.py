@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.measures import Signal
-from equipoise.balancing.row_outputs import arm_of, moment_of_row
+from equipoise.balancing.multi_row import arm_of, moment_of_row
 from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS
 
 Array = np.ndarray[Any, Any]

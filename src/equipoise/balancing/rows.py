@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.choices import solve
-from equipoise.balancing.parts import Change
-from equipoise.balancing.phase_search import Search
-from equipoise.balancing.phases import Phasing, choose_phases
-from equipoise.balancing.telling import told
+from equipoise.balancing.optimisation import solve_plan
+from equipoise.balancing.design_variables import Change
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phase_search import Phasing, choose_phases
+from equipoise.balancing.balanced import result_of
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Phases
 from equipoise.mechanism.model import Machine
@@ -36,7 +36,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     linkage = replace(plan, phases=None)
     found: Balanced | None = None
     if not linkage.changes_nothing:
-        found = told(machine, linkage, solve(machine, linkage, progress))
+        found = result_of(machine, linkage, solve_plan(machine, linkage, progress))
     start = machine if found is None else found.machine
     phasing = choose_phases(start, plan.objectives, plan.phases, plan.combine, progress)
     return _joined(machine, plan, found, phasing)
@@ -44,7 +44,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
 
 def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Phasing) -> Balanced:
     """The result, with everything before read off the machine as it was."""
-    search = Search(machine, plan.objectives, plan.phases or Phases(), plan.combine)
+    search = PhaseSearch(machine, plan.objectives, plan.phases or Phases(), plan.combine)
     before = {term.objective.name: term.told(search.present) for term in search.cost.terms}
     change = Change("phases", "rows", {"phases": phasing.phases})
     earlier = () if found is None else found.changes

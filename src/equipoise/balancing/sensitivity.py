@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.wording import machine_size
+from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
 from equipoise.mechanism.instants import roots
 from equipoise.mechanism.model import Link, Machine, unknown

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.parts import Bound, Change, Part, Square
+from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
 from equipoise.balancing.program import Affine, Program
 from equipoise.mechanism.balance import SpringChoice
 from equipoise.mechanism.model import Machine
@@ -26,7 +26,7 @@ LONGEST = 2.0
 would pull ever more evenly, and have no end."""
 
 
-class FreeSpring(Part):
+class FreeSpring(DesignVariables):
     """Two numbers: stiffness over the most, and stiffness times free length over the most times a
     length.
     """

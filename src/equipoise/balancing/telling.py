@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from equipoise.balancing.balanced import Balanced, Price
 from equipoise.balancing.geared import geared_range
 from equipoise.balancing.measures import unit_of
-from equipoise.balancing.optimum import Solution
-from equipoise.balancing.parts import Bound
+from equipoise.balancing.solution import Solution
+from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.problem import ADDED
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.conditions import conditions
-from equipoise.balancing.massing import Masses
-from equipoise.balancing.wording import reading
+from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.physical_consistency import ConsistentMasses
+from equipoise.balancing.linear_conditions import reading
 from equipoise.mechanism.model import Machine
 
 Array = np.ndarray[Any, Any]
@@ -117,7 +117,7 @@ def verdict(machine: Machine) -> Verdict:
 
 
 def _answer(machine: Machine, what: str) -> Answer:
-    masses = Masses.of(machine, conditions(machine, "zero", ASKED[what]))
+    masses = ConsistentMasses.of(machine, conditions(machine, "zero", ASKED[what]))
     added = masses.least_added()
     if added is not None:
         return Answer(what, True, added, True, _possible(what, added), None)
@@ -125,7 +125,7 @@ def _answer(machine: Machine, what: str) -> Answer:
     return Answer(what, False, None, points, _impossible(what, proof, points), proof)
 
 
-def _proof(machine: Machine, masses: Masses) -> Proof | None:
+def _proof(machine: Machine, masses: ConsistentMasses) -> Proof | None:
     found = masses.contradiction()
     if found is None:
         return None

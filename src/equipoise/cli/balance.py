@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.front import Front
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
 
@@ -193,7 +193,7 @@ def _check_alone(questions: Mapping[str, object], others: Mapping[str, object]) 
 
 
 def _balance(machine: Machine, plan: Balance, out: str | None, wanted: Wanted) -> None:
-    from equipoise.balancing.balance import balance as solve
+    from equipoise.balancing.optimisation import balance as solve
     from equipoise.cli.progress import counted
 
     with counted("program") as progress:
@@ -241,7 +241,7 @@ def _save(found: Balanced, out: str) -> None:
 def _trade(
     machine: Machine, plan: Balance, both: Sequence[str], points: int, wanted: Wanted
 ) -> None:
-    from equipoise.balancing.front import trade_off
+    from equipoise.balancing.pareto import trade_off
     from equipoise.cli.progress import counted
     from equipoise.cli.wishes import read_objective
 

@@ -16,11 +16,11 @@ MOST_ROWS = 64
 
 def tell_conditions(machine: Machine, wanted: Wanted) -> None:
     """When the shaking force is zero or a pure sine, and whether mass can make it so."""
-    from equipoise.balancing.conditions import conditions
-    from equipoise.balancing.verdict import verdict
+    from equipoise.balancing.linear_conditions import conditions
+    from equipoise.balancing.physical_consistency import feasibility
 
     found = {kind: conditions(machine, kind) for kind in ("zero", "sine")}
-    told = verdict(machine)
+    told = feasibility(machine)
 
     def show() -> None:
         from equipoise.terminal.conditions import print_conditions

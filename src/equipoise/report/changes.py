@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from math import degrees
 from typing import Any
 
-from equipoise.balancing.parts import Change
+from equipoise.balancing.design_variables import Change
 from equipoise.i18n import say
 from equipoise.report.numbers import number, place
 

@@ -119,9 +119,9 @@ class Findings(_Found):
     @cached_property
     def plan(self) -> Balance | None:
         """What is balanced: the machine's own plan, or the usual one."""
-        from equipoise.balancing.usual import usual_plan
+        from equipoise.balancing.optimisation import default_plan
 
-        return self._tried("balance", lambda: usual_plan(self.machine))
+        return self._tried("balance", lambda: default_plan(self.machine))
 
     @cached_property
     def balanced(self) -> Balanced | None:
@@ -129,7 +129,7 @@ class Findings(_Found):
         plan = self.plan
         if plan is None:
             return None
-        from equipoise.balancing.balance import balance
+        from equipoise.balancing.optimisation import balance
 
         return self._tried("balance", lambda: balance(self.machine, plan))
 

@@ -52,7 +52,7 @@ def _responded(model: Machine | Tool, wanted: Wanted) -> Values:
 
 
 def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
-    from equipoise.balancing.balance import balance
+    from equipoise.balancing.optimisation import balance
 
     return balance(cast("Machine", model)).to_dict(wanted)
 

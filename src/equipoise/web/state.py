@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import equipoise as eq
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine

@@ -18,7 +18,7 @@ from equipoise.plotting.vibration.panels import BETWEEN, LEFT, RIGHT, WIDTH, pla
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.balancing.front import Front
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.balance import Objective
 
 Array = np.ndarray[Any, Any]

@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from equipoise.balancing.effects import SCALARS, VECTORS, Effects
 from equipoise.balancing.naming import objective_named
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.i18n import say
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.plotting.analysis.looks import settled

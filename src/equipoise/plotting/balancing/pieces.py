@@ -15,7 +15,7 @@ from equipoise.plotting.balancing.looks import MM, SHORT, grams
 from equipoise.plotting.style import short, shown
 
 if TYPE_CHECKING:
-    from equipoise.balancing.parts import Change
+    from equipoise.balancing.design_variables import Change
     from equipoise.mechanism.balance import Balance, CenterMove
     from equipoise.plotting.balancing.placed import Placed
 
