@@ -24,7 +24,7 @@ _HOMES = {
     "Best": "studies.best",
     "CenterMove": "mechanism.balance",
     "Choices": "studies.spread",
-    "Conditions": "balancing.conditions",
+    "Conditions": "balancing.linear_conditions",
     "Correlation": "studies.study",
     "Decay": "measured.decay",
     "DesignLimit": "tools.wishes",
@@ -39,7 +39,7 @@ _HOMES = {
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
     "FreeVibration": "structures.free",
-    "Front": "balancing.front",
+    "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
     "GearedWeight": "mechanism.balance",
@@ -64,7 +64,7 @@ _HOMES = {
     "Output": "studies.study",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
-    "Phasing": "balancing.phases",
+    "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
@@ -108,11 +108,11 @@ _HOMES = {
     "analyze": "results.analysis",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
-    "balance": "balancing.balance",
+    "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
     "best": "studies.best",
-    "choose_phases": "balancing.phases",
-    "conditions": "balancing.conditions",
+    "choose_phases": "balancing.phase_search",
+    "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
     "design_tool": "tools.design",
     "dumps": "io.models",
@@ -120,6 +120,7 @@ _HOMES = {
     "examples": "io.models",
     "export": "studies.export",
     "expose_tool": "tools.exposed",
+    "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
@@ -128,7 +129,7 @@ _HOMES = {
     "identify_decay": "measured.decay",
     "json_schema": "io.models",
     "landscape": "studies.landscape",
-    "least_moments": "balancing.least",
+    "least_moments": "balancing.least_norm",
     "load": "io.models",
     "load_study": "io.studies",
     "load_tool": "io.tools",
@@ -154,10 +155,9 @@ _HOMES = {
     "sweep_tool": "tools.sweep",
     "tolerance": "studies.tolerance",
     "tool_sensitivities": "tools.felt",
-    "trade_off": "balancing.front",
+    "trade_off": "balancing.pareto",
     "transmit": "tools.transmission",
     "vary_tool": "tools.studies",
-    "verdict": "balancing.verdict",
     "vibrate_freely": "structures.free",
     "vibrate_tool": "tools.modes",
     "view": "web.widget",
@@ -171,18 +171,18 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 if TYPE_CHECKING:
-    from equipoise.balancing.optimisation import balance as balance
     from equipoise.balancing.balanced import Balanced as Balanced
+    from equipoise.balancing.least_norm import least_moments as least_moments
     from equipoise.balancing.linear_conditions import Conditions as Conditions
     from equipoise.balancing.linear_conditions import conditions as conditions
+    from equipoise.balancing.optimisation import balance as balance
     from equipoise.balancing.pareto import Front as Front
     from equipoise.balancing.pareto import trade_off as trade_off
-    from equipoise.balancing.least_norm import least_moments as least_moments
     from equipoise.balancing.patterns import arranged as arranged
     from equipoise.balancing.phase_search import Phasing as Phasing
     from equipoise.balancing.phase_search import choose_phases as choose_phases
+    from equipoise.balancing.physical_consistency import feasibility as feasibility
     from equipoise.balancing.sensitivity import sensitivities as sensitivities
-    from equipoise.balancing.physical_consistency import feasibility as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task
@@ -275,6 +275,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
+    from equipoise.results.analysis import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
@@ -282,7 +283,6 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
-    from equipoise.results.analysis import analyze as analyze
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

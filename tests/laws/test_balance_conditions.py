@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.linear_conditions import Conditions, Kind, conditions, parameter_scales
 from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
+from equipoise.balancing.linear_conditions import Conditions, Kind, conditions, parameter_scales
 from equipoise.balancing.physical_consistency import ASKED, Feasibility, feasibility
+from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
 from support.machines import KINDS, make
 
 Array = np.ndarray[Any, Any]

@@ -16,8 +16,7 @@ from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
 from equipoise.balancing.phase_cost import Combine
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phase_search import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.rows_in_time import in_time, measured, side_by_side, value_of
 from unit.structures.build import Array

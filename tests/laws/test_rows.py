@@ -10,12 +10,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.phase_grid import Grid
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phase_cost import Tops
-from equipoise.balancing.phase_search import choose_phases
 from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.phase_cost import Term, Tops
+from equipoise.balancing.phase_grid import Grid
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
 from equipoise.structures.choice import usual_step
 from equipoise.structures.forced import respond

@@ -26,10 +26,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.sensitivity import sensitivities
+from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.physical_consistency import feasibility
+from equipoise.balancing.sensitivity import sensitivities
 
 Array = np.ndarray[Any, Any]
 

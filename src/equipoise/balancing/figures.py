@@ -75,8 +75,8 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     """Figures of all rows together, where there are several."""
     if len(machine.rows) < 2:
         return {}
-    from equipoise.balancing.phase_cost import Term
     from equipoise.balancing.multi_row import Rows
+    from equipoise.balancing.phase_cost import Term
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}

@@ -9,13 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.effects import Near, gauge_signals, supports_more
+from equipoise.balancing.design_variables import (
+    DesignVariables,
+    FreeSpring,
+    MovedCenter,
+    Square,
+    with_parameters,
+)
+from equipoise.balancing.effects import Effects, Near, gauge_signals, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
-from equipoise.balancing.design_variables import MovedCenter, DesignVariables, Square, with_parameters
-from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.multi_row import counts_rows, of_all_rows
-from equipoise.balancing.design_variables import FreeSpring
+from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective

@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
+from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.measures import measured
 from equipoise.balancing.design_variables import with_parameters
-from equipoise.balancing.problem import Problem
+from equipoise.balancing.measures import measured
 from equipoise.balancing.optimisation import pin_of
+from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown

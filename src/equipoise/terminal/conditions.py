@@ -11,10 +11,10 @@ import numpy as np
 from equipoise.terminal.tables import Row, angle, number, table
 
 if TYPE_CHECKING:
-    from equipoise.balancing.linear_conditions import Conditions
     from equipoise.balancing.least_norm import Added
-    from equipoise.balancing.sensitivity import Sensitivities, Sensitivity
+    from equipoise.balancing.linear_conditions import Conditions
     from equipoise.balancing.physical_consistency import Feasibility
+    from equipoise.balancing.sensitivity import Sensitivities, Sensitivity
     from equipoise.mechanism.model import Machine
 
 KINDS = {"zero": "zero", "sine": "a pure sine of the crank angle"}

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.patterns import Pattern, arranged, patterns_for
 from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.multi_row import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.terminal.tables import angle, number, table
 

@@ -8,13 +8,12 @@ from math import dist, isclose
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.optimisation import balance
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
 from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
+from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.optimisation import default_plan
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.report.changes import told

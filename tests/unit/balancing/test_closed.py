@@ -9,8 +9,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.optimisation import balance
-from equipoise.balancing.solution import closed_form
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.solution import closed_form
 from equipoise.mechanism.balance import (
     AddedMass,
     Balance,

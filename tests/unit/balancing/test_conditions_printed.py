@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
+from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.physical_consistency import feasibility
+from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
 from equipoise.terminal.conditions import print_added, print_conditions, print_sensitivities
 
 

@@ -11,8 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
-from equipoise.balancing.phase_search import PhaseSearch
-from equipoise.balancing.phase_search import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine

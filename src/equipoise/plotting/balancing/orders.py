@@ -10,8 +10,8 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from equipoise.balancing.effects import SCALARS, VECTORS, Effects
-from equipoise.balancing.naming import objective_named
 from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN

@@ -3,6 +3,7 @@
 A row whose crank is ahead by phi has the amplitudes Y_n exp(i n phi) (see `Periodic.shifted`).
 Rows are equal linkages, so that all that differs between them is a lever: with (x, y, z) the place
 of a row's drive pivot, a force F = (F_x, F_y, 0) in its plane has the moment (x, y, z) x F.
+A change to the linkage is made in each of them: outputs of all rows are signals of one's numbers.
 """
 
 from __future__ import annotations
@@ -14,9 +15,11 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.measures import Signal
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, wrong_objective
+from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, wrong_objective
 from equipoise.mechanism.dynamics import forces, place_of
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
@@ -206,3 +209,49 @@ def _read(linear: Linear, reading: Array, speed: float) -> Array:
         wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
         found[k] = np.sum(answer * wrench, axis=0)
     return found
+
+
+def counts_rows(effects: Effects, output: str) -> bool:
+    """Whether an output is that of all rows: of machines that have several, but within no row."""
+    of_one = output.startswith((GAUGES, JOINTS))
+    return output in OF_ROWS or (len(effects.machine.rows) > 1 and not of_one)
+
+
+def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
+    """An output summed over all rows in their phases."""
+    kind, _, axis = output.rpartition(".")
+    if axis in {"x", "y"} and kind:
+        whole = of_all_rows(effects, kind, about)
+        part = np.real if axis == "x" else np.imag
+        return Signal(part(whole.start), part(whole.columns), whole.turns)
+    first = "frame" if output.startswith("frame") else "shaking"
+    one = effects.signal(output if output not in OF_ROWS else "shaking_force")
+    force = effects.signal(f"{first}_force")
+    total = Signal(0.0 * one.start, 0.0 * one.columns, one.turns)
+    if output in OF_ROWS:
+        total = Signal(total.start.real, total.columns.real, one.turns)
+    for row in effects.machine.rows:
+        here = one
+        if output.endswith("_moment"):
+            arm = arm_of(effects.machine, effects.motion, row, about)
+            start = moment_of_row(output, row, arm, force.start, one.start)
+            columns = moment_of_row(output, row, arm, force.columns, one.columns)
+            here = Signal(start, columns, one.turns)
+        total = _added(total, ahead_by(here, row.phase))
+    return total
+
+
+def _added(one: Signal, other: Signal) -> Signal:
+    return Signal(one.start + other.start, one.columns + other.columns, one.turns)
+
+
+def ahead_by(signal: Signal, phase: float) -> Signal:
+    """The signal ahead by a phase, rad."""
+    count = len(signal.start)
+    turning = np.exp(1j * phase * np.fft.fftfreq(count, 1 / count) / signal.turns)
+
+    def turned(values: Array) -> Array:
+        found: Array = np.fft.ifft(np.fft.fft(values) * turning)
+        return found if np.iscomplexobj(values) else found.real
+
+    return Signal(turned(signal.start), turned(signal.columns), signal.turns)

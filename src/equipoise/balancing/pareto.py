@@ -11,9 +11,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.optimisation import balance
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of
+from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
