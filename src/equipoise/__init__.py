@@ -275,7 +275,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
-    from equipoise.results.analysis import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
@@ -283,6 +282,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.results.analysis import analyze as analyze
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import Any
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.declaring import DECLARED, Declared, declared, declaring, output
+from equipoise.mechanism.declaring import DECLARED, GROUPS, Declared, declared, declaring, output
 
-__all__ = ["DECLARED", "Declared", "declared", "declaring", "output"]
+__all__ = ["DECLARED", "GROUPS", "Declared", "declared", "declaring", "output"]
+"""What `declaring` has is had from here, where something is declared."""
 
 FRAME = "frame"
 FORCE, MOMENT = ("rms", "peak"), ("rms", "peak", "area")
@@ -104,7 +105,7 @@ output(
     to_say("position of {name}"),
     parts=("points.{}.x", "points.{}.y"),
     sized=False,
-    loop="{place:name}",
+    loop="{position:name}",
     **_POINTS,
 )(lambda found, point: found.motion.points[point].place)
 output(

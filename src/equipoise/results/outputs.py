@@ -12,8 +12,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.declaring import GROUPS
-from equipoise.mechanism.outputs import DECLARED, Declared, declared
+from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import Dimension
 from equipoise.signals import Figures, Periodic, figures
 
