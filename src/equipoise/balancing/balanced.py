@@ -18,6 +18,7 @@ from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -42,8 +43,8 @@ class Price:
         return self.price > 0
 
 
-@dataclass(frozen=True, eq=False)
-class Balanced:
+@dataclass(frozen=True, eq=False, repr=False)
+class Balanced(Result):
     """A balanced machine, beside the one that it comes from.
 
     machine : with the changes made.  original : without.

@@ -17,6 +17,7 @@ from equipoise.balancing.linear_conditions import Conditions, conditions, parame
 from equipoise.errors import UsageError
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.parameters import parameter_values
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -26,8 +27,8 @@ RANK = 1e-10
 """Share of the largest singular value below which one counts as none."""
 
 
-@dataclass(frozen=True, eq=False)
-class Added:
+@dataclass(frozen=True, eq=False, repr=False)
+class Added(Result):
     """First moments to be added, in the axes of each link, kg m.
 
     moments : link -> (x, y) to be added.  totals : link -> (x, y) that it then has, about the

@@ -26,6 +26,7 @@ from equipoise.mechanism.parameters import (
     parameter_values,
     regressor,
 )
+from equipoise.results.result import Result
 from equipoise.signals import harmonics
 
 Array = np.ndarray[Any, Any]
@@ -43,8 +44,8 @@ ROUNDING = 1e-13
 """Of an effect, relative to itself."""
 
 
-@dataclass(frozen=True, eq=False)
-class Conditions:
+@dataclass(frozen=True, eq=False, repr=False)
+class Conditions(Result):
     """Conditions coefficients @ values = 0, necessary and sufficient, none of which is superfluous.
 
     kind : ``zero`` or ``sine``.  outputs : names of what they are about.

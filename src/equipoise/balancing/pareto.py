@@ -18,6 +18,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
@@ -30,8 +31,8 @@ TOUCH = 1e-4
 """Over the range: how far from the very end the first point lies, so that it can be reached."""
 
 
-@dataclass(frozen=True, eq=False)
-class Front:
+@dataclass(frozen=True, eq=False, repr=False)
+class Front(Result):
     """A trade-off curve, from the least first objective to the least second one.
 
     first, second : what is traded.  points : the balanced machine at each.

@@ -25,6 +25,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.balance_outputs import OF_ROWS
 from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
@@ -236,8 +237,8 @@ SURVIVES = 1e-9
 """Share of the largest amplitude of all rows in phase, above which an order is left."""
 
 
-@dataclass(frozen=True, eq=False)
-class Phasing:
+@dataclass(frozen=True, eq=False, repr=False)
+class Phasing(Result):
     """Phases found for the rows of a machine.
 
     machine : with the rows in these phases.  phases : rad, of each row; row 1 has kept its own.

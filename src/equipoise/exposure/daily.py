@@ -17,6 +17,7 @@ from equipoise.exposure.iso_5349 import (
     years_to_white_finger,
 )
 from equipoise.exposure.japan import allowed_time, limit_time
+from equipoise.results.result import Result
 
 DAY = 86_400.0
 """s."""
@@ -97,8 +98,8 @@ class Task:
         return WorkingTimes(self.acceleration)
 
 
-@dataclass(frozen=True)
-class Exposure:
+@dataclass(frozen=True, repr=False)
+class Exposure(Result):
     """A day's exposure; see docs/exposure.md."""
 
     tasks: tuple[Task, ...]

@@ -8,13 +8,14 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.exposure.bands import NOMINAL
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 Kind = Literal["signal", "spectrum", "bands", "orders"]
 
 
-@dataclass(frozen=True, eq=False)
-class Weighted:
+@dataclass(frozen=True, eq=False, repr=False)
+class Weighted(Result):
     """Weighted acceleration of a handle; see docs/exposure.md.
 
     kind : what it comes from.

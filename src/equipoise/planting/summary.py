@@ -22,13 +22,14 @@ from equipoise.planting.torque import SoilForces, soil_forces
 from equipoise.planting.tray import tray_crossings
 from equipoise.planting.vectors import wrapped
 from equipoise.planting.visits import Visit, visits
+from equipoise.results.result import Result
 from equipoise.signals import Figures
 
 Array = np.ndarray[Any, Any]
 
 
-@dataclass(frozen=True, eq=False)
-class PlantingFigures:
+@dataclass(frozen=True, eq=False, repr=False)
+class PlantingFigures(Result):
     """Figures of a planting machine, by dotted name in SI units: ``figures["curve.height"]``.
 
     figures : by name; those that the machine does not have are missing.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -38,6 +38,8 @@ class Analysis(Result):
 
     motion : always there.  solved : its forces, or None where masses are missing.
     """
+
+    shown_in: ClassVar[str] = "results.tables"
 
     motion: Motion
     solved: Forces | None
@@ -98,6 +100,12 @@ class Analysis(Result):
             whole["yaw_moment"] += row.lateral * x
             whole["drive_torque"] += torque
         return whole
+
+    @property
+    def has_orders(self) -> bool:
+        """Whether its crank angles are such that harmonics can be taken."""
+        motion = self.motion
+        return motion.whole_cycle and len(self.crank_angle) >= LEAST_ANGLES * motion.turns
 
     @cached_property
     def by_order(self) -> Mapping[str, Periodic]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from equipoise.i18n import Note
-from equipoise.quantities import Dimension, Display, display, in_unit
+from equipoise.quantities import Dimension
 from equipoise.results.charts import Chart
 
 # -- cells of tables -------------------------------------------------------------------------------
@@ -19,12 +19,13 @@ from equipoise.results.charts import Chart
 
 @dataclass(frozen=True)
 class Value:
-    """A number in a table, in SI units; a plain number where its column has no dimension.
+    """A number in a table, in SI units; a plain number where it has no dimension.
 
     scale : beside which a smaller value is rounding, and is shown as 0.
-    at : rad, crank angle at which it holds; not shown where None.
+    at : where it holds, such as a crank angle, rad; not shown where None.
     digits : significant ones; after : digits behind the point instead, where given.
     broken : whether it breaks a limit.  worse : whether it got worse.
+    dimension, unit : as of `Column`, where the numbers of a column are not all alike.
     """
 
     value: float
@@ -34,6 +35,8 @@ class Value:
     after: int | None = None
     broken: bool = False
     worse: bool = False
+    dimension: Dimension | None = None
+    unit: str | None = None
 
 
 @dataclass(frozen=True)
@@ -46,8 +49,28 @@ class Span:
     digits: int = 4
 
 
-Cell = str | Value | Span | None
-"""Words, a number, a range, or nothing."""
+@dataclass(frozen=True)
+class Change:
+    """By how much a figure has changed, in per cent; nothing where it came from 0.
+
+    worse : whether a reader has to be told that it got worse.
+    """
+
+    before: float
+    after: float
+    worse: bool = False
+
+
+@dataclass(frozen=True)
+class Many:
+    """Several values in one cell.  more : how many further ones there are, which are not told."""
+
+    values: tuple[Value, ...]
+    more: int = 0
+
+
+Cell = str | Value | Span | Change | Many | None
+"""Words, a number, a range, a change, several numbers, or nothing."""
 
 
 @dataclass(frozen=True)
@@ -56,20 +79,15 @@ class Column:
 
     label : its heading.
     dimension : of its numbers; they are plain ones where None.
-    unit : in which they are shown; the one that suits their sizes where not given.
+    unit : in which they are shown; the one that suits their sizes where not given.  A unit without
+        a dimension, such as ``%``, is that of the numbers as they are.
+    at : dimension and unit of where its values hold.
     """
 
     label: str
     dimension: Dimension | None = None
     unit: str | None = None
-
-    def display(self, cells: tuple[Cell, ...]) -> Display:
-        """The unit in which the numbers among its cells are shown."""
-        if self.unit is not None:
-            return in_unit(self.unit)
-        sizes = [cell.value for cell in cells if isinstance(cell, Value)]
-        sizes += [end for cell in cells if isinstance(cell, Span) for end in (cell.low, cell.high)]
-        return display(self.dimension, sizes)
+    at: tuple[Dimension, str] = ("angle", "deg")
 
 
 # -- blocks ----------------------------------------------------------------------------------------
@@ -77,10 +95,11 @@ class Column:
 
 @dataclass(frozen=True)
 class Text:
-    """Running text."""
+    """Running text.  strong : whether a limit is broken by what it tells."""
 
     kind: ClassVar[str] = "text"
     text: str
+    strong: bool = False
 
 
 @dataclass(frozen=True)
@@ -100,10 +119,6 @@ class Table:
     title: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
-
-    def column(self, number: int) -> tuple[Cell, ...]:
-        """The cells of a column."""
-        return tuple(row[number] for row in self.rows)
 
 
 @dataclass(frozen=True)

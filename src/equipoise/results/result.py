@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 if TYPE_CHECKING:
     import pandas
@@ -32,9 +32,13 @@ class Result:
         """The machine-readable output, in SI units: dicts, numbers and arrays."""
         raise NotImplementedError
 
-    def blocks(self) -> Sequence[Block]:
+    shown_in: ClassVar[str] = ""
+    """Module that tells what it shows; ``blocks`` of its room where not given."""
+
+    def blocks(self, **options: Any) -> Sequence[Block]:
         """What it shows, in the language that is spoken."""
-        raise NotImplementedError
+        module = self.shown_in or f"{type(self).__module__.split('.')[1]}.blocks"
+        return tuple(_room(module).SHOWS[type(self).__name__](self, **options))
 
     @property
     def summary(self) -> Mapping[str, Any]:

@@ -10,9 +10,9 @@ from equipoise.planting.names import dimension_of as of_planting
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Support
-    from equipoise.tools.model import Tool
 
 OF_BARS = {
     **dict.fromkeys("abcd", "length"),

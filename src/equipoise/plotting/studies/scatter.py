@@ -24,9 +24,9 @@ from equipoise.plotting.vibration.panels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.scatter import Scatter
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.tolerances import Tolerances
+    from equipoise.studies.variance import Scatter
 
 ROW = 2.15
 """Inches: height of a row of panels."""
