@@ -103,7 +103,7 @@ _HOMES = {
     "Uniform": "studies.design_space",
     "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
-    "Weighted": "exposure.weighted",
+    "Weighted": "exposure.weighting",
     "Work": "handheld.model",
     "analyze": "results.analysis",
     "arranged": "balancing.patterns",
@@ -150,7 +150,7 @@ _HOMES = {
     "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
-    "simulate_decay": "measured.swinging",
+    "simulate_decay": "measured.record",
     "sweep_speed": "vibration.sweep",
     "sweep_tool": "handheld.sweep",
     "tolerance": "studies.tolerances",
@@ -161,9 +161,9 @@ _HOMES = {
     "vibrate_freely": "vibration.free",
     "vibrate_tool": "handheld.modes",
     "view": "web.widget",
-    "weigh_orders": "exposure.measured",
-    "weigh_signal": "exposure.measured",
-    "weigh_spectrum": "exposure.measured",
+    "weigh_orders": "exposure.spectra",
+    "weigh_signal": "exposure.spectra",
+    "weigh_spectrum": "exposure.spectra",
     "write_report": "report.writing",
 }
 """Public names and where they live; each is imported when it is first used."""
@@ -187,10 +187,10 @@ if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task
     from equipoise.exposure.daily import daily_exposure as daily_exposure
-    from equipoise.exposure.measured import weigh_orders as weigh_orders
-    from equipoise.exposure.measured import weigh_signal as weigh_signal
-    from equipoise.exposure.measured import weigh_spectrum as weigh_spectrum
-    from equipoise.exposure.weighted import Weighted as Weighted
+    from equipoise.exposure.spectra import weigh_orders as weigh_orders
+    from equipoise.exposure.spectra import weigh_signal as weigh_signal
+    from equipoise.exposure.spectra import weigh_spectrum as weigh_spectrum
+    from equipoise.exposure.weighting import Weighted as Weighted
     from equipoise.handheld.design import ToolDesign as ToolDesign
     from equipoise.handheld.design import design_tool as design_tool
     from equipoise.handheld.design_plan import DesignLimit as DesignLimit
@@ -224,7 +224,7 @@ if TYPE_CHECKING:
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
-    from equipoise.measured.swinging import simulate_decay as simulate_decay
+    from equipoise.measured.record import simulate_decay as simulate_decay
     from equipoise.mechanism.balance import AddedMass as AddedMass
     from equipoise.mechanism.balance import Balance as Balance
     from equipoise.mechanism.balance import BalanceShafts as BalanceShafts

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from equipoise.mechanism.outputs import declared
-from equipoise.planting.names import dimension_of as of_planting
+from equipoise.planting.goals import dimension_of as of_planting
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:

@@ -1,4 +1,21 @@
-"""The linkages on a support as one: sums at a crank angle, and joint forces on a moving base."""
+"""The linkages on a support as one: sums at a crank angle, and joint forces on a moving base.
+
+Written for the support's own axes, from its reference point.  With p the place of a link's centre
+of mass and alpha the link's angle there, a prime for the derivative by crank angle, and sums over
+the links of all rows:
+
+    first     S = sum m p                        with S', S''
+    inertia   J = sum m |p|^2 + I                with J'
+    spin      H = sum m p x p' + I alpha'        with H'
+    drive     E = sum m |p'|^2 + I alpha'^2      with E'
+
+Kinetic energy, momentum and moment of momentum on any moving support follow from these alone.
+
+Joint forces of a machine whose frame moves: what the links' inertia asks for then.
+
+Everything is written in the support's axes, so that the pass over the joints is the same as on
+solid ground.
+"""
 
 from __future__ import annotations
 

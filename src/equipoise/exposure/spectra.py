@@ -9,12 +9,23 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.exposure.bands import EDGES, NEAR, NUMBERS, exact_middles, rms_in_bands
-from equipoise.exposure.checks import AXES, amplitudes, rising, row, sizes
-from equipoise.exposure.iso_5349 import SINGLE_AXIS, total_value
+from equipoise.exposure.daily import SINGLE_AXIS, total_value
 from equipoise.exposure.signal import signal
-from equipoise.exposure.weighted import Kind, Weighted
-from equipoise.exposure.weighting import squared_factor
+from equipoise.exposure.weighting import (
+    AXES,
+    EDGES,
+    NEAR,
+    NUMBERS,
+    Kind,
+    Weighted,
+    amplitudes,
+    exact_middles,
+    rising,
+    rms_in_bands,
+    row,
+    sizes,
+    squared_factor,
+)
 
 Array = np.ndarray[Any, Any]
 
