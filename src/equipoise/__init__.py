@@ -37,7 +37,7 @@ _HOMES = {
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
-    "FourBar": "mechanism.fourbar",
+    "FourBar": "mechanism.assessment",
     "FreeVibration": "vibration.free",
     "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
@@ -123,7 +123,7 @@ _HOMES = {
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
-    "four_bar": "mechanism.fourbar",
+    "four_bar": "mechanism.assessment",
     "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
@@ -225,6 +225,8 @@ if TYPE_CHECKING:
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
     from equipoise.measured.record import simulate_decay as simulate_decay
+    from equipoise.mechanism.assessment import FourBar as FourBar
+    from equipoise.mechanism.assessment import four_bar as four_bar
     from equipoise.mechanism.balance import AddedMass as AddedMass
     from equipoise.mechanism.balance import Balance as Balance
     from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
@@ -240,8 +242,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
-    from equipoise.mechanism.fourbar import FourBar as FourBar
-    from equipoise.mechanism.fourbar import four_bar as four_bar
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (

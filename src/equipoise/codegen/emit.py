@@ -13,13 +13,12 @@ from equipoise.codegen.forces import write_demands, write_joints
 from equipoise.codegen.motion import Writer, write_motion
 from equipoise.codegen.source import Source, source_of
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.columns import can_vary
+from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, declared
-from equipoise.mechanism.steps import Call, Rotation, RunningAngle
+from equipoise.mechanism.steps import Call, Reaction, Rotation, RunningAngle
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""

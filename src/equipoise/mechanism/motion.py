@@ -13,11 +13,9 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import Group
-from equipoise.mechanism.linkage import Linkage, assemble
+from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
 from equipoise.mechanism.model import Machine, Slider, unknown
-from equipoise.mechanism.steps import State, p, plain_angle, running_angle, u
-from equipoise.mechanism.swinging import middle_angle, solve_swinging
+from equipoise.mechanism.steps import Group, State, p, plain_angle, running_angle, u
 from equipoise.quantities.units import HUGE
 
 Array = np.ndarray[Any, Any]

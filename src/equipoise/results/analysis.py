@@ -11,8 +11,8 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
-from equipoise.mechanism.fourbar import FourBar, four_bar
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, Named, move
 from equipoise.results.outputs import Outputs
