@@ -23,6 +23,7 @@ from sybil.example import SybilFailure
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker has a core, not all of them
+os.environ["EQUIPOISE_PROGRESS"] = "off"  # a busy machine must not change what a command prints
 settings.register_profile("equipoise", deadline=None)  # time is measured in benchmarks, not here
 settings.load_profile("equipoise")
 
