@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.mechanism.dynamics import forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import move
-from equipoise.results import Analysis
+from equipoise.results.analysis import Analysis
 
 
 def analyze(

@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 import equipoise as eq
-from equipoise.fused import compiled
-from equipoise.fused.figures import Figure
+from equipoise.codegen import backends
+from equipoise.codegen.figures import Figure
 from equipoise.mechanism.model import Gear, Machine, Slider
-from equipoise.results import columns, outputs
+from equipoise.results.analysis import columns, outputs
 from equipoise.signals import Figures, figures
 from support.designs import Array, size_of
 from unit.mechanism.build import heavy, machine
@@ -34,9 +34,9 @@ FLOOR = 1e-3
 def by_numpy(folder: Path) -> Iterator[None]:
     """Run loops by NumPy, as where Numba is missing; sources go to the folder."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(compiled.FOLDER, str(folder))
-        patch.setattr(compiled, "engine", lambda: "numpy")
-        patch.setattr(compiled, "_loop_of", cache(compiled._loop_of.__wrapped__))
+        patch.setenv(backends.FOLDER, str(folder))
+        patch.setattr(backends, "engine", lambda: "numpy")
+        patch.setattr(backends, "_loop_of", cache(backends._loop_of.__wrapped__))
         yield
 
 

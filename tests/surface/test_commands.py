@@ -427,14 +427,14 @@ def schema() -> dict[str, Any]:
 
 
 def test_schema_is_the_shipped_file(schema: dict[str, Any]) -> None:
-    shipped = Path(package.__file__).with_name("io") / "model.schema.json"
+    shipped = Path(package.__file__).with_name("schema") / "model.schema.json"
     assert schema == json.loads(shipped.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
 @pytest.mark.parametrize("kind", ["tool", "study"])
 def test_schemas_of_other_files_are_the_shipped_ones(kind: str) -> None:
-    shipped = Path(package.__file__).with_name("io") / f"{kind}.schema.json"
+    shipped = Path(package.__file__).with_name("schema") / f"{kind}.schema.json"
     found = json.loads(succeeded(equipoise("schema", f"--{kind}")))
     assert found == json.loads(shipped.read_text(encoding="utf-8"))
 

@@ -19,7 +19,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.io.stored import study_of
+from equipoise.schema.study_units import study_of
 from surface.running import command, equipoise, process, refused, succeeded
 from surface.studies import LENGTHS, TOLERANCES, written
 
@@ -35,7 +35,7 @@ def with_progress() -> Iterator[None]:
 
 
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory: pytest.TempPathFactory, with_progress: None) -> Path:
     """A store, and what was printed when it was made."""
     folder = tmp_path_factory.mktemp("made")
     (folder / "study.toml").write_text(LENGTHS, encoding="utf-8")

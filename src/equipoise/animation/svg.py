@@ -15,11 +15,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.animation.limits import check_seconds, check_width
+from equipoise.i18n import say
 from equipoise.plotting.captions import Label, size_of_type
 from equipoise.plotting.cartoon import DARK, LIGHT, Cartoon, Colors, Part, cartoon
 from equipoise.plotting.shapes import LOOKS, Look, Shape, runs
 from equipoise.plotting.stage import Arrow, Track
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.scene import Scene

@@ -81,8 +81,8 @@ def analyze(
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
     from equipoise import pipeline
-    from equipoise.io.models import load
-    from equipoise.results import order_values
+    from equipoise.results.analysis import order_values
+    from equipoise.schema.models import load
 
     check_belonging("--json", outputs.json, split=split or None)
     if crank_zero is not None and orders is None:
@@ -96,7 +96,7 @@ def analyze(
         analysis = pipeline.analyze(machine, angles, speed, acceleration, place)
         by_order = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
     if csv is not None:
-        from equipoise.io.output import to_csv, write
+        from equipoise.schema.output import to_csv, write
 
         write(csv, to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.front import Front
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.model import Machine
 
 app = App(name="balance")
@@ -65,7 +65,7 @@ def balance(
     out
         Write the balanced machine as a new model file.
     """
-    from equipoise.balancing import balance as balancing
+    from equipoise.balancing import optimisation as balancing
 
     machine = _machine(file, speed)
     outputs.check(sources_of(machine, file), [out])
@@ -89,7 +89,7 @@ def balance(
 
 
 def _machine(file: str, speed: float | None) -> Machine:
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
 
     machine = load(file)
     return machine if speed is None else machine.with_drive(speed=speed)
@@ -140,7 +140,7 @@ def trade_off(
     speed
         Speed of the crank instead of the file's, such as "250 rpm".
     """
-    from equipoise.balancing import front
+    from equipoise.balancing import pareto
 
     machine = _machine(file, speed)
     outputs.check(sources_of(machine, file))
@@ -148,7 +148,7 @@ def trade_off(
         plan = plan_of(machine, freed, None, limit)
         one, other = read_objective("FIRST", first), read_objective("SECOND", second)
         with counted("point") as progress:
-            found = front.trade_off(machine, one, other, plan, points, progress)
+            found = pareto.trade_off(machine, one, other, plan, points, progress)
 
         def show() -> None:
             from equipoise.terminal.balance import print_front
@@ -170,13 +170,13 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
     speed
         Speed of the crank instead of the file's, such as "250 rpm".
     """
-    from equipoise.balancing import conditions as balancing
-    from equipoise.balancing.verdict import verdict
+    from equipoise.balancing import linear_conditions as balancing
+    from equipoise.balancing.physical_consistency import feasibility
 
     machine = _machine(file, speed)
     with naming(file):
         found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
-        told = verdict(machine)
+        told = feasibility(machine)
 
         def show() -> None:
             from equipoise.terminal.conditions import print_conditions
@@ -211,7 +211,7 @@ def sensitivities(
         Speed of the crank instead of the file's, such as "250 rpm".
     """
     from equipoise.balancing import sensitivity
-    from equipoise.structures.choice import check_moving
+    from equipoise.vibration.forced import check_moving
 
     machine = _machine(file, speed)
     with naming(file):
@@ -253,7 +253,7 @@ def arrangements(
         Speed of the crank instead of the file's, such as "250 rpm".
     """
     from equipoise.balancing.patterns import patterns_for
-    from equipoise.structures.choice import check_moving
+    from equipoise.vibration.forced import check_moving
 
     machine = _machine(file, speed)
     with naming(file):

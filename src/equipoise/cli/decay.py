@@ -21,7 +21,7 @@ Arm = Annotated[float | None, size("length", "give more than 0")]
 
 def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
     """A stiffness, N/m or N m/rad, whether it is torsional, and how it was given."""
-    from equipoise.io.unit_lists import KINDS, plain_unit
+    from equipoise.quantities.units import KINDS, plain_unit
 
     unit = plain_unit(text.partition(" ")[2].strip())
     torsional = unit in KINDS["torsional stiffness"].units
@@ -56,9 +56,9 @@ def decay(
     confidence
         Of the intervals.
     """
-    from equipoise.io.files import printable
-    from equipoise.io.records import read_record
     from equipoise.measured.decay import identify_decay
+    from equipoise.schema.files import printable
+    from equipoise.schema.records import read_record
 
     check_belonging("--stiffness", stiffness is not None, spring_arm=spring_arm)
     if not 0 < confidence < 1:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
     from matplotlib.figure import Figure
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
@@ -61,9 +61,8 @@ def best(
     most
         Most designs that are told.
     """
-    from equipoise.io.stored import machine_of, study_of
-    from equipoise.io.study_units import units_in
-    from equipoise.studies import best as of_stores
+    from equipoise.schema.study_units import machine_of, study_of, units_in
+    from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
     opened = open_store(store)
@@ -117,8 +116,8 @@ def export(
     kept
         Only designs that keep every limit.
     """
-    from equipoise.io.files import printable
-    from equipoise.studies import export as of_stores
+    from equipoise.schema.files import printable
+    from equipoise.studies import table_files as of_stores
     from equipoise.studies.store import open_store
 
     opened = open_store(store)
@@ -153,8 +152,8 @@ def search(
     seed
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
 
     asked = load_study(study)
     outputs.check([study], [chosen.out])
@@ -208,7 +207,7 @@ def _own(study: Study) -> tuple[Array, Array] | None:
     """Values and figures of the model itself, for comparison; None where it cannot be computed."""
     import numpy as np
 
-    from equipoise.fused.reasons import COMPUTED
+    from equipoise.codegen.figures import COMPUTED
     from equipoise.studies.evaluate import evaluator
 
     values = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
@@ -237,8 +236,8 @@ def title_of(store: Store) -> str:
 
 def _si_units(study: Study) -> dict[str, str]:
     """SI unit of each number and output that has one, as a store tells it."""
-    from equipoise.studies.units import SI
+    from equipoise.quantities import SI
 
-    kinds = {one.path: one.dimension for one in study.vary}
+    kinds: dict[str, Any] = {one.path: one.dimension for one in study.vary}
     kinds |= {output.name: output.dimension for output in study.outputs}
     return {name: SI[kind] for name, kind in kinds.items() if kind}

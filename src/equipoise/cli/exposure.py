@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.exposure.daily import Exposure, Task
-    from equipoise.exposure.weighted import Weighted
-    from equipoise.io.accelerations import Accelerations
+    from equipoise.exposure.weighting import Weighted
+    from equipoise.schema.records import Accelerations
 
 DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
 VALUE = re.compile(r"(?:(?P<name>[^:]*[^:\s])\s*:\s+)?(?P<a_hv>.*\S)\s+for\s+(?P<duration>.*)")
@@ -93,7 +93,7 @@ def exposure(
         The signals are whole periods of a steady vibration, with nothing above half the sampling
         rate, as simulated ones; any rate and duration will do then.
     """
-    from equipoise.exposure.iso_22867 import equivalent
+    from equipoise.exposure.daily import equivalent
 
     check_belonging("--racing", racing is not None, idle=idle)
     check_belonging("--idle", idle is not None, racing=racing)
@@ -148,7 +148,7 @@ def _values(
 
 def _told(text: str, options: Options) -> list[Told]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
-    from equipoise.io.accelerations import Accelerations, read_accelerations
+    from equipoise.schema.records import Accelerations, read_accelerations
 
     match = None if os.path.lexists(text) else VALUE.fullmatch(text)
     if match is not None:
@@ -171,8 +171,8 @@ def _value(text: str, match: re.Match[str]) -> Told:
 
 
 def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
-    from equipoise.exposure.measured import weigh_signal, weigh_spectrum
-    from equipoise.io.files import printable
+    from equipoise.exposure.spectra import weigh_signal, weigh_spectrum
+    from equipoise.schema.files import printable
 
     single = options.single_axis and len(found.axes) < 3
     shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options.weighted}

@@ -30,9 +30,9 @@ if TYPE_CHECKING:
     import numpy as np
     from matplotlib.figure import Figure
 
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
     from equipoise.terminal.units import Units
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import ToolModes
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -108,7 +108,7 @@ def tool(
     duration
         Time a day at the working speed, "2 h", in the place of the file's [[work]].
     """
-    from equipoise.tools.usual import usual_answers
+    from equipoise.handheld.sweep import default_answers
 
     loaded, shown_in = _tool(file, units)
     swept = any(one is not None for one in (respond, speeds, at, outputs.csv))
@@ -120,7 +120,7 @@ def tool(
     outputs.check(sources_of(loaded, file))
     asked = Asked(loaded, file, shown_in, number, respond, speeds, tuple(at or ()), duration)
     with naming(file):
-        parts = [getattr(asked, f"of_{name}")() for name in names or usual_answers(loaded)]
+        parts = [getattr(asked, f"of_{name}")() for name in names or default_answers(loaded)]
     for part in parts:
         if part.columns is not None:
             outputs.write(part.columns)
@@ -171,10 +171,10 @@ class Asked:
     @property
     def ends(self) -> tuple[float, float]:
         """Lowest and highest speed of the engine, rad/s."""
-        from equipoise.io.files import printable
-        from equipoise.tools.usual import usual_speeds
+        from equipoise.handheld.sweep import default_speeds
+        from equipoise.schema.files import printable
 
-        told = self.respond or usual_speeds(self.tool)
+        told = self.respond or default_speeds(self.tool)
         if told is None:
             raise UsageError(
                 f"{printable(self.file)}: operation: missing, so that no speeds are told; add the "
@@ -185,15 +185,15 @@ class Asked:
     @cached_property
     def range(self) -> np.ndarray[Any, Any]:
         """Speeds of the engine, rad/s."""
-        from equipoise.tools.sweep import SPEEDS, speeds_between
+        from equipoise.handheld.sweep import SPEEDS, speeds_between
 
         return speeds_between(self.tool, *self.ends, self.speeds or SPEEDS)
 
     @cached_property
     def modes(self) -> ToolModes:
         """Free vibration, which several pictures show too."""
-        from equipoise.tools.modes import vibrate_tool
-        from equipoise.tools.usual import MODES
+        from equipoise.handheld.modes import vibrate_tool
+        from equipoise.handheld.sweep import MODES
 
         return vibrate_tool(self.tool, self.number or MODES)
 
@@ -207,8 +207,8 @@ class Asked:
             print_modes(found, self.units)
 
         def drawings() -> Mapping[str, Figure]:
+            from equipoise.handheld.studies import determinant_chart
             from equipoise.plotting import tool as pictures
-            from equipoise.tools.studies import determinant_chart
 
             chart = determinant_chart(self.tool, 1.1 * float(found.planes[0].parameter[-1]))
             return {
@@ -220,7 +220,7 @@ class Asked:
 
     def of_respond(self) -> Part:
         """Transmission and response over speeds."""
-        from equipoise.tools.sweep import sweep_tool
+        from equipoise.handheld.sweep import sweep_tool
 
         length = self.tool.shaft.length
         for place in self.places:
@@ -249,7 +249,7 @@ class Asked:
 
     def of_exposure(self) -> Part:
         """What the hands get."""
-        from equipoise.tools.exposed import expose_tool
+        from equipoise.handheld.exposed import expose_tool
 
         found = expose_tool(self.tool, self.range, self.duration)
 
@@ -268,7 +268,7 @@ class Asked:
 
 def _tool(file: str, units: str) -> tuple[Tool, Units]:
     """The tool of a file, and the units in which its vibration is printed."""
-    from equipoise.io.tools import load_tool
+    from equipoise.schema.tools import load_tool
     from equipoise.terminal.units import OF_VIBRATION, Units
 
     return load_tool(file), Units.read(units, OF_VIBRATION)
@@ -306,9 +306,9 @@ def vary(
     """
     import numpy as np
 
-    from equipoise.tools.studies import check_key, vary_tool
-    from equipoise.tools.usual import MODES
-    from equipoise.tools.wishes import KEYS
+    from equipoise.handheld.design_plan import KEYS
+    from equipoise.handheld.studies import check_key, vary_tool
+    from equipoise.handheld.sweep import MODES
 
     loaded, shown_in = _tool(file, units)
     match = VARY.fullmatch(change.strip())
@@ -368,7 +368,7 @@ def sensitivities(
     """
     import numpy as np
 
-    from equipoise.tools.felt import tool_sensitivities
+    from equipoise.handheld.exposed import tool_sensitivities
 
     loaded, shown_in = _tool(file, units)
     band = loaded.design.speeds if speeds is None and loaded.design is not None else speeds
@@ -409,7 +409,7 @@ def design(
     out
         Write the better tool to this new file.
     """
-    from equipoise.tools.design import design_tool
+    from equipoise.handheld.design import design_tool
 
     loaded, shown_in = _tool(file, units)
     if out is not None:

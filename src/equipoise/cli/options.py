@@ -26,8 +26,8 @@ from equipoise.errors import (
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 SIGNED = Parameter(negative="", allow_leading_hyphen=True)
 """Of an option whose value may begin with a minus sign."""
@@ -86,7 +86,7 @@ Angle = Annotated[float | None, size("angle")]
 
 def quantity(option: str, text: str, dimension: str) -> float:
     """A size in SI units."""
-    from equipoise.io.units import parse
+    from equipoise.quantities.reading import parse
 
     with blaming(option):
         return parse(text, dimension)  # type: ignore[arg-type]
@@ -114,7 +114,7 @@ def naming(file: str) -> Iterator[None]:
     try:
         yield
     except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
-        from equipoise.io.files import printable
+        from equipoise.schema.files import printable
 
         raise EquipoiseError(f"{printable(file)}: {error}") from error
 
@@ -170,7 +170,7 @@ def check_new(model: Machine | Tool, path: str) -> list[Path]:
 
     Returns the files.
     """
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     if not path:
         raise UsageError("--out: got an empty name; give the name of a file")
@@ -187,8 +187,8 @@ def check_new(model: Machine | Tool, path: str) -> list[Path]:
 
 def files_of(model: Machine | Tool, path: str) -> list[Path]:
     """The files in which a model is saved: its own, and tables beside it."""
-    from equipoise.io import models, tools
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
+    from equipoise.schema import models, tools
 
     if isinstance(model, Tool):
         return list(tools.files_of_tool(model, path))
@@ -197,9 +197,9 @@ def files_of(model: Machine | Tool, path: str) -> list[Path]:
 
 def sources_of(model: Machine | Tool, file: str) -> list[str]:
     """The files from which a model was read."""
-    from equipoise.io.models import tables_of
-    from equipoise.io.tools import parts_of
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
+    from equipoise.schema.models import tables_of
+    from equipoise.schema.tools import parts_of
 
     parts = parts_of(model) if isinstance(model, Tool) else tables_of(model).values()
     folder = os.path.dirname(file)

@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     import numpy as np
     from matplotlib.figure import Figure
 
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Kind = Literal["svg", "png", "pdf"]
 Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
@@ -46,7 +46,7 @@ class Printed:
     def print(self, values: Callable[[], Mapping[str, Any]], show: Callable[[], None]) -> None:
         """Print values or tables."""
         if self.json:
-            from equipoise.io.output import json_text
+            from equipoise.schema.output import json_text
 
             print(json_text(dict(values())))
         else:
@@ -100,7 +100,7 @@ class Outputs(Drawn):
     def write(self, columns: Callable[[], Columns]) -> None:
         """Write columns, as name, unit and values, if they are wanted."""
         if self.csv is not None:
-            from equipoise.io.output import csv_text
+            from equipoise.schema.output import csv_text
 
             write_text(self.csv, csv_text(columns()))
 
@@ -128,8 +128,8 @@ class Chosen:
 
 def write_text(path: str, text: str) -> None:
     """Write a file, and say so."""
-    from equipoise.io.files import printable
-    from equipoise.io.output import write
+    from equipoise.schema.files import printable
+    from equipoise.schema.output import write
 
     write(path, text)
     print(f"wrote {printable(path)}", file=sys.stderr)
@@ -137,8 +137,8 @@ def write_text(path: str, text: str) -> None:
 
 def write_pictures(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
-    from equipoise.io.output import write_all
     from equipoise.plotting.style import render
+    from equipoise.schema.output import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
     tell_pictures(len(figures), folder)
@@ -157,9 +157,9 @@ def write_model(
 
     title : added to its own; origin : sentences in front of its description.
     """
-    from equipoise.io import models, tools
-    from equipoise.io.files import printable
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
+    from equipoise.schema import models, tools
+    from equipoise.schema.files import printable
 
     start = f"{origin} Started from: " if origin else ""
     description = f"{start}{model.description}".removesuffix(" Started from: ").strip()

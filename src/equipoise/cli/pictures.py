@@ -39,8 +39,8 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.report.pictures import Picture
-    from equipoise.results import Analysis
-    from equipoise.studies.study import Model
+    from equipoise.results.analysis import Analysis
+    from equipoise.studies.design_space import Model
 
 plot_app = App(name="plot")
 POINTS, MOST_POINTS = 51, 400
@@ -93,10 +93,10 @@ def plot(
     speed
         Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
-    from equipoise.io.output import write_all
     from equipoise.plotting.style import render
     from equipoise.report.findings import ToolFindings, find
     from equipoise.report.pictures import each
+    from equipoise.schema.output import write_all
 
     folder = _default(file, "-pictures") if out is None else out
     check_folder("--out", folder)
@@ -167,9 +167,9 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.io.template import Template
     from equipoise.plotting.landscape import drawings, told
-    from equipoise.studies import landscape as studies
+    from equipoise.schema.template import Template
+    from equipoise.studies import objective_map as studies
 
     folder = _default(file, "-pictures") if out is None else out
     check_folder("--out", folder)
@@ -221,7 +221,7 @@ def _split(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _read(model: Model, option: str, path: str, text: str) -> float:
     """A value of a number of the model, SI units."""
-    from equipoise.studies.variants import dimension
+    from equipoise.studies.objective_map import dimension
 
     try:
         kind = dimension(model, path)
@@ -282,8 +282,8 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.animation.limits import check_seconds, check_width
-    from equipoise.io.models import load
-    from equipoise.io.output import write
+    from equipoise.schema.models import load
+    from equipoise.schema.output import write
 
     name = _default(file, ".svg") if out is None else out
     kind = _kind(name)
@@ -378,8 +378,8 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.io.files import printable
     from equipoise.report.writing import check, write_document
+    from equipoise.schema.files import printable
 
     check(paths, language)
     from equipoise.report.build import build

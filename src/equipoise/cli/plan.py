@@ -134,7 +134,7 @@ class Freed:
 
     def plan(self, machine: Machine) -> Balance:
         """The file's plan, with what is free in the place of what the file says."""
-        from equipoise.balancing.usual import pin_of
+        from equipoise.balancing.optimisation import pin_of
         from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Phases
 
         plan = machine.balance or Balance()
@@ -164,7 +164,7 @@ class Freed:
 
     def weight(self, machine: Machine, link: str) -> Weight:
         """A weight of the given shape; in a room as large as the link where nothing else holds."""
-        from equipoise.balancing.usual import reach_of
+        from equipoise.balancing.optimisation import reach_of
         from equipoise.mechanism.balance import MATERIALS, Weight
         from equipoise.mechanism.checks import unknown
 
@@ -282,9 +282,9 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
 
 
 def _limit(machine: Machine, head: str, tail: str) -> Limit:
-    from equipoise.io.shares import parse_share
     from equipoise.mechanism.balance import Limit
     from equipoise.mechanism.balance_outputs import quantity_of
+    from equipoise.schema.numbers import parse_share
 
     asked = read_objective("--limit", head)
     with blaming("--limit"):

@@ -58,9 +58,9 @@ def plant(
     angles
         With --csv: number of crank angles a turn, 360 if not given.
     """
-    from equipoise.io.models import load
     from equipoise.planting.summary import plant as read_off
-    from equipoise.planting.table import table
+    from equipoise.planting.summary import table
+    from equipoise.schema.models import load
     from equipoise.terminal.units import Units
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
@@ -112,12 +112,12 @@ def fit(
     speed
         Speed of the crank instead of the file's, such as "300 rpm".
     """
-    from equipoise.io.files import printable
-    from equipoise.io.models import load
-    from equipoise.io.targets import read_targets
-    from equipoise.planting.judge import figure_names
+    from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting
-    from equipoise.planting.table import table
+    from equipoise.planting.summary import table
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import load
+    from equipoise.schema.targets import read_targets
     from equipoise.terminal.units import Units
 
     if seed is not None and seed < 0:

@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.evaluate import Outcome
-    from equipoise.studies.progress import Progress
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.outcomes import Outcome, Progress
     from equipoise.studies.study import Study
 
 SECONDS, GROWTH, LONGEST = 5.0, 0.5, 600.0
@@ -161,7 +160,7 @@ class Watched:
     """Computes designs of a study, and tells how far it is each time."""
 
     def __init__(self, study: Study, told: Callable[[Progress], None]) -> None:
-        from equipoise.studies.progress import Tally
+        from equipoise.studies.outcomes import Tally
 
         self.study, self.told = study, told
         self.tally = Tally(study.outputs, 0)
@@ -170,7 +169,7 @@ class Watched:
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
         from equipoise.studies.evaluate import evaluator
-        from equipoise.studies.store import Block
+        from equipoise.studies.outcomes import Block
 
         if self.compute is None:
             self.compute = evaluator(self.study)

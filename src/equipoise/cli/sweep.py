@@ -19,8 +19,8 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.progress import Progress
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
     from equipoise.terminal.swept import Summary
 
@@ -64,8 +64,8 @@ def sweep(
     out
         The store, a new folder.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
     from equipoise.studies import run
 
     asked = load_study(study)
@@ -74,7 +74,7 @@ def sweep(
     units = units_of(asked)
     with naming(study):
         _compute(
-            lambda told: run.sweep(
+            lambda told: run.run_study(
                 asked,
                 out,
                 workers=computers.workers,
@@ -101,13 +101,13 @@ def resume(
     store
         Path of a store, as `equipoise sweep` makes it.
     """
-    from equipoise.io import stored
-    from equipoise.io.study_units import units_in
+    from equipoise.schema import study_units
+    from equipoise.schema.study_units import units_in
     from equipoise.studies.store import open_store
 
     units = units_in(open_store(store))
     _compute(
-        lambda told: stored.resume(
+        lambda told: study_units.resume(
             store, workers=computers.workers, cluster=computers.cluster, progress=told
         ),
         store,
@@ -163,7 +163,7 @@ def _going_on(store: str) -> Iterator[None]:
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
     from equipoise.cli.designs import title_of
-    from equipoise.studies.best import best, outputs_of
+    from equipoise.studies.selection import best, outputs_of
     from equipoise.terminal.swept import Summary
 
     outputs = outputs_of(store)
@@ -212,9 +212,9 @@ def tolerance(
     designs
         Machines that are drawn, instead of as many as the study has.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
-    from equipoise.studies.tolerance import tolerance as of_study
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
+    from equipoise.studies.tolerances import tolerance as of_study
 
     asked = load_study(study)
     given: dict[tuple[str, ...], str] = {}

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.mechanism.model import Machine
-    from equipoise.structures.response import Response
     from equipoise.terminal.units import Units
+    from equipoise.vibration.response import Response
 
 
 def _pictures(kind: str, found: Any) -> Callable[[], Mapping[str, Figure]]:
@@ -51,8 +51,8 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
     model
         linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
     """
-    from equipoise.io.models import load
-    from equipoise.structures.free import vibrate_freely
+    from equipoise.schema.models import load
+    from equipoise.vibration.free import vibrate_freely
 
     machine = load(file)
     with naming(file):
@@ -148,7 +148,7 @@ def simulate(
     drive
         Let the speed follow from the motor in [drive.motor].
     """
-    from equipoise.structures.transient import from_rest
+    from equipoise.vibration.transient import from_rest
 
     machine, shown_in = _machine(file, units, outputs)
     with naming(file):
@@ -165,7 +165,7 @@ def simulate(
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
     from equipoise.terminal.units import OF_VIBRATION, Units
 
     machine = load(file)
@@ -182,7 +182,7 @@ def _answer(
     outputs: Outputs,
 ) -> None:
     """The response at one speed."""
-    from equipoise.structures.forced import respond as solve
+    from equipoise.vibration.forced import respond as solve
 
     found = solve(machine, speed, model, drive)
 
@@ -201,9 +201,9 @@ QUICK = 40
 
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     """The response by every model that costs little, for comparison; None where there is none."""
-    from equipoise.structures.choice import models_of
-    from equipoise.structures.forced import respond as solve
-    from equipoise.structures.modes import swings_in_a_turn
+    from equipoise.vibration.forced import models_of
+    from equipoise.vibration.forced import respond as solve
+    from equipoise.vibration.modes import swings_in_a_turn
 
     swings = swings_in_a_turn(found.modes, found.speed)
     others: dict[str, Response | None] = {}
@@ -228,7 +228,7 @@ def _sweep(
     outputs: Outputs,
 ) -> None:
     """The response over a range of speeds."""
-    from equipoise.structures.sweep import SPEEDS, sweep_speed
+    from equipoise.vibration.sweep import SPEEDS, sweep_speed
 
     with counted("speed") as progress:
         found = sweep_speed(machine, *ends, model, drive, speeds or SPEEDS, progress)

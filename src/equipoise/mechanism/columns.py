@@ -18,9 +18,9 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.builder import planar
-from equipoise.mechanism.checks import HUGE, TINY
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]
 Columns = Mapping[str, Array]

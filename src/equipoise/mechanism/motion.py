@@ -14,9 +14,10 @@ import numpy as np
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import HUGE, Machine, unknown
+from equipoise.mechanism.model import Machine, unknown
 from equipoise.mechanism.steps import State, p, plain_angle, running_angle, u
 from equipoise.mechanism.swinging import middle_angle, solve_swinging
+from equipoise.quantities.units import HUGE
 
 Array = np.ndarray[Any, Any]
 Value = TypeVar("Value")

@@ -9,10 +9,10 @@ from typing import Literal
 
 import numpy as np
 
+from equipoise.i18n import say
 from equipoise.plotting.shapes import FOOT, Shape, line
 from equipoise.plotting.stage import Stage
 from equipoise.plotting.style import shown
-from equipoise.words import say
 
 SIZE, LEAST = 12.0, 11.0
 """Of type, in pixels: in a picture 640 pixels wide, and in small ones."""

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, MAIN, degrees_shown, short, shown
-from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 

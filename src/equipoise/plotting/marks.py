@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from equipoise.i18n import say
 from equipoise.plotting.crank import angle_step
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.paths import CM, Mark, Paths
 from equipoise.plotting.style import INK, MAIN, MARKS, NORMAL, SMALL, shown
-from equipoise.words import say
 
 ARROWS_IN = ((0.12, 0.45), (0.55, 0.88))
 """Between which parts of the way from exit to entry the heads of arrows are."""

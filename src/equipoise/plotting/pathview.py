@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.linkage import draw_sketch
 from equipoise.plotting.marks import angle_ticks, dots, hill_spacing, senses, travel
@@ -30,7 +31,6 @@ from equipoise.plotting.style import (
     heading,
     short,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from equipoise.planting.names import dimension_of as of_planting
-from equipoise.results import unit_of
+from equipoise.planting.goals import dimension_of as of_planting
+from equipoise.results.analysis import unit_of
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Support
-    from equipoise.tools.model import Tool
 
 OF_UNITS = {
     "rad": "angle",

@@ -12,8 +12,8 @@ import pytest
 import equipoise as eq
 from equipoise.animation.svg import animated_svg
 from equipoise.errors import UsageError
+from equipoise.i18n import speaking
 from equipoise.scene import Scene
-from equipoise.words import speaking
 from unit.animation.samples import analyzed, prepared, three_turns
 
 NAME = "{http://www.w3.org/2000/svg}"

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import equipoise as eq
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine
@@ -31,7 +31,7 @@ from equipoise.plotting.analysis.plane import clear_angle, traced
 from equipoise.plotting.cartoon import cartoon
 from equipoise.plotting.stage import Arrow
 from equipoise.plotting.style import render
-from equipoise.results import Analysis
+from equipoise.results.analysis import Analysis
 from equipoise.scene import Scene
 from equipoise.signals import Periodic
 from unit.plotting.samples import long_cycle, one_link, sketched, words

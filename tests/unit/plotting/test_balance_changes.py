@@ -14,8 +14,8 @@ from matplotlib.patches import PathPatch
 from matplotlib.text import Text
 
 import equipoise as eq
-from equipoise.balancing.front import Front
-from equipoise.balancing.parts import Change
+from equipoise.balancing.design_variables import Change
+from equipoise.balancing.pareto import Front
 from equipoise.plotting.analysis import linkage_figure
 from equipoise.plotting.balancing import drawings
 from equipoise.plotting.balancing.changes import changes_figure

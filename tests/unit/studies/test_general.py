@@ -11,18 +11,18 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.fused.reasons import REASONS
-from equipoise.io.template import Template
-from equipoise.results import columns, unit_of
-from equipoise.studies.asking import check_outputs
+from equipoise.quantities import SI
+from equipoise.results.analysis import columns, unit_of
+from equipoise.schema.template import Template
+from equipoise.studies.commands import check_outputs
+from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
 from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.evaluate import Outcome
+from equipoise.studies.evaluate import one_by_one
 from equipoise.studies.figures import read, resolve, scale
-from equipoise.studies.general import general
-from equipoise.studies.spread import Range
-from equipoise.studies.study import Command, Output, Sampling, Study, Vary
-from equipoise.studies.units import SI
+from equipoise.studies.outcomes import Outcome
+from equipoise.studies.study import Study
 from surface.running import equipoise, example_text, succeeded
 from unit.studies.samples import template
 
@@ -143,7 +143,7 @@ def asked(of: Command, *paths: str) -> list[Output]:
 def computed(given: Study, *values: float) -> Outcome:
     """Designs of one varied number; those of the model where none is given."""
     own = [given.model.number(path)[0] for path in given.paths]
-    return general(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
+    return one_by_one(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
 
 
 def printed(values: Any, path: str) -> float:

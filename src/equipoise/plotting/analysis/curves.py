@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import LINE_LOOKS, MM, over, title, unit_of
 from equipoise.plotting.analysis.plane import hold, moving, traced
 from equipoise.plotting.crank import angle_step
@@ -29,13 +30,12 @@ from equipoise.plotting.style import (
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place, told_speed
 from equipoise.scene import Scene
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.mechanism.motion import Motion
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.mechanism.motion import Motion, PointMotion, move
 from equipoise.plotting.analysis.looks import MM, over
 from equipoise.plotting.analysis.plane import clear_angle, hold, moving
@@ -42,13 +43,12 @@ from equipoise.plotting.style import (
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place
 from equipoise.scene import Scene
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.plotting.panels import Panel
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import (
     ALL,
     ROW_LOOKS,
@@ -34,12 +35,11 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

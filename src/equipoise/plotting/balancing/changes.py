@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.balancing.looks import MM
 from equipoise.plotting.balancing.pieces import Mark, marks
 from equipoise.plotting.balancing.placed import Placed, placed_well
@@ -20,7 +21,6 @@ from equipoise.plotting.marks import arrow
 from equipoise.plotting.panels import Panel
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, STRESS, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -10,12 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.i18n import say
 from equipoise.plotting.balancing.looks import MM, SHORT, grams
 from equipoise.plotting.style import short, shown
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.balancing.parts import Change
+    from equipoise.balancing.design_variables import Change
     from equipoise.mechanism.balance import Balance, CenterMove
     from equipoise.plotting.balancing.placed import Placed
 

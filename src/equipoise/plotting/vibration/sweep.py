@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, blank, heading, shown
 from equipoise.plotting.vibration.curves import (
@@ -41,12 +42,11 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 
