@@ -80,7 +80,7 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
-    from equipoise import pipeline
+    from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
     from equipoise.schema.models import load
 
@@ -93,7 +93,7 @@ def analyze(
         check_result_file("--csv", csv, sources_of(machine, file))
     place = None if about is None else _place(machine, about)
     with naming(file):
-        analysis = pipeline.analyze(machine, angles, speed, acceleration, place)
+        analysis = analyzed(machine, angles, speed, acceleration, place)
         by_order = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
     if csv is not None:
         from equipoise.schema.output import to_csv, write

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
 from equipoise.planting.goals import dimension_of
 from equipoise.terminal.planting import EXTREMES, PATH, SOIL
