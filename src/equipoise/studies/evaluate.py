@@ -315,9 +315,8 @@ def _sizes(table: Any) -> Iterator[float]:
 def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
     """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
     from equipoise.mechanism.tip import TipCurve
-    from equipoise.planting.figures import figures
-    from equipoise.planting.moments import soil_crossings
-    from equipoise.planting.visits import TOUCH
+    from equipoise.planting.figures import tip_figures
+    from equipoise.planting.stroke import TOUCH, soil_crossings
 
     curve = TipCurve(machines)
     entry, leave = soil_crossings(curve)
@@ -327,7 +326,7 @@ def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]
     plants &= curve.speed[:, 0] != 0
     names = [".".join(map(str, one)) for one in steps]
     wanted = {str(one[0]) for one in steps}
-    found = figures(curve, entry, leave, wanted=wanted)
+    found = tip_figures(curve, entry, leave, wanted=wanted)
     columns = [found.get(name, np.full(len(machines), np.nan)) for name in names]
     table: Array = np.where(plants[:, None], np.stack(columns, axis=1), np.nan)
     return table
