@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import FAINT, MAIN, degrees_shown, short, shown
 from equipoise.words import say
 

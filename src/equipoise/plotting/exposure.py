@@ -15,7 +15,7 @@ from equipoise.exposure.bands import EDGES
 from equipoise.exposure.directive import ACTION, LIMIT
 from equipoise.exposure.iso_5349 import partial_exposure
 from equipoise.exposure.weighting import factor
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
     INK,

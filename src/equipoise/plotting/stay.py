@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from equipoise.plotting.labels import spread
+from equipoise.figures.labels import spread
 from equipoise.plotting.style import INSTANTS, LINES, SMALL, SOIL, degrees_shown
 from equipoise.words import say
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+from equipoise.plotting.linkage import Sketch, sketch
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -12,9 +13,8 @@ import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.plotting.linkage import Sketch, sketch
 from equipoise.plotting.planting import drawings
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
 BUNDLED = ("kim-chung-a", "kim-chung-b", "kim-chung-c")

@@ -13,6 +13,9 @@ from matplotlib.figure import Figure
 import equipoise as eq
 from equipoise.balancing.row_outputs import Rows
 from equipoise.errors import UsageError
+from equipoise.figures.drawing import traced
+from equipoise.figures.moving import laid_out
+from equipoise.figures.stage import Arrow
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
@@ -27,13 +30,11 @@ from equipoise.plotting.analysis import (
     spectrum_figure,
 )
 from equipoise.plotting.analysis.looks import outputs, together
-from equipoise.plotting.analysis.plane import clear_angle, traced
-from equipoise.plotting.cartoon import cartoon
-from equipoise.plotting.stage import Arrow
 from equipoise.plotting.style import render
 from equipoise.results import Analysis
-from equipoise.scene import Scene
 from equipoise.signals import Periodic
+from equipoise.symbols.clear import clear_angle
+from equipoise.symbols.scene import Scene
 from unit.plotting.samples import long_cycle, one_link, sketched, words
 from unit.plotting.test_layout import check_texts
 
@@ -270,7 +271,7 @@ def test_a_couple_of_rounding_is_zero() -> None:
 def test_a_moving_picture_says_whose_force_it_is(of_one: bool) -> None:
     found = eq.analyze(eq.load("four-row-transplanter"), 60)
     arrow = Arrow(found.forces.about, found.forces.shaking_force.value, of_one)
-    told = [label.text for label in cartoon(Scene.of(found.motion), arrow=arrow).labels]
+    told = [label.text for label in laid_out(Scene.of(found.motion), arrow=arrow).labels]
     (force,) = (text for text in told if text.startswith("shaking force"))
     assert ("of one row" in force) == of_one
     assert f"{np.max(np.abs(arrow.force)):.4g} N" in force

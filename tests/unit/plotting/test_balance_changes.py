@@ -16,12 +16,12 @@ from matplotlib.text import Text
 import equipoise as eq
 from equipoise.balancing.front import Front
 from equipoise.balancing.parts import Change
+from equipoise.figures.additions import sector
+from equipoise.figures.changes import changes_figure
 from equipoise.plotting.analysis import linkage_figure
 from equipoise.plotting.balancing import drawings
-from equipoise.plotting.balancing.changes import changes_figure
 from equipoise.plotting.balancing.front import front_figure
 from equipoise.plotting.balancing.looks import grams
-from equipoise.plotting.balancing.pieces import sector
 from equipoise.plotting.style import styled
 from unit.plotting.balance_samples import (
     MM,

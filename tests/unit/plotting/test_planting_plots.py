@@ -12,12 +12,12 @@ from xml.etree import ElementTree
 import matplotlib
 import numpy as np
 import pytest
+from equipoise.plotting.linkage import draw_sketch
+from equipoise.plotting.paths import Paths
 from matplotlib.figure import Figure
 
 import equipoise as eq
 from equipoise.planting.summary import plant
-from equipoise.plotting.linkage import draw_sketch
-from equipoise.plotting.paths import Paths
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.stay import soil_spans
 from equipoise.plotting.style import render

@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from equipoise.balancing.row_outputs import Rows
+from equipoise.figures.drawing import arrow
 from equipoise.mechanism.balance import Objective
 from equipoise.plotting.analysis.looks import settled
 from equipoise.plotting.balancing.looks import (
@@ -24,7 +25,6 @@ from equipoise.plotting.balancing.looks import (
     paired,
     rounding_of,
 )
-from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import FAINT, NORMAL, SMALL, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import (
     LEFT,

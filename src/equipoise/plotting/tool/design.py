@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import FAINT, INK, blank, fit, heading, inches, short, shown
 from equipoise.plotting.tool.speeds import (
     SPEED,

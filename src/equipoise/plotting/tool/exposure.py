@@ -14,7 +14,7 @@ from matplotlib.lines import Line2D
 from equipoise.exposure.directive import ACTION, LIMIT
 from equipoise.exposure.iso_5349 import EIGHT_HOURS
 from equipoise.exposure.weighting import factor
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import INK, PALE, blank, heading, short, shown
 from equipoise.plotting.tool.speeds import (
     SPEED,

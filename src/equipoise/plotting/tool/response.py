@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import INK, blank, heading, shown
 from equipoise.plotting.tool.shaft import (
     MM,

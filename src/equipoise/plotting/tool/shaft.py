@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from equipoise.plotting.labels import spread
+from equipoise.figures.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, SMALL, blank, inches, short
 from equipoise.plotting.vibration.panels import WIDTH
 from equipoise.words import say, to_say

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from equipoise.mechanism.motion import move
-from equipoise.scene import Scene, hull
 from equipoise.structures.linkages import rows_of
+from equipoise.symbols.scene import Scene, hull
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
