@@ -13,9 +13,9 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import equipoise as eq
-from equipoise.balancing.closed import closed_form
 from equipoise.balancing.measures import measured
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.solution import closed_form
 from timing import in_turn, report
 
 MACHINE = eq.load("yamashita-1")

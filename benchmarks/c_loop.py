@@ -1,4 +1,4 @@
-"""The loop that `equipoise.fused` writes out, in C: the same arithmetic, compiled by gcc.
+"""The loop that `equipoise.codegen` writes out, in C: the same arithmetic, compiled by gcc.
 
 ``state`` and the kernels do arithmetic only, so they run on numbers that write down, as lines of C,
 what is done to them; a vector is a pair of doubles.  Around these lines stands the same loop over
@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.fused.source import Source
+from equipoise.codegen.source import Source
 from equipoise.mechanism import kernels
 
 ALWAYS = ["-O3", "-march=native", "-ffast-math", "-shared", "-fPIC"]

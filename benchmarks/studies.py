@@ -24,13 +24,12 @@ import equipoise as eq
 import study_runs
 import sympy_four_bar
 from asked import Limit, Table, agree
-from equipoise.fused import unfused
-from equipoise.fused.batch import Batch
-from equipoise.fused.compiled import run
-from equipoise.fused.figures import Figure
-from equipoise.fused.gram import MassBatch
-from equipoise.fused.grid import all_angles, grid_of
-from equipoise.fused.table import table_of
+from equipoise.codegen import backends
+from equipoise.codegen.backends import run_loop
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.figures import Figure
+from equipoise.codegen.gram import MassBatch
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
@@ -58,18 +57,18 @@ class Loop:
 
     def __init__(self, batch: Batch, values: Array) -> None:
         self.batch, self.source = batch, batch.source
-        self.table = table_of(batch.source, batch.base, batch.paths, values).table
+        self.table = designs_of(batch.source, batch.base, batch.paths, values).table
         self.grid = grid_of(batch.source, all_angles(ANGLES, batch.turns))
 
     def __call__(self) -> Array:
-        return run(self.source, self.table, self.grid)
+        return run_loop(self.source, self.table, self.grid)
 
     def by_numpy(self) -> Array:
         """The same as where Numba is missing."""
         module = {name: one for name, one in vars(kernels).items() if inspect.isfunction(one)}
-        module |= vars(unfused.SUPPORT)
+        module |= vars(backends.NUMPY_FUNCTIONS)
         exec(self.source.text, module)
-        return unfused.run(self.source, module["state"], self.table, self.grid)
+        return backends.run_numpy(self.source, module["state"], self.table, self.grid)
 
 
 def batch_of(machine: Machine, paths: tuple[str, ...], wanted: list[Figure]) -> Batch:

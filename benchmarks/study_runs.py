@@ -19,17 +19,15 @@ import numpy as np
 
 import equipoise as eq
 from asked import Limit, Table, agree
-from equipoise.fused.batch import Batch
-from equipoise.fused.compiled import FOLDER, run
-from equipoise.fused.figures import Figure
-from equipoise.fused.grid import all_angles, grid_of
-from equipoise.fused.table import table_of
-from equipoise.io.template import Template
-from equipoise.studies.run import sweep
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Range
+from equipoise.codegen.backends import FOLDER, run_loop
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.figures import Figure
+from equipoise.schema.template import Template
+from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.run import run_study
 from equipoise.studies.store import open_store
-from equipoise.studies.study import Output, Sampling, Study, Vary
+from equipoise.studies.study import Study, samples
 from timing import in_turn
 
 MACHINE = eq.load("yamashita-1")
@@ -50,8 +48,8 @@ DENSE, ENOUGH = 3600, MILLION
 CLOSE = 1e-12
 FIRST_FIGURES = f"""
 import equipoise as eq
-from equipoise.fused.batch import Batch
-from equipoise.fused.figures import Figure
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.figures import Figure
 wanted = [Figure(signal, "rms") for signal in {SIGNALS}]
 Batch(eq.load("yamashita-1"), ["links.rocker.mass"], wanted, {ANGLES})([[0.2]])
 """
@@ -115,13 +113,13 @@ def stored(table: Table) -> None:
     study = study_of(MILLION)
     values = samples(study, 0, MILLION)
     batch = Batch(MACHINE, study.paths, [Figure(signal, "rms") for signal in SIGNALS], ANGLES)
-    numbers = table_of(batch.source, batch.base, batch.paths, values).table
+    numbers = designs_of(batch.source, batch.base, batch.paths, values).table
     grid = grid_of(batch.source, all_angles(ANGLES, 1))
 
     def bare() -> np.ndarray:
         with ThreadPoolExecutor(2) as pool:
             parts = pool.map(
-                lambda part: run(batch.source, part, grid), np.array_split(numbers, 16)
+                lambda part: run_loop(batch.source, part, grid), np.array_split(numbers, 16)
             )
             return np.concatenate(list(parts))
 
@@ -129,7 +127,7 @@ def stored(table: Table) -> None:
         path = Path(place, "store")
         tasks = {
             "bare": bare,
-            "sweep": lambda: sweep(study, path, workers=2),
+            "sweep": lambda: run_study(study, path, workers=2),
             "clearing up": lambda: shutil.rmtree(path),
         }
         tasks["sweep"]()
@@ -160,7 +158,7 @@ def measure_memory() -> None:
 
     with tempfile.TemporaryDirectory() as place:
         begin = time.perf_counter()
-        sweep(study_of(MANY), Path(place, "store"))
+        run_study(study_of(MANY), Path(place, "store"))
         seconds = time.perf_counter() - begin
     peak = getrusage(RUSAGE_SELF).ru_maxrss / 1024
     print(json.dumps({"seconds": seconds, "peak": peak}))
@@ -186,7 +184,7 @@ def cluster(table: Table) -> None:
 
             def task() -> None:
                 before = [processor_time(one) for one in processes]
-                sweep(study, place / "store", cluster=address)
+                run_study(study, place / "store", cluster=address)
                 after = [processor_time(one) for one in processes]
                 busy[count].append(max(b - a for a, b in zip(before, after, strict=True)))
                 shutil.rmtree(place / "store")

@@ -14,40 +14,40 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Absorber": "tools.model",
+    "Absorber": "handheld.model",
     "AddedMass": "mechanism.balance",
-    "Analysis": "results",
+    "Analysis": "results.analysis",
     "Balance": "mechanism.balance",
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
-    "Best": "studies.best",
+    "Best": "studies.selection",
     "CenterMove": "mechanism.balance",
-    "Choices": "studies.spread",
-    "Conditions": "balancing.conditions",
-    "Correlation": "studies.study",
+    "Choices": "studies.design_space",
+    "Conditions": "balancing.linear_conditions",
+    "Correlation": "studies.design_space",
     "Decay": "measured.decay",
-    "DesignLimit": "tools.wishes",
-    "DesignPlan": "tools.wishes",
-    "DesignVariable": "tools.wishes",
+    "DesignLimit": "handheld.design_plan",
+    "DesignPlan": "handheld.design_plan",
+    "DesignVariable": "handheld.design_plan",
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
-    "Excitation": "tools.model",
+    "Excitation": "handheld.model",
     "Exposure": "exposure.daily",
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
-    "FourBar": "mechanism.fourbar",
-    "FreeVibration": "structures.free",
-    "Front": "balancing.front",
+    "FourBar": "mechanism.assessment",
+    "FreeVibration": "vibration.free",
+    "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
     "GearedWeight": "mechanism.balance",
     "Goal": "planting.goals",
-    "Hand": "tools.model",
-    "Harness": "tools.model",
-    "Impedance": "tools.model",
-    "Landscape": "studies.landscape",
+    "Hand": "handheld.model",
+    "Harness": "handheld.model",
+    "Impedance": "handheld.model",
+    "Landscape": "studies.objective_map",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -58,112 +58,112 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
-    "Normal": "studies.spread",
+    "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
-    "Operation": "tools.model",
-    "Output": "studies.study",
+    "Operation": "handheld.model",
+    "Output": "studies.design_space",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
-    "Phasing": "balancing.phases",
+    "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
-    "Range": "studies.spread",
+    "Range": "studies.design_space",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
-    "Response": "structures.response",
+    "Response": "vibration.response",
     "Row": "mechanism.support",
-    "Sampling": "studies.study",
+    "Sampling": "studies.design_space",
     "Searched": "studies.search",
-    "Section": "tools.sections",
-    "Segment": "tools.sections",
-    "Shaft": "tools.sections",
+    "Section": "handheld.shaft",
+    "Segment": "handheld.shaft",
+    "Shaft": "handheld.shaft",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
     "Spring": "mechanism.spring",
     "SpringChoice": "mechanism.balance",
-    "Station": "tools.model",
+    "Station": "handheld.model",
     "Store": "studies.store",
     "Study": "studies.study",
     "Support": "mechanism.support",
-    "Sweep": "structures.sweep",
+    "Sweep": "vibration.sweep",
     "Task": "exposure.daily",
-    "Template": "io.template",
-    "Tolerances": "studies.tolerance",
-    "Tool": "tools.model",
-    "ToolDesign": "tools.design",
-    "ToolExposure": "tools.exposed",
-    "ToolModes": "tools.modes",
-    "ToolResponse": "tools.response",
-    "ToolSweep": "tools.sweep",
-    "Transient": "structures.transient",
-    "Transmissions": "tools.transmission",
-    "Tube": "tools.sections",
-    "Uniform": "studies.spread",
-    "Vary": "studies.study",
+    "Template": "schema.template",
+    "Tolerances": "studies.tolerances",
+    "Tool": "handheld.model",
+    "ToolDesign": "handheld.design",
+    "ToolExposure": "handheld.exposed",
+    "ToolModes": "handheld.modes",
+    "ToolResponse": "handheld.response",
+    "ToolSweep": "handheld.sweep",
+    "Transient": "vibration.transient",
+    "Transmissions": "handheld.transmission",
+    "Tube": "handheld.shaft",
+    "Uniform": "studies.design_space",
+    "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
-    "Weighted": "exposure.weighted",
-    "Work": "tools.model",
-    "analyze": "pipeline",
+    "Weighted": "exposure.weighting",
+    "Work": "handheld.model",
+    "analyze": "results.analysis",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
-    "balance": "balancing.balance",
+    "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
-    "best": "studies.best",
-    "choose_phases": "balancing.phases",
-    "conditions": "balancing.conditions",
+    "best": "studies.selection",
+    "choose_phases": "balancing.phase_search",
+    "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
-    "design_tool": "tools.design",
-    "dumps": "io.models",
-    "dumps_tool": "io.tools",
-    "examples": "io.models",
-    "export": "studies.export",
-    "expose_tool": "tools.exposed",
+    "design_tool": "handheld.design",
+    "dumps": "schema.models",
+    "dumps_tool": "schema.tools",
+    "examples": "schema.models",
+    "export": "studies.table_files",
+    "expose_tool": "handheld.exposed",
+    "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
-    "four_bar": "mechanism.fourbar",
-    "from_rest": "structures.transient",
+    "four_bar": "mechanism.assessment",
+    "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
-    "json_schema": "io.models",
-    "landscape": "studies.landscape",
-    "least_moments": "balancing.least",
-    "load": "io.models",
-    "load_study": "io.studies",
-    "load_tool": "io.tools",
-    "loads": "io.models",
-    "loads_tool": "io.tools",
-    "machine_of": "io.stored",
+    "json_schema": "schema.models",
+    "landscape": "studies.objective_map",
+    "least_moments": "balancing.least_norm",
+    "load": "schema.models",
+    "load_study": "schema.studies",
+    "load_tool": "schema.tools",
+    "loads": "schema.models",
+    "loads_tool": "schema.tools",
+    "machine_of": "schema.study_units",
     "move": "mechanism.motion",
     "open_store": "studies.store",
     "plant": "planting.summary",
-    "read_accelerations": "io.accelerations",
-    "read_record": "io.records",
+    "read_accelerations": "schema.records",
+    "read_record": "schema.records",
     "regressor": "mechanism.parameters",
-    "respond": "structures.forced",
-    "respond_tool": "tools.response",
-    "resume": "io.stored",
-    "save": "io.models",
-    "save_tool": "io.tools",
+    "respond": "vibration.forced",
+    "respond_tool": "handheld.response",
+    "resume": "schema.study_units",
+    "run_study": "studies.run",
+    "save": "schema.models",
+    "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
-    "simulate_decay": "measured.swinging",
-    "sweep": "studies.run",
-    "sweep_speed": "structures.sweep",
-    "sweep_tool": "tools.sweep",
-    "tolerance": "studies.tolerance",
-    "tool_sensitivities": "tools.felt",
-    "trade_off": "balancing.front",
-    "transmit": "tools.transmission",
-    "vary_tool": "tools.studies",
-    "verdict": "balancing.verdict",
-    "vibrate_freely": "structures.free",
-    "vibrate_tool": "tools.modes",
+    "simulate_decay": "measured.record",
+    "sweep_speed": "vibration.sweep",
+    "sweep_tool": "handheld.sweep",
+    "tolerance": "studies.tolerances",
+    "tool_sensitivities": "handheld.exposed",
+    "trade_off": "balancing.pareto",
+    "transmit": "handheld.transmission",
+    "vary_tool": "handheld.studies",
+    "vibrate_freely": "vibration.free",
+    "vibrate_tool": "handheld.modes",
     "view": "web.widget",
-    "weigh_orders": "exposure.measured",
-    "weigh_signal": "exposure.measured",
-    "weigh_spectrum": "exposure.measured",
+    "weigh_orders": "exposure.spectra",
+    "weigh_signal": "exposure.spectra",
+    "weigh_spectrum": "exposure.spectra",
     "write_report": "report.writing",
 }
 """Public names and where they live; each is imported when it is first used."""
@@ -171,46 +171,62 @@ _HOMES = {
 __all__ = ["__version__", *_HOMES]  # noqa: PLE0604
 
 if TYPE_CHECKING:
-    from equipoise.balancing.balance import balance as balance
     from equipoise.balancing.balanced import Balanced as Balanced
-    from equipoise.balancing.conditions import Conditions as Conditions
-    from equipoise.balancing.conditions import conditions as conditions
-    from equipoise.balancing.front import Front as Front
-    from equipoise.balancing.front import trade_off as trade_off
-    from equipoise.balancing.least import least_moments as least_moments
+    from equipoise.balancing.least_norm import least_moments as least_moments
+    from equipoise.balancing.linear_conditions import Conditions as Conditions
+    from equipoise.balancing.linear_conditions import conditions as conditions
+    from equipoise.balancing.optimisation import balance as balance
+    from equipoise.balancing.pareto import Front as Front
+    from equipoise.balancing.pareto import trade_off as trade_off
     from equipoise.balancing.patterns import arranged as arranged
-    from equipoise.balancing.phases import Phasing as Phasing
-    from equipoise.balancing.phases import choose_phases as choose_phases
+    from equipoise.balancing.phase_search import Phasing as Phasing
+    from equipoise.balancing.phase_search import choose_phases as choose_phases
+    from equipoise.balancing.physical_consistency import feasibility as feasibility
     from equipoise.balancing.sensitivity import sensitivities as sensitivities
-    from equipoise.balancing.verdict import verdict as verdict
     from equipoise.errors import EquipoiseError as EquipoiseError
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task
     from equipoise.exposure.daily import daily_exposure as daily_exposure
-    from equipoise.exposure.measured import weigh_orders as weigh_orders
-    from equipoise.exposure.measured import weigh_signal as weigh_signal
-    from equipoise.exposure.measured import weigh_spectrum as weigh_spectrum
-    from equipoise.exposure.weighted import Weighted as Weighted
-    from equipoise.io.accelerations import read_accelerations as read_accelerations
-    from equipoise.io.models import dumps as dumps
-    from equipoise.io.models import examples as examples
-    from equipoise.io.models import json_schema as json_schema
-    from equipoise.io.models import load as load
-    from equipoise.io.models import loads as loads
-    from equipoise.io.models import save as save
-    from equipoise.io.records import read_record as read_record
-    from equipoise.io.stored import machine_of as machine_of
-    from equipoise.io.stored import resume as resume
-    from equipoise.io.studies import load_study as load_study
-    from equipoise.io.template import Template as Template
-    from equipoise.io.tools import dumps_tool as dumps_tool
-    from equipoise.io.tools import load_tool as load_tool
-    from equipoise.io.tools import loads_tool as loads_tool
-    from equipoise.io.tools import save_tool as save_tool
+    from equipoise.exposure.spectra import weigh_orders as weigh_orders
+    from equipoise.exposure.spectra import weigh_signal as weigh_signal
+    from equipoise.exposure.spectra import weigh_spectrum as weigh_spectrum
+    from equipoise.exposure.weighting import Weighted as Weighted
+    from equipoise.handheld.design import ToolDesign as ToolDesign
+    from equipoise.handheld.design import design_tool as design_tool
+    from equipoise.handheld.design_plan import DesignLimit as DesignLimit
+    from equipoise.handheld.design_plan import DesignPlan as DesignPlan
+    from equipoise.handheld.design_plan import DesignVariable as DesignVariable
+    from equipoise.handheld.exposed import ToolExposure as ToolExposure
+    from equipoise.handheld.exposed import expose_tool as expose_tool
+    from equipoise.handheld.exposed import tool_sensitivities as tool_sensitivities
+    from equipoise.handheld.model import Absorber as Absorber
+    from equipoise.handheld.model import Excitation as Excitation
+    from equipoise.handheld.model import Hand as Hand
+    from equipoise.handheld.model import Harness as Harness
+    from equipoise.handheld.model import Impedance as Impedance
+    from equipoise.handheld.model import Operation as Operation
+    from equipoise.handheld.model import Station as Station
+    from equipoise.handheld.model import Tool as Tool
+    from equipoise.handheld.model import Work as Work
+    from equipoise.handheld.modes import ToolModes as ToolModes
+    from equipoise.handheld.modes import vibrate_tool as vibrate_tool
+    from equipoise.handheld.response import ToolResponse as ToolResponse
+    from equipoise.handheld.response import respond_tool as respond_tool
+    from equipoise.handheld.shaft import Section as Section
+    from equipoise.handheld.shaft import Segment as Segment
+    from equipoise.handheld.shaft import Shaft as Shaft
+    from equipoise.handheld.shaft import Tube as Tube
+    from equipoise.handheld.studies import vary_tool as vary_tool
+    from equipoise.handheld.sweep import ToolSweep as ToolSweep
+    from equipoise.handheld.sweep import sweep_tool as sweep_tool
+    from equipoise.handheld.transmission import Transmissions as Transmissions
+    from equipoise.handheld.transmission import transmit as transmit
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
-    from equipoise.measured.swinging import simulate_decay as simulate_decay
+    from equipoise.measured.record import simulate_decay as simulate_decay
+    from equipoise.mechanism.assessment import FourBar as FourBar
+    from equipoise.mechanism.assessment import four_bar as four_bar
     from equipoise.mechanism.balance import AddedMass as AddedMass
     from equipoise.mechanism.balance import Balance as Balance
     from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
@@ -226,8 +242,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
-    from equipoise.mechanism.fourbar import FourBar as FourBar
-    from equipoise.mechanism.fourbar import four_bar as four_bar
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -275,76 +289,55 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
-    from equipoise.pipeline import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
-    from equipoise.results import Analysis as Analysis
+    from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.results.analysis import analyze as analyze
+    from equipoise.schema.models import dumps as dumps
+    from equipoise.schema.models import examples as examples
+    from equipoise.schema.models import json_schema as json_schema
+    from equipoise.schema.models import load as load
+    from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import save as save
+    from equipoise.schema.records import read_accelerations as read_accelerations
+    from equipoise.schema.records import read_record as read_record
+    from equipoise.schema.studies import load_study as load_study
+    from equipoise.schema.study_units import machine_of as machine_of
+    from equipoise.schema.study_units import resume as resume
+    from equipoise.schema.template import Template as Template
+    from equipoise.schema.tools import dumps_tool as dumps_tool
+    from equipoise.schema.tools import load_tool as load_tool
+    from equipoise.schema.tools import loads_tool as loads_tool
+    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
-    from equipoise.structures.forced import respond as respond
-    from equipoise.structures.free import FreeVibration as FreeVibration
-    from equipoise.structures.free import vibrate_freely as vibrate_freely
-    from equipoise.structures.response import Response as Response
-    from equipoise.structures.sweep import Sweep as Sweep
-    from equipoise.structures.sweep import sweep_speed as sweep_speed
-    from equipoise.structures.transient import Transient as Transient
-    from equipoise.structures.transient import from_rest as from_rest
-    from equipoise.studies.best import Best as Best
-    from equipoise.studies.best import best as best
-    from equipoise.studies.export import export as export
-    from equipoise.studies.landscape import Landscape as Landscape
-    from equipoise.studies.landscape import landscape as landscape
-    from equipoise.studies.run import sweep as sweep
+    from equipoise.studies.design_space import Vary as Vary
+    from equipoise.studies.objective_map import Landscape as Landscape
+    from equipoise.studies.objective_map import landscape as landscape
+    from equipoise.studies.run import run_study as run_study
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
-    from equipoise.studies.spread import Choices as Choices
-    from equipoise.studies.spread import Normal as Normal
-    from equipoise.studies.spread import Range as Range
-    from equipoise.studies.spread import Uniform as Uniform
+    from equipoise.studies.selection import Best as Best
+    from equipoise.studies.selection import best as best
     from equipoise.studies.store import Store as Store
     from equipoise.studies.store import open_store as open_store
-    from equipoise.studies.study import Correlation as Correlation
-    from equipoise.studies.study import Output as Output
-    from equipoise.studies.study import Sampling as Sampling
     from equipoise.studies.study import Study as Study
-    from equipoise.studies.study import Vary as Vary
-    from equipoise.studies.tolerance import Tolerances as Tolerances
-    from equipoise.studies.tolerance import tolerance as tolerance
-    from equipoise.tools.design import ToolDesign as ToolDesign
-    from equipoise.tools.design import design_tool as design_tool
-    from equipoise.tools.exposed import ToolExposure as ToolExposure
-    from equipoise.tools.exposed import expose_tool as expose_tool
-    from equipoise.tools.felt import tool_sensitivities as tool_sensitivities
-    from equipoise.tools.model import Absorber as Absorber
-    from equipoise.tools.model import Excitation as Excitation
-    from equipoise.tools.model import Hand as Hand
-    from equipoise.tools.model import Harness as Harness
-    from equipoise.tools.model import Impedance as Impedance
-    from equipoise.tools.model import Operation as Operation
-    from equipoise.tools.model import Station as Station
-    from equipoise.tools.model import Tool as Tool
-    from equipoise.tools.model import Work as Work
-    from equipoise.tools.modes import ToolModes as ToolModes
-    from equipoise.tools.modes import vibrate_tool as vibrate_tool
-    from equipoise.tools.response import ToolResponse as ToolResponse
-    from equipoise.tools.response import respond_tool as respond_tool
-    from equipoise.tools.sections import Section as Section
-    from equipoise.tools.sections import Segment as Segment
-    from equipoise.tools.sections import Shaft as Shaft
-    from equipoise.tools.sections import Tube as Tube
-    from equipoise.tools.studies import vary_tool as vary_tool
-    from equipoise.tools.sweep import ToolSweep as ToolSweep
-    from equipoise.tools.sweep import sweep_tool as sweep_tool
-    from equipoise.tools.transmission import Transmissions as Transmissions
-    from equipoise.tools.transmission import transmit as transmit
-    from equipoise.tools.wishes import DesignLimit as DesignLimit
-    from equipoise.tools.wishes import DesignPlan as DesignPlan
-    from equipoise.tools.wishes import DesignVariable as DesignVariable
+    from equipoise.studies.table_files import export as export
+    from equipoise.studies.tolerances import Tolerances as Tolerances
+    from equipoise.studies.tolerances import tolerance as tolerance
+    from equipoise.vibration.forced import respond as respond
+    from equipoise.vibration.free import FreeVibration as FreeVibration
+    from equipoise.vibration.free import vibrate_freely as vibrate_freely
+    from equipoise.vibration.response import Response as Response
+    from equipoise.vibration.sweep import Sweep as Sweep
+    from equipoise.vibration.sweep import sweep_speed as sweep_speed
+    from equipoise.vibration.transient import Transient as Transient
+    from equipoise.vibration.transient import from_rest as from_rest
     from equipoise.web.widget import view as view
 
 

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.conditions import Conditions, Kind, conditions, parameter_scales
-from equipoise.balancing.least import least_moments
+from equipoise.balancing.least_norm import least_moments
+from equipoise.balancing.linear_conditions import Conditions, Kind, conditions, parameter_scales
+from equipoise.balancing.physical_consistency import ASKED, Feasibility, feasibility
 from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
-from equipoise.balancing.verdict import ASKED, Verdict, verdict
 from support.machines import KINDS, make
 
 Array = np.ndarray[Any, Any]
@@ -96,7 +96,7 @@ def test_components_together_are_the_whole(kind: str, seed: int) -> None:
 def test_least_moments_balance_what_can_be_balanced(kind: str, seed: int) -> None:
     """Masses kept, all links free to move their centres of mass."""
     machine = replace(make(kind, seed).machine, loads=())
-    if not verdict(machine).force.masses_kept:
+    if not feasibility(machine).force.masses_kept:
         return
     links = [name for name, link in machine.links.items() if link.mass]
     found = least_moments(machine, links)
@@ -117,7 +117,7 @@ def test_a_no_has_a_proof(kind: str, seed: int) -> None:
     """The proof combines the conditions, and no admissible masses make it smaller than it says."""
     machine = make(kind, seed).machine
     rng = np.random.default_rng(5)
-    for answer in verdict(machine).answers:
+    for answer in feasibility(machine).answers:
         assert answer.possible == (answer.proof is None)
         if answer.proof is None:
             continue
@@ -157,7 +157,7 @@ MOMENT_ALWAYS = {"slider_crank", "slider_beside_pin", "scotch_yoke", "planetary_
 @every_machine
 def test_verdicts_by_kind(kind: str, seed: int) -> None:
     machine = heavy(make(kind, seed).machine)
-    found: Verdict = verdict(machine)
+    found: Feasibility = feasibility(machine)
     assert found.force.possible == (kind not in FORCE_NEVER)
     if kind in MOMENT_NEVER:
         assert not found.moment.possible
@@ -187,10 +187,10 @@ def test_physical_pendulum_with_geared_counterweight() -> None:
     assert coupler.mass is not None
     assert coupler.inertia is not None
     least = 4 * coupler.inertia / 0.075**2
-    for answer in (verdict(machine).moment, verdict(machine).both):
+    for answer in (feasibility(machine).moment, feasibility(machine).both):
         assert answer.added_mass is not None
         assert dict(answer.added_mass) == pytest.approx({"coupler": least - coupler.mass}, rel=1e-4)
-    enough = verdict(machine.with_link("coupler", mass=1.001 * least)).both
+    enough = feasibility(machine.with_link("coupler", mass=1.001 * least)).both
     assert enough.masses_kept
 
 

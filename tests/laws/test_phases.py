@@ -16,11 +16,10 @@ from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
 from equipoise.balancing.phase_cost import Combine
-from equipoise.balancing.phase_search import Search
-from equipoise.balancing.phases import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.rows_in_time import in_time, measured, side_by_side, value_of
-from unit.structures.build import Array
+from unit.vibration.build import Array
 
 TYPE_II = eq.load("yamashita-2")
 
@@ -120,7 +119,7 @@ def test_polished_to_ten_digits(case: str) -> None:
     count, wishes, combine = CASES[case]
     machine = side_by_side(TYPE_II, [0.4 * k * k for k in range(count)])
     found = choose_phases(machine, wishes, combine=combine)
-    cost = Search(machine, tuple(wishes), Phases(), combine).cost
+    cost = PhaseSearch(machine, tuple(wishes), Phases(), combine).cost
     start = np.array(found.phases)
     assert cost.values(start) == pytest.approx(found.combined[1], rel=1e-12)
     for size in (1e-3, 1e-6):

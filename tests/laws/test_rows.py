@@ -10,18 +10,15 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.phase_cost import Term
+from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.phase_cost import Term, Tops
 from equipoise.balancing.phase_grid import Grid
-from equipoise.balancing.phase_search import Search
-from equipoise.balancing.phase_tops import Tops
-from equipoise.balancing.phases import choose_phases
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
-from equipoise.structures.choice import usual_step
-from equipoise.structures.forced import respond
+from equipoise.vibration.forced import respond, usual_step
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
-from unit.structures.build import cart, rig
+from unit.vibration.build import cart, rig
 
 TYPE_II = eq.load("yamashita-2")
 SCALARS = (
@@ -123,7 +120,7 @@ def test_orders_that_count() -> None:
 def test_grid_by_pairs_of_rows(wishes: list[Objective]) -> None:
     """Tables of pairs give what the orders' sums give, on every arrangement of three rows."""
     machine = side_by_side(TYPE_II, (0.0, 0.4, 0.9))
-    cost = Search(machine, tuple(wishes), Phases(), "sum").cost
+    cost = PhaseSearch(machine, tuple(wishes), Phases(), "sum").cost
     grid = Grid(cost, 12)
     assert grid.count == 12 * 13 // 2
     told: list[int] = []

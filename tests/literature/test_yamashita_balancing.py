@@ -26,10 +26,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.conditions import conditions
-from equipoise.balancing.least import least_moments
+from equipoise.balancing.least_norm import least_moments
+from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import sensitivities
-from equipoise.balancing.verdict import verdict
 
 Array = np.ndarray[Any, Any]
 
@@ -264,7 +264,7 @@ def test_equations_80_and_83_leave_the_torque_as_it_is(finger: Finger) -> None:
 @FINGERS
 def test_moment_cannot_be_balanced_by_the_links_themselves(finger: Finger) -> None:
     """Why rotation remains in (90): coupler and rocker would need no moment of inertia."""
-    found = verdict(finger.machine)
+    found = feasibility(finger.machine)
     assert found.force.masses_kept
     assert not found.moment.possible
     assert not found.both.possible

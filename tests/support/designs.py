@@ -95,7 +95,7 @@ def design(base: Machine, numbers: Sequence[Number], values: Sequence[float]) ->
 
 
 def reason_of(base: Machine, numbers: Sequence[Number], values: Sequence[float]) -> int:
-    """Why a design cannot be moved through its cycle, as a number of `fused.reasons`."""
+    """Why a design cannot be moved through its cycle, as a number of `codegen.figures`."""
     try:
         assemble(design(base, numbers, values)).cycle  # noqa: B018
     except ModelError:

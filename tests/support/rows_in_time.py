@@ -8,11 +8,11 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
-from unit.structures.build import Array
+from unit.vibration.build import Array
 
 
 def side_by_side(machine: eq.Machine, phases: Sequence[float], spacing: float = 0.3) -> eq.Machine:

@@ -75,8 +75,8 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     """Figures of all rows together, where there are several."""
     if len(machine.rows) < 2:
         return {}
+    from equipoise.balancing.multi_row import Rows
     from equipoise.balancing.phase_cost import Term
-    from equipoise.balancing.row_outputs import Rows
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}
@@ -91,8 +91,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
 def _of_support(machine: Machine) -> dict[str, float]:
     if machine.support is None:
         return {}
-    from equipoise.structures.choice import usual_step
-    from equipoise.structures.forced import respond
+    from equipoise.vibration.forced import respond, usual_step
 
     response = respond(machine, model=usual_step(machine))
     figures = {}

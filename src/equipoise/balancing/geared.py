@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.parts import Change, with_parameters
+from equipoise.balancing.design_variables import Change, with_parameters
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import BalanceShafts, GearedWeight

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from math import pi
 
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
-from equipoise.words import say, to_say
 
 RPM = 30 / pi
 OUTPUTS = {

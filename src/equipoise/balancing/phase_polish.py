@@ -12,8 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.phase_cost import Cost
-from equipoise.balancing.phase_tops import Pieces, Tops
+from equipoise.balancing.phase_cost import Cost, Pieces, Tops
 
 Array = np.ndarray[Any, Any]
 

@@ -9,13 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near, gauge_signals, supports_more
+from equipoise.balancing.design_variables import (
+    DesignVariables,
+    FreeSpring,
+    MovedCenter,
+    Square,
+    with_parameters,
+)
+from equipoise.balancing.effects import Effects, Near, gauge_signals, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
-from equipoise.balancing.parts import MovedCenter, Part, Square, with_parameters
+from equipoise.balancing.multi_row import counts_rows, of_all_rows
 from equipoise.balancing.program import Affine, Program
-from equipoise.balancing.rowed import counts_rows, of_all_rows
-from equipoise.balancing.springs import FreeSpring
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
@@ -45,7 +49,7 @@ class Problem:
     machine: Machine
     plan: Balance
     start: Machine
-    parts: tuple[Part, ...]
+    parts: tuple[DesignVariables, ...]
     close: Near
 
     @classmethod
@@ -54,11 +58,11 @@ class Problem:
         machine: Machine,
         plan: Balance,
         with_shafts: Machine | None = None,
-        more: Sequence[Part] = (),
+        more: Sequence[DesignVariables] = (),
     ) -> Problem:
         """From a plan; `with_shafts` is the machine with geared shafts, whose parts are `more`."""
         base = machine if with_shafts is None else with_shafts
-        parts: list[Part] = [MovedCenter(base, move) for move in plan.moves]
+        parts: list[DesignVariables] = [MovedCenter(base, move) for move in plan.moves]
         parts += [AddedWeight(base, m.link, m.at, m.weight) for m in plan.masses]
         parts += [*more, *(FreeSpring(base, choice) for choice in plan.springs)]
         _name_apart(parts)
@@ -335,7 +339,7 @@ class Built:
     squares: list[Square]
 
 
-def _name_apart(parts: list[Part]) -> None:
+def _name_apart(parts: list[DesignVariables]) -> None:
     """Give weights of one link names of their own."""
     weights = [part for part in parts if isinstance(part, AddedWeight)]
     for part in weights:

@@ -13,12 +13,13 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.wording import machine_size
+from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
 from equipoise.mechanism.instants import roots
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.parameters import QUANTITIES, regressor
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -60,8 +61,8 @@ class Sensitivity:
         return self.rms > 0
 
 
-@dataclass(frozen=True, eq=False)
-class Sensitivities:
+@dataclass(frozen=True, eq=False, repr=False)
+class Sensitivities(Result):
     """Sensitivities of one output, by link in file order and by change as in `CHANGES`.
 
     crank_angle : (N,) rad, over the whole cycle.  turns : of the crank in it.

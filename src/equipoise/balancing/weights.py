@@ -19,8 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.cuts import SPREAD, pieces_of
-from equipoise.balancing.parts import Bound, Change, Part, Square
+from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
+from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
@@ -46,7 +46,7 @@ MISSED = 3e-9
 """Of a sector's moment, scaled, that is taken for rounding."""
 
 
-class AddedWeight(Part):
+class AddedWeight(DesignVariables):
     """A weight about a point of a link."""
 
     mass_place = 0

@@ -56,9 +56,9 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
-    from equipoise import pipeline
-    from equipoise.io.models import load
-    from equipoise.results import order_values
+    from equipoise.results.analysis import analyze as analyzed
+    from equipoise.results.analysis import order_values
+    from equipoise.schema.models import load
 
     machine = load(file)
     check_belonging("--json", json or None, split=split or None)
@@ -77,15 +77,15 @@ def analyze(
         None if about is None else _place(machine, about),
     )
     with naming(file):
-        analysis = pipeline.analyze(machine, *arguments)
+        analysis = analyzed(machine, *arguments)
         told = {} if count is None else {"by_order": order_values(analysis, count, zero)}
     if csv is not None:
-        from equipoise.io.output import to_csv, write
+        from equipoise.schema.output import to_csv, write
 
         write(csv, to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(analysis.to_dict(split) | told))
     elif count is not None:
@@ -99,7 +99,7 @@ def analyze(
 
 
 def _angles(text: str) -> int | list[float]:
-    from equipoise.io.units import parse
+    from equipoise.quantities import parse
 
     if re.fullmatch("[+-]?[0-9]{1,20}", text):
         return int(text)

@@ -12,7 +12,7 @@ from equipoise.cli.options import check_belonging, check_target, naming, quantit
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 KINDS = ("svg", "gif", "mp4")
 SVG_FRAMES = 60
@@ -60,8 +60,8 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.figures.stage import check_seconds, check_width
-    from equipoise.io.models import load
-    from equipoise.io.output import write
+    from equipoise.schema.models import load
+    from equipoise.schema.output import write
 
     name = f"{os.path.basename(file).removesuffix('.toml')}.svg" if out is None else out
     kind = _kind(name)
@@ -81,7 +81,7 @@ def animate(
         options["dark"] = dark
     if kind == "mp4":
         options["turns"] = turns
-    from equipoise.pipeline import analyze
+    from equipoise.results.analysis import analyze
 
     with naming(file):
         found = analyze(machine, _angles(kind, seconds))

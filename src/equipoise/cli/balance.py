@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.front import Front
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
 
@@ -129,7 +129,7 @@ def balance(
     """
     from equipoise.cli.questions import tell_arrangements, tell_conditions, tell_sensitivities
     from equipoise.cli.wishes import Freed, plan_of
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
 
     check_belonging("--front", front, points=points)
     check_belonging("--sensitivities", sensitivities, crank_zero=crank_zero)
@@ -193,7 +193,7 @@ def _check_alone(questions: Mapping[str, object], others: Mapping[str, object]) 
 
 
 def _balance(machine: Machine, plan: Balance, out: str | None, wanted: Wanted) -> None:
-    from equipoise.balancing.balance import balance as solve
+    from equipoise.balancing.optimisation import balance as solve
     from equipoise.cli.progress import counted
 
     with counted("program") as progress:
@@ -224,8 +224,8 @@ def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
 
 def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
-    from equipoise.io.files import printable
-    from equipoise.io.models import files_of, save
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of, save
     from equipoise.terminal.changes import told
 
     machine = found.machine
@@ -241,7 +241,7 @@ def _save(found: Balanced, out: str) -> None:
 def _trade(
     machine: Machine, plan: Balance, both: Sequence[str], points: int, wanted: Wanted
 ) -> None:
-    from equipoise.balancing.front import trade_off
+    from equipoise.balancing.pareto import trade_off
     from equipoise.cli.progress import counted
     from equipoise.cli.wishes import read_objective
 

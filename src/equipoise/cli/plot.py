@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.report.pictures import Picture
-    from equipoise.studies.study import Model
+    from equipoise.studies.design_space import Model
 
 POINTS, MOST_POINTS = 51, 400
 """Values of each number of a map."""
@@ -112,9 +112,9 @@ def _pictures(
     folder: str,
     kind: Kind,
 ) -> None:
-    from equipoise.io.output import write_all
     from equipoise.plotting.style import render
     from equipoise.report.findings import ToolFindings, find
+    from equipoise.schema.output import write_all
 
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
@@ -168,9 +168,9 @@ def _map(
     from equipoise.cli.progress import counted
     from equipoise.cli.results import draw
     from equipoise.cli.wishes import read_objective
-    from equipoise.io.template import Template
     from equipoise.plotting.landscape import drawings, told
-    from equipoise.studies.landscape import landscape
+    from equipoise.schema.template import Template
+    from equipoise.studies.objective_map import landscape
 
     if len(over) != 2:
         count = "once" if len(over) == 1 else f"{len(over)} times"
@@ -226,7 +226,7 @@ def _split(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _read(model: Model, option: str, path: str, text: str) -> float:
     """A value of a number of the model, SI units."""
-    from equipoise.studies.variants import dimension
+    from equipoise.studies.objective_map import dimension
 
     try:
         kind = dimension(model, path)

@@ -99,7 +99,7 @@ def plan_of(
 
 
 def _freed(machine: Machine, plan: Balance, freed: Freed) -> Balance:
-    from equipoise.balancing.usual import pin_of
+    from equipoise.balancing.optimisation import pin_of
     from equipoise.mechanism.balance import AddedMass, CenterMove, Phases
 
     masses = []
@@ -131,7 +131,7 @@ def _check_link(option: str, machine: Machine, link: str) -> None:
 
 def _weight(machine: Machine, link: str, freed: Freed) -> Weight:
     """A weight of the given shape; in a room as large as the link where nothing else holds it."""
-    from equipoise.balancing.usual import reach_of
+    from equipoise.balancing.optimisation import reach_of
     from equipoise.mechanism.balance import MATERIALS, Weight
     from equipoise.mechanism.checks import unknown
 
@@ -249,9 +249,9 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
 
 
 def _limit(machine: Machine, head: str, tail: str) -> Limit:
-    from equipoise.io.shares import parse_share
     from equipoise.mechanism.balance import Limit
     from equipoise.mechanism.balance_outputs import quantity_of
+    from equipoise.schema.numbers import parse_share
 
     asked = read_objective("--limit", head)
     try:

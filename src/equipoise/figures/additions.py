@@ -11,20 +11,22 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.i18n import say
 from equipoise.mechanism.motion import Motion, move
-from equipoise.plotting.balancing.looks import MM, SHORT, grams
 from equipoise.plotting.style import short, shown
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.balancing.parts import Change
+    from equipoise.balancing.design_variables import Change
     from equipoise.mechanism.balance import Balance, CenterMove
     from equipoise.mechanism.model import Machine
 
 Array = np.ndarray[Any, Any]
 
+MM = 1000.0
+SHORT = 16
+"""Signs that a link's name may have beside other words."""
 ANGLES = 720
 """In each turn."""
 AROUND = np.exp(2j * np.pi * np.arange(73) / 72)
@@ -213,8 +215,8 @@ def _rooms(posed: Posed, plan: Balance) -> Iterator[Mark]:
         if isfinite(weight.radius):
             middle = MM * posed.at(link, complex(*center))
             yield Mark("room", circle(middle, MM * weight.radius))
-    for move in plan.moves:
-        yield from _room_of_center(posed, move)
+    for moved in plan.moves:
+        yield from _room_of_center(posed, moved)
 
 
 def _room_of_center(posed: Posed, move: CenterMove) -> Iterator[Mark]:
@@ -224,3 +226,8 @@ def _room_of_center(posed: Posed, move: CenterMove) -> Iterator[Mark]:
     if move.x is not None and move.y is not None:
         box = [complex(move.x[i], move.y[j]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
         yield Mark("room", np.array([MM * posed.at(move.link, corner) for corner in box]))
+
+
+def grams(mass: float) -> str:
+    """A mass (kg) as a workshop would tell it."""
+    return f"{shown(mass)} kg" if mass >= 10 else f"{shown(MM * mass)} g"

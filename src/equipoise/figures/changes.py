@@ -11,7 +11,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
-from equipoise.figures.additions import Mark, Posed, marks, posed_well
+from equipoise.figures.additions import MM, Mark, Posed, marks, posed_well
 from equipoise.figures.drawing import (
     Drawn,
     Panel,
@@ -22,13 +22,12 @@ from equipoise.figures.drawing import (
     key_of,
 )
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
-from equipoise.plotting.balancing.looks import MM
 from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import coils, zigzag
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -27,8 +27,8 @@ MOST_PIXELS = 600_000_000
 MOST_COLORS = 255
 """In a GIF, and the number of one that is not known yet."""
 ENCODING = {"crf": "18", "threads": "1", "bf": "0"}
-"""Options of the encoder: how good, and the same bytes on every run: frames that are told from later
-ones come out of it with other bytes now and then."""
+"""Options of the encoder: how good, and that its bytes are the same on every run: frames that
+are told from later ones differ now and then."""
 BT_709 = 1
 """Number of the standard by which players turn a film's brightness and hue into colours."""
 
@@ -178,7 +178,7 @@ def _counted(frames: Iterator[Array], count: int, told: Told | None) -> Iterator
             told(done, count)
 
 
-# -- colours of a GIF --------------------------------------------------------------------------------
+# -- colours of a GIF ------------------------------------------------------------------------------
 
 
 class Shades:

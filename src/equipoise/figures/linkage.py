@@ -24,6 +24,7 @@ from equipoise.figures.drawing import (
     moving,
 )
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.mechanism.motion import move
 from equipoise.plotting.style import (
     INK,
@@ -41,13 +42,12 @@ from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, plac
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import LIGHT
 from equipoise.symbols.scene import Scene
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.mechanism.motion import Motion
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -1,5 +1,7 @@
 """The picture of both paths of the tip: relative to the machine, and over ground."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -11,6 +13,7 @@ from matplotlib.figure import Figure
 from equipoise.figures.drawing import UNIT, Drawn, arrow, draw_machine, draw_still, keep_clear
 from equipoise.figures.labels import Labels
 from equipoise.figures.paths import BOTTOM, CM, GAP, LEFT, RIGHT, TOP, Mark, Paths, panels
+from equipoise.i18n import say
 from equipoise.plotting.crank import angle_step
 from equipoise.plotting.style import (
     FAINT,
@@ -28,7 +31,6 @@ from equipoise.plotting.style import (
     shown,
 )
 from equipoise.symbols.shapes import line, soil
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -146,7 +148,7 @@ def _other_unit(axes: Axes, paths: Paths, places: Array, number: int) -> None:
     axes.plot(x, CM * places.imag, color=FAINT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2)
 
 
-# -- what is marked on the paths ---------------------------------------------------------------------
+# -- what is marked on the paths -------------------------------------------------------------------
 
 
 def _dots(axes: Axes, marks: Sequence[Mark], labels: Labels) -> None:

@@ -11,11 +11,11 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.plotting.style import shown
 from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT
-from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 

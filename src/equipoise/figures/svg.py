@@ -17,8 +17,8 @@ import numpy as np
 
 from equipoise.figures.moving import Moving, Part, Stroke, laid_out
 from equipoise.figures.stage import Arrow, Label, Moves, check_seconds, check_width
+from equipoise.i18n import say
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.symbols.scene import Scene

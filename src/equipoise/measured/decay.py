@@ -10,10 +10,10 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.measured.estimate import Quantity
+from equipoise.measured.fits import WholeFit, fit_whole, line_of_swings
 from equipoise.measured.record import Kind, Record, positive
-from equipoise.measured.swings import line_of_swings
 from equipoise.measured.turning import Turns, find_turns
-from equipoise.measured.wholefit import WholeFit, fit_whole
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -27,8 +27,8 @@ MOST_ROUNDING = 1e-6
 """A residual below this share of the first half-swing is rounding, not noise."""
 
 
-@dataclass(frozen=True, eq=False)
-class Decay:
+@dataclass(frozen=True, eq=False, repr=False)
+class Decay(Result):
     """What a free decay tells; see docs/decay.md.
 
     record : as it was identified, in m or rad.

@@ -8,6 +8,7 @@ from math import inf, isfinite, pi
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import ModelError
+from equipoise.quantities.units import HUGE, TINY
 
 if TYPE_CHECKING:
     from equipoise.mechanism.frozen import Frozen
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     )
 
 FRAME = "frame"
-HUGE, TINY = 1e30, 1e-30
-"""Limits of what is taken for a quantity in SI units."""
+
 
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500}
 MOST_SHOWN = 20

@@ -14,7 +14,7 @@ from math import hypot, radians
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.checks import FRAME, HUGE, problems, unknown
+from equipoise.mechanism.checks import FRAME, problems, unknown
 from equipoise.mechanism.field import Planting, wrong_planting
 from equipoise.mechanism.frozen import Frozen
 from equipoise.mechanism.motor import Motor, wrong_motor
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
 
 __all__ = [
     "FRAME",
-    "HUGE",
     "Drive",
     "Gear",
     "Link",

@@ -19,9 +19,9 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import Call
 from equipoise.planting.designs import Designs, Sense
-from equipoise.planting.goals import Goal
-from equipoise.planting.judge import LIMITS, Problem
+from equipoise.planting.goals import LIMITS, Goal, Problem
 from equipoise.planting.summary import PlantingFigures, plant
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
@@ -44,8 +44,8 @@ INSIDE = 1e-7
 """Steps by which the polish stays inside the limits, so that its own tolerance keeps them too."""
 
 
-@dataclass(frozen=True, eq=False)
-class Fit:
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit(Result):
     """Result of a search.
 
     machine : the design found.

@@ -9,9 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.text import Annotation
 
+from equipoise.i18n import say
 from equipoise.plotting.style import SMALL
 from equipoise.plotting.vibration.panels import Unit, name_y
-from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 Read = Mapping[str, tuple[Array, Array]]

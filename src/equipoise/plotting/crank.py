@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, MAIN, degrees_shown, short, shown
-from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 

@@ -15,6 +15,7 @@ from matplotlib.ticker import MaxNLocator
 
 from equipoise.balancing.naming import objective_named
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.style import (
     FAINT,
     INK,
@@ -27,12 +28,11 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place, told_speed
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.studies.landscape import Landscape
+    from equipoise.studies.objective_map import Landscape
 
 Array = np.ndarray[Any, Any]
 

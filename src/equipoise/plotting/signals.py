@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from equipoise import signals
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.instants import largest, smallest
 from equipoise.plotting.crank import Line, closed, crank_axis, crank_label, draw, mark
 from equipoise.plotting.stay import event_lines, event_names, soil_shade
 from equipoise.plotting.style import LINES, NORMAL, STRESS, blank, heading, short
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics import Forces, JointForce

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from equipoise.figures.labels import spread
+from equipoise.i18n import say
 from equipoise.plotting.style import INSTANTS, LINES, SMALL, SOIL, degrees_shown
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures

@@ -16,7 +16,7 @@ from matplotlib import font_manager
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from equipoise.words import to_say
+from equipoise.i18n import to_say
 
 Kind = Literal["svg", "png", "pdf"]
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 from math import pi
 
 import equipoise
+from equipoise.i18n import say, speaking, to_say
 from equipoise.report.document import Block, Document, Listing, Paragraph, Points, Section
 from equipoise.report.drawing import drawings
 from equipoise.report.effects import balance_blocks, planting_blocks, vibration_blocks
@@ -23,7 +24,6 @@ from equipoise.report.tables import (
 )
 from equipoise.report.tool import tool_answers, tool_tiles
 from equipoise.report.tool_tables import design_table, exposure_blocks, mode_blocks, tool_model
-from equipoise.words import say, speaking, to_say
 
 TITLES = {
     "model": to_say("Model"),
@@ -52,7 +52,7 @@ MODELS = {
     ),
     "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
 }
-"""What each model of the support stands for; as `structures.response.EQUATIONS`."""
+"""What each model of the support stands for; as `vibration.response.EQUATIONS`."""
 
 MOST_TRACED = 3
 """Points whose paths are drawn beside the moving linkage, where no finger plants."""

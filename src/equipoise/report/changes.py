@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from math import degrees
 from typing import Any
 
-from equipoise.balancing.parts import Change
+from equipoise.balancing.design_variables import Change
+from equipoise.i18n import say
 from equipoise.report.numbers import number, place
-from equipoise.words import say
 
 
 def told(change: Change) -> Iterator[str]:

@@ -9,11 +9,11 @@ import warnings
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import say
 from equipoise.plotting.style import render, styled
 from equipoise.report.document import Block, Drawing
 from equipoise.report.findings import Findings, ToolFindings
 from equipoise.report.pictures import SECTIONS, each
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

@@ -8,6 +8,7 @@ from math import pi
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
 from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import PlantingFigures
 from equipoise.report.changes import told
@@ -16,9 +17,8 @@ from equipoise.report.findings import Findings
 from equipoise.report.helps import nothing_told
 from equipoise.report.notes import noted
 from equipoise.report.numbers import PER_RPM, about, angle, change, number
-from equipoise.structures.response import Response
-from equipoise.structures.sweep import Sweep
-from equipoise.words import say, to_say
+from equipoise.vibration.response import Response
+from equipoise.vibration.sweep import Sweep
 
 MOST_RESONANCES = 8
 

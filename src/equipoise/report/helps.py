@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.naming import objective_named, output_named, scaled, unit_of
+from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.report.changes import told
 from equipoise.report.findings import Findings
 from equipoise.report.numbers import brief, capital, change, percent
-from equipoise.words import say
 
 WORSE, MOST_WORSE = 0.1, 3
 NOTHING = 1e-9

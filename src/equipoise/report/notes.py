@@ -9,10 +9,10 @@ from __future__ import annotations
 import re
 from functools import cache
 
-from equipoise.words import say, spoken, to_say
+from equipoise.i18n import say, spoken, to_say
 
 SENTENCES = (
-    # structures
+    # vibration
     to_say("{name} does not touch at rest, and is left out"),
     to_say("{name} would have to pull, which it cannot; the model exact lets it go"),
     to_say("the support falls over by itself: it does not stand in the drawn position"),

@@ -6,9 +6,9 @@ from collections.abc import Iterator
 from math import pi
 
 from equipoise.balancing.naming import scaled
+from equipoise.i18n import say
 from equipoise.report.findings import Findings
 from equipoise.report.numbers import PER_RPM, angle, brief
-from equipoise.words import say
 
 
 def vibration_told(found: Findings) -> Iterator[str]:

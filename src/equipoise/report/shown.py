@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import to_say
 from equipoise.plotting.style import styled
 from equipoise.report.findings import Findings
-from equipoise.words import to_say
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
     from equipoise.planting.summary import PlantingFigures
-    from equipoise.structures.response import Response
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
 
 Entry = tuple[str, str, Callable[[], "Figure"]]
 """Name, caption, and what draws it inside `plotting.style.styled`."""

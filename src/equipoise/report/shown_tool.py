@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from equipoise.i18n import to_say
 from equipoise.report.findings import ToolFindings
 from equipoise.report.shown import Entry, Part, pages
-from equipoise.words import to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.transmission import Transmissions
 
 
 def of_tool(found: ToolFindings) -> Iterator[Part]:

@@ -10,6 +10,7 @@ import numpy as np
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.naming import CAUSES, joint_named, objective_named
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import Findings
 from equipoise.report.helps import good_already, helps_told
@@ -17,7 +18,6 @@ from equipoise.report.numbers import PER_RPM, angle, brief, change, percent
 from equipoise.report.outcomes import planting_told, vibration_told
 from equipoise.report.shaking import Shaking, shares
 from equipoise.signals import Figures
-from equipoise.words import say
 
 SMALL = 0.005
 """Share of a link or cause below which it is not named."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.words import LANGUAGES
+from equipoise.i18n import LANGUAGES
 
 if TYPE_CHECKING:
     from equipoise.report.document import Document
@@ -77,6 +77,6 @@ def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -
 
 
 def _write(out: str | os.PathLike[str], data: bytes) -> None:
-    from equipoise.io.output import write_all
+    from equipoise.schema.output import write_all
 
     write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})

@@ -227,10 +227,12 @@ def _ends(scene: Scene, guide: Guide) -> tuple[Array, Array]:
 def _links(scene: Scene) -> Iterator[Piece]:
     slotted = {guide.on for guide in scene.guides}
 
-    def order(body: Body) -> tuple[bool, float, float]:
+    def order(body: Body) -> tuple[bool, int, int]:
         corners = scene.corners(body)
         area = float(np.sum((np.conj(corners) * np.roll(corners, -1)).imag)) / 2
-        return body.name not in slotted, -area, -float(abs(np.ptp(corners)))
+        length = float(np.max(abs(corners - corners[0])))
+        finest = scene.unit / 100  # what is less is rounding
+        return body.name not in slotted, -round(area / finest**2), -round(length / finest)
 
     for body in sorted(scene.bodies, key=order):
         yield Piece("links", tuple(_body(scene, body)), _with(body), body.name)

@@ -11,8 +11,8 @@ from equipoise.signals import Figures, figures
 from equipoise.terminal.tables import PER_RPM, angle, number, span, table
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.fourbar import FourBar
-    from equipoise.results import Analysis
+    from equipoise.mechanism.assessment import FourBar
+    from equipoise.results.analysis import Analysis
 
 
 def largest(found: Figures, scale: float = 0.0) -> str:

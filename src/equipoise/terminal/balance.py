@@ -14,7 +14,7 @@ from equipoise.terminal.tables import PER_RPM, Row, number, table
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.front import Front
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.model import Machine
 
 EXACT = 1e-12

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.terminal.tables import number
 
 if TYPE_CHECKING:
-    from equipoise.balancing.parts import Change
+    from equipoise.balancing.design_variables import Change
 
 
 def told(change: Change) -> Iterator[str]:

@@ -11,10 +11,10 @@ import numpy as np
 from equipoise.terminal.tables import Row, angle, number, table
 
 if TYPE_CHECKING:
-    from equipoise.balancing.conditions import Conditions
-    from equipoise.balancing.least import Added
+    from equipoise.balancing.least_norm import Added
+    from equipoise.balancing.linear_conditions import Conditions
+    from equipoise.balancing.physical_consistency import Feasibility
     from equipoise.balancing.sensitivity import Sensitivities, Sensitivity
-    from equipoise.balancing.verdict import Verdict
     from equipoise.mechanism.model import Machine
 
 KINDS = {"zero": "zero", "sine": "a pure sine of the crank angle"}
@@ -37,7 +37,7 @@ CHANGES = {
 
 
 def print_conditions(
-    machine: Machine, found: Iterable[Conditions], told: Verdict | None = None
+    machine: Machine, found: Iterable[Conditions], told: Feasibility | None = None
 ) -> None:
     """Conditions, one table for each kind, and whether they can be met."""
     print(machine.title)

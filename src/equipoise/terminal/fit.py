@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import dimension_of
 from equipoise.terminal.planting import EXTREMES, PATH, SOIL
 from equipoise.terminal.tables import Row, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
     from equipoise.planting.goals import Goal
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.quantities.units import Dimension
 
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (

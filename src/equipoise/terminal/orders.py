@@ -10,7 +10,7 @@ from equipoise.signals import Periodic
 from equipoise.terminal.tables import Row, angle, number, table
 
 if TYPE_CHECKING:
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 TITLES = {
     "mass_center.ax": ("Common centre of mass, acceleration along x", "m/s2"),

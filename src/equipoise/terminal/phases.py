@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.patterns import Pattern, arranged, patterns_for
 from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.row_outputs import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.terminal.tables import angle, number, table
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from equipoise.balancing.phases import Phasing
+    from equipoise.balancing.phase_search import Phasing
     from equipoise.mechanism.model import Machine
 
 MOST_ORDERS = 8

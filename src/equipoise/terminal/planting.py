@@ -6,14 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from equipoise.planting.moments import finger_base
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import dimension_of
+from equipoise.planting.stroke import finger_base
 from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.quantities.units import Dimension
 
 INSTANTS = ("pick_up", "entry", "lowest", "release", "exit", "highest")
 """Columns of the table of instants; it begins with the first that there is."""

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.model import PLANES
 from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.units import Units
-from equipoise.tools.model import PLANES
-from equipoise.tools.wishes import KEYS
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import PlaneModes, ToolModes
-    from equipoise.tools.studies import Variation
-    from equipoise.tools.sweep import ToolSweep
-    from equipoise.tools.transmission import Transmission
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import PlaneModes, ToolModes
+    from equipoise.handheld.studies import Variation
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.handheld.transmission import Transmission
 
 Array = np.ndarray[Any, Any]
 
@@ -247,9 +247,9 @@ def print_variation(found: Variation, units: Units) -> None:
 
 def in_units(key: str, units: Units) -> tuple[float, str]:
     """Factor and unit in which a number of a station is printed."""
-    from equipoise.io.unit_lists import KINDS
+    from equipoise.quantities.units import KINDS
 
     dimension = KEYS[key]
     if dimension in units.chosen:
         return units.value(1.0, dimension), units.name(dimension)  # type: ignore[arg-type]
-    return 1.0, KINDS[dimension].units[0]  # type: ignore[index]
+    return 1.0, KINDS[dimension].si  # type: ignore[index]

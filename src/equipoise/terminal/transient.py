@@ -10,8 +10,8 @@ from equipoise.terminal.tables import Array, Row, number, table
 from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
-    from equipoise.io.unit_lists import Dimension
-    from equipoise.structures.transient import Transient
+    from equipoise.quantities.units import Dimension
+    from equipoise.vibration.transient import Transient
 
 PARTS = 5
 """Equal stretches of the time, of which the first and the last show whether it has settled."""

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from equipoise.errors import UsageError
-from equipoise.io.unit_factors import FACTORS
-from equipoise.io.unit_lists import KINDS, Dimension
+from equipoise.quantities.units import FACTORS, KINDS, Dimension
 from equipoise.terminal.tables import number
 
 USUAL: dict[Dimension, str] = {

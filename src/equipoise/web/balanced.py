@@ -8,13 +8,12 @@ from math import dist, isclose
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.balance import balance
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
 from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
-from equipoise.balancing.phase_search import Search
+from equipoise.balancing.optimisation import balance, default_plan
+from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.usual import usual_plan
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.report.changes import told
@@ -36,7 +35,7 @@ def balanced(base: Design) -> Balanced:
     A counterweight of which the plan is free to choose another is replaced: the plan begins
     without it, and what was before is nevertheless the machine as it is shown.
     """
-    plan = base.plan or usual_plan(base.machine)
+    plan = base.plan or default_plan(base.machine)
     free = _replaced(base, plan)
     found = balance(base.without(free).machine, plan)
     if not free:
@@ -61,7 +60,7 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     """Value of each objective, SI units, as `balance` tells it."""
     if plan.phases is None:
         return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
-    search = Search(machine, plan.objectives, plan.phases, plan.combine)
+    search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
     return {term.objective.name: term.told(search.present) for term in search.cost.terms}
 
 

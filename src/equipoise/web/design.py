@@ -9,7 +9,7 @@ from functools import cached_property
 from math import cos, pi, sin
 from types import MappingProxyType
 
-from equipoise.balancing.usual import reach_of
+from equipoise.balancing.optimisation import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.balance import Balance

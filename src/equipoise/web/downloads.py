@@ -7,11 +7,11 @@ from threading import Lock
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.io.models import dumps
-from equipoise.io.output import to_csv
+from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
+from equipoise.schema.models import dumps
+from equipoise.schema.output import to_csv
 from equipoise.web.edits import Solved
-from equipoise.words import LANGUAGES
 
 KINDS = {
     "model": (".toml", "application/toml"),

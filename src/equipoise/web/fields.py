@@ -8,10 +8,10 @@ from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
-from equipoise.io.unit_lists import KINDS, Dimension
-from equipoise.io.units import format_exact, rounded
 from equipoise.mechanism.model import Link, Machine, Vector, size_of
 from equipoise.mechanism.support import Mount
+from equipoise.quantities import format_exact, rounded
+from equipoise.quantities.units import KINDS, Dimension
 from equipoise.web.design import Design, pin_of
 
 Put = Callable[[Design, float], Design]

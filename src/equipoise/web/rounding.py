@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from math import floor, isfinite, log10
 
-from equipoise.io.unit_lists import Dimension
-from equipoise.io.units import parse, rounded
-from equipoise.mechanism.checks import HUGE, TINY
 from equipoise.mechanism.model import Vector
+from equipoise.quantities import parse, rounded
+from equipoise.quantities.units import HUGE, TINY, Dimension
 
 DIGITS, SHORT = 12, 9
 """Significant ones that are kept, and those of a number that somebody may have meant in SI."""

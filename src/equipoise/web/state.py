@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.tip import surface_of
-from equipoise.results import Analysis
+from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.symbols.scene import Scene
 from equipoise.web.edits import Solved, extent_of, movable

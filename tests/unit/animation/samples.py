@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import equipoise as eq
 from equipoise.figures.stage import Arrow
-from equipoise.results import Analysis
+from equipoise.results.analysis import Analysis
 from equipoise.symbols.scene import Scene
 
 

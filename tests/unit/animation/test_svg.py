@@ -12,8 +12,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.figures.svg import animated_svg
+from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
-from equipoise.words import speaking
 from unit.animation.samples import analyzed, prepared, three_turns
 
 NAME = "{http://www.w3.org/2000/svg}"

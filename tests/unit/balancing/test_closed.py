@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.balance import balance
-from equipoise.balancing.closed import closed_form
+from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.solution import closed_form
 from equipoise.mechanism.balance import (
     AddedMass,
     Balance,
@@ -46,7 +46,7 @@ PLANS = {
 def test_the_cone_program_finds_the_same(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     found = balance(MACHINE, PLANS[name])
     assert (found.method, found.gap, found.looked_at) == ("closed form", 0.0, 0)
-    monkeypatch.setattr("equipoise.balancing.optimum.closed_form", lambda problem: None)
+    monkeypatch.setattr("equipoise.balancing.solution.closed_form", lambda problem: None)
     program = balance(MACHINE, PLANS[name])
     assert program.method == "cone program"
     assert found.cost == pytest.approx(program.cost, abs=1e-8)

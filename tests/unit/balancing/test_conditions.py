@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.conditions import conditions
-from equipoise.balancing.wording import joint_length, reading
+from equipoise.balancing.linear_conditions import conditions, joint_length, reading
 from equipoise.errors import MassError, RangeError, UsageError
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 

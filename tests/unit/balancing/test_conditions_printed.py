@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.conditions import conditions
-from equipoise.balancing.least import least_moments
+from equipoise.balancing.least_norm import least_moments
+from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
-from equipoise.balancing.verdict import verdict
 from equipoise.terminal.conditions import print_added, print_conditions, print_sensitivities
 
 
@@ -19,7 +19,7 @@ def words(text: str) -> str:
 
 def test_conditions(capsys: pytest.CaptureFixture[str]) -> None:
     given = eq.load("yamashita-1")
-    print_conditions(given, [conditions(given), conditions(given, "sine")], verdict(given))
+    print_conditions(given, [conditions(given), conditions(given, "sine")], feasibility(given))
     text = words(capsys.readouterr().out)
     assert "Conditions for which the shaking force is zero" in text
     assert "Conditions for which the shaking force is a pure sine of the crank angle" in text

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.front import trade_off
+from equipoise.balancing.pareto import trade_off
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 

@@ -12,8 +12,7 @@ import pytest
 from scipy.optimize import minimize
 
 import equipoise as eq
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near, _by_numbers, gauge_signals, supports_more
+from equipoise.balancing.effects import Effects, Near, _by_numbers, gauge_signals, supports_more
 from equipoise.balancing.measures import measured
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError
@@ -25,8 +24,8 @@ from equipoise.mechanism.balance import (
     Objective,
     Weight,
 )
-from equipoise.structures.choice import usual_step
-from equipoise.structures.linear import Linear
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear
 
 RIG, ROWS = eq.load("yamashita-rig"), eq.load("riding-transplanter")
 POINT = AddedMass("crank", "A", Weight("point", 0.07, at_most=0.8))
@@ -175,7 +174,7 @@ def test_the_loudest_of_several_speeds_counts() -> None:
 @pytest.mark.parametrize("shares", [(1.0, 0.5), (0.5, 0.25, 0.1)])
 def test_a_disc_stays_a_disc(shares: tuple[float, ...], monkeypatch: pytest.MonkeyPatch) -> None:
     """Whatever steps led there: its inertia is that of its own mass and size."""
-    monkeypatch.setattr("equipoise.balancing.optimum.SHARES", shares)
+    monkeypatch.setattr("equipoise.balancing.solution.SHARES", shares)
     plan = Balance(masses=(DISC, POINT), objectives=(WIDTH,))
     found = eq.balance(RIG, plan)
     for link, center in (("rocker", "D"), ("crank", "A")):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.least import least_moments
+from equipoise.balancing.least_norm import least_moments
 from equipoise.errors import MassError, UsageError
 from unit.mechanism.build import crank_rocker, slider_crank
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.parts import Change, Square, with_parameters
+from equipoise.balancing.design_variables import Change, Square, with_parameters
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.parameters import parameter_values
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.patterns import (
     PATTERNS,
     Pattern,
@@ -16,7 +17,6 @@ from equipoise.balancing.patterns import (
     pattern_named,
     patterns_for,
 )
-from equipoise.balancing.row_outputs import Rows
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row

@@ -11,8 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
-from equipoise.balancing.phase_search import Search
-from equipoise.balancing.phases import choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine
@@ -85,8 +84,8 @@ def test_sorted_choices(levels: int, count: int) -> None:
     assert [tuple(row) for row in sorted_choices(levels, count).tolist()] == expected
 
 
-def search(machine: Machine, *objectives: Objective, step: float = 5.0) -> Search:
-    return Search(machine, objectives, Phases(radians(step)), "sum")
+def search(machine: Machine, *objectives: Objective, step: float = 5.0) -> PhaseSearch:
+    return PhaseSearch(machine, objectives, Phases(radians(step)), "sum")
 
 
 def test_rows_that_are_alike() -> None:

@@ -10,8 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.effects import Effects
+from equipoise.balancing.multi_row import of_all_rows
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.rowed import of_all_rows
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.support import Row
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.phases import choose_phases
+from equipoise.balancing.phase_search import choose_phases
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
 

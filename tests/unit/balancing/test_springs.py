@@ -7,9 +7,9 @@ import pytest
 from scipy.optimize import minimize
 
 import equipoise as eq
+from equipoise.balancing.design_variables import FreeSpring
 from equipoise.balancing.measures import measured
 from equipoise.balancing.program import Program
-from equipoise.balancing.springs import FreeSpring
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
 from equipoise.mechanism.spring import Spring
 from support.machines import make

@@ -5,21 +5,21 @@ from __future__ import annotations
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.usual import usual_plan
+from equipoise.balancing.optimisation import default_plan
 from equipoise.cli.wishes import Freed, plan_of
 from equipoise.errors import MassError
 
 
 def test_a_machine_is_balanced_as_its_file_says() -> None:
     machine = eq.load("balance-crank")
-    assert usual_plan(machine) is machine.balance
+    assert default_plan(machine) is machine.balance
 
 
 def test_else_by_a_counterweight_on_the_crank_as_the_command_has_it() -> None:
     machine = eq.load("yamashita-1")
     asked = plan_of(machine, Freed(crank_counterweight=True), ["rms shaking_force"], None)
-    assert usual_plan(machine) == asked
-    found = eq.balance(machine, usual_plan(machine))
+    assert default_plan(machine) == asked
+    found = eq.balance(machine, default_plan(machine))
     (change,) = found.changes
     assert (change.link, change.values["at"]) == ("crank", "A")
     ((before, after),) = found.objectives.values()
@@ -28,7 +28,7 @@ def test_else_by_a_counterweight_on_the_crank_as_the_command_has_it() -> None:
 
 def test_rows_are_balanced_by_their_phases() -> None:
     """A counterweight on each crank does nothing where opposite rows have cancelled order 1."""
-    found = eq.balance(eq.load("riding-transplanter"), usual_plan(eq.load("riding-transplanter")))
+    found = eq.balance(eq.load("riding-transplanter"), default_plan(eq.load("riding-transplanter")))
     assert [change.kind for change in found.changes] == ["phases"]
     ((before, after),) = found.objectives.values()
     assert after < 0.5 * before
@@ -36,6 +36,6 @@ def test_rows_are_balanced_by_their_phases() -> None:
 
 def test_a_machine_without_masses_has_nothing_to_balance() -> None:
     with pytest.raises(MassError, match="crank"):
-        usual_plan(
+        default_plan(
             eq.load("yamashita-1").with_link("crank", mass=None, center_of_mass=None, inertia=None)
         )

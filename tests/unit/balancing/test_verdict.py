@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.verdict import verdict
+from equipoise.balancing.physical_consistency import feasibility
 from unit.mechanism.build import ORIGIN, crank_rocker, heavy, machine, slider_crank, two_gears
 
 
@@ -17,7 +17,7 @@ def test_in_line_slider_crank() -> None:
 
     For both, J / l^2 + m_piston = 0, which no masses meet.
     """
-    found = verdict(slider_crank())
+    found = feasibility(slider_crank())
     assert found.force.masses_kept
     assert found.moment.masses_kept
     assert not found.both.possible
@@ -30,7 +30,7 @@ def test_in_line_slider_crank() -> None:
 
 
 def test_four_bar() -> None:
-    found = verdict(crank_rocker())
+    found = feasibility(crank_rocker())
     assert found.force.masses_kept
     assert found.force.by_points
     for answer in (found.moment, found.both):
@@ -48,17 +48,17 @@ def test_four_bar_of_mass_points() -> None:
     given = crank_rocker()
     for link in given.links:
         given = given.with_link(link, inertia=0.0)
-    assert verdict(given).both.masses_kept
+    assert feasibility(given).both.masses_kept
 
 
 def test_lone_crank() -> None:
-    found = verdict(machine({"A": ORIGIN}, {"crank": heavy(A=ORIGIN, B=(0.3, 0.0))}))
+    found = feasibility(machine({"A": ORIGIN}, {"crank": heavy(A=ORIGIN, B=(0.3, 0.0))}))
     assert all(answer.masses_kept for answer in found.answers)
     assert found.force.reason == "The shaking force can be made zero, with every mass as it is."
 
 
 def test_wheels_that_turn_evenly() -> None:
-    found = verdict(two_gears(eq.Gear("crank", "wheel", -1.0)))
+    found = feasibility(two_gears(eq.Gear("crank", "wheel", -1.0)))
     assert all(answer.masses_kept for answer in found.answers)
 
 
@@ -81,7 +81,7 @@ def test_opposed_pistons_must_weigh_the_same() -> None:
             eq.Slider("right", "T", "frame", "H", 0.0),
         ),
     )
-    found = verdict(given).force
+    found = feasibility(given).force
     assert found.possible
     assert not found.masses_kept
     assert found.added_mass is not None
@@ -94,21 +94,21 @@ def test_opposed_pistons_must_weigh_the_same() -> None:
 
 def test_a_link_without_mass_needs_some() -> None:
     given = slider_crank().with_link("rod", mass=0.0, inertia=0.0, center_of_mass=ORIGIN)
-    found = verdict(given).force
+    found = feasibility(given).force
     assert found.possible
     assert dict(found.added_mass or {}) == {"rod": 0.0}
     assert "some mass, however little, on rod" in found.reason
 
 
 def test_a_yoke_cannot_be_balanced() -> None:
-    found = verdict(eq.load("scotch-yoke")).force
+    found = feasibility(eq.load("scotch-yoke")).force
     assert found.proof is not None
     assert (found.proof.text, found.proof.unit) == ("yoke.mass", "kg")
     assert found.proof.least == pytest.approx(1.2, rel=1e-6)
 
 
 def test_plain_data() -> None:
-    found = json.loads(json.dumps(verdict(slider_crank()).to_dict()))
+    found = json.loads(json.dumps(feasibility(slider_crank()).to_dict()))
     assert list(found) == ["shaking_force", "shaking_moment", "shaking_force_and_moment"]
     assert found["shaking_force"] == {
         "possible": True,
@@ -119,4 +119,4 @@ def test_plain_data() -> None:
         "proof": None,
     }
     assert found["shaking_force_and_moment"]["proof"]["unit"] == "kg"
-    assert str(verdict(slider_crank())).count("\n") == 2
+    assert str(feasibility(slider_crank())).count("\n") == 2

@@ -11,7 +11,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.balancing.parts import MovedCenter
+from equipoise.balancing.design_variables import MovedCenter
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.mechanism.balance import SHAPES, CenterMove, Shape, Weight, largest_mass

@@ -14,8 +14,8 @@ from matplotlib.text import Annotation
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.front import Front, trade_off
-from equipoise.balancing.phases import Phasing, choose_phases
+from equipoise.balancing.pareto import Front, trade_off
+from equipoise.balancing.phase_search import Phasing, choose_phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
 from equipoise.plotting.balancing import drawings

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from equipoise.plotting.linkage import Sketch, sketch
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -14,7 +13,6 @@ from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.plotting.planting import drawings
-from equipoise.symbols.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
 BUNDLED = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -67,10 +65,6 @@ def odd_machines() -> dict[str, Machine]:
         "deep": a.with_planting(depth=0.2),
         "springs": sprung(a),
     }
-
-
-def sketched(machine: Machine, at: float) -> Sketch:
-    return sketch(Scene.of(eq.move(machine, [at])))
 
 
 @cache

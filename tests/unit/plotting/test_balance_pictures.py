@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.usual import usual_plan
+from equipoise.balancing.optimisation import default_plan
 from equipoise.plotting.balancing import drawings
 from equipoise.plotting.balancing.looks import paired
 from equipoise.plotting.bars import bars as draw_bars
@@ -173,7 +173,7 @@ def test_rounding_is_nothing() -> None:
 @pytest.mark.parametrize("name", ["planetary-planting-arm", "scotch-yoke"])
 def test_a_moment_that_is_always_zero_is_no_curve(name: str) -> None:
     machine = eq.load(name)
-    drawn = drawings(eq.balance(machine, usual_plan(machine)))["moment"]
+    drawn = drawings(eq.balance(machine, default_plan(machine)))["moment"]
     assert "zero at every crank angle" in words(drawn)
     assert not np.any(line(drawn.axes[0], 0).imag)
 

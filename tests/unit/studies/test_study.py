@@ -11,10 +11,19 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.io.studies import restore
-from equipoise.io.template import Template
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
+from equipoise.schema.studies import restore
+from equipoise.schema.template import Template
+from equipoise.studies.design_space import (
+    Choices,
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Uniform,
+    Vary,
+)
+from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 
 GRID = {"method": "grid", "designs": None}

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.io.units import format_exact
+from equipoise.quantities import format_exact
 from equipoise.web.edits import movable
 from unit.web.pages import ask, edit, move, opened, refusal
 

@@ -13,12 +13,12 @@ from equipoise.plotting.analysis.joints import joint_polars_figures, joints_figu
 from equipoise.plotting.analysis.polar import polar_figure
 from equipoise.plotting.analysis.spectrum import spectrum_figure
 from equipoise.plotting.vibration import numbered
-from equipoise.results import LEAST_ANGLES
+from equipoise.results.analysis import LEAST_ANGLES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 __all__ = [
     "curves_figure",

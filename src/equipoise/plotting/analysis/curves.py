@@ -11,6 +11,7 @@ from matplotlib.lines import Line2D
 
 from equipoise.figures.drawing import Drawn, arrow, draw_machine, hold, keep_clear, moving, traced
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import LINE_LOOKS, MM, over, title, unit_of
 from equipoise.plotting.crank import angle_step
 from equipoise.plotting.hodograph import nothing_there, numbers, origin, square, told_angles
@@ -27,13 +28,12 @@ from equipoise.plotting.style import (
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place, told_speed
 from equipoise.symbols.scene import Scene
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.mechanism.motion import Motion
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from equipoise.balancing.naming import CAUSES
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import (
     ALL,
     LINE_LOOKS,
@@ -28,12 +29,11 @@ from equipoise.plotting.crank import draw, mark
 from equipoise.plotting.hodograph import nothing_there
 from equipoise.plotting.style import LINES, SMALL, short, shown, styled
 from equipoise.plotting.vibration.panels import legend, name_panel, name_y, stack
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

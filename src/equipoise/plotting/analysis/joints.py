@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from equipoise.i18n import say
 from equipoise.mechanism.dynamics import JointForce, SliderForce
 from equipoise.plotting.analysis.looks import (
     ALL,
@@ -37,10 +38,9 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

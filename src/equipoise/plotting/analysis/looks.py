@@ -10,18 +10,18 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from equipoise import signals
+from equipoise.i18n import say
 from equipoise.mechanism.kernels import cross
 from equipoise.plotting.crank import MOST_TICKS, Line, closed, crank_axis
 from equipoise.plotting.style import EARTH, INK, LINES, MAIN, STRESS, short, shown
 from equipoise.plotting.vibration.panels import Unit, by_phase, name_x, told_speed
 from equipoise.signals import Periodic
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -10,6 +10,7 @@ from matplotlib.patches import Circle
 
 from equipoise.figures.drawing import arrow, hold
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import (
     ALL,
     ROW_LOOKS,
@@ -33,12 +34,11 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -8,15 +8,15 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import ALL, ONE, about, each, has_rows, row_names, title
 from equipoise.plotting.bars import Read, bars, last_order
 from equipoise.plotting.style import FAINT, LINES, MAIN, styled
 from equipoise.plotting.vibration.panels import legend, name_panel, name_x, stack
 from equipoise.signals import Periodic
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.results import Analysis
+    from equipoise.results.analysis import Analysis
 
 Array = np.ndarray[Any, Any]
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from equipoise.balancing.front import Front
-from equipoise.balancing.phases import Phasing
+from equipoise.balancing.pareto import Front
+from equipoise.balancing.phase_search import Phasing
 from equipoise.figures.changes import changes_figure
 from equipoise.plotting.balancing.front import front_figure
 from equipoise.plotting.balancing.orders import orders_figures

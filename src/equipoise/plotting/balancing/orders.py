@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from equipoise.balancing.effects import SCALARS, VECTORS, Effects
+from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.naming import objective_named
-from equipoise.balancing.row_outputs import Rows
+from equipoise.i18n import say
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
@@ -26,7 +27,6 @@ from equipoise.plotting.vibration.panels import (
     told_speed,
 )
 from equipoise.signals import Periodic
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced

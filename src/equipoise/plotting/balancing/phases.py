@@ -10,13 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
-from equipoise.balancing.row_outputs import Rows
+from equipoise.balancing.multi_row import Rows
+from equipoise.figures.additions import MM
 from equipoise.figures.drawing import arrow
+from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.plotting.analysis.looks import settled
 from equipoise.plotting.balancing.looks import (
     LOOKS,
-    MM,
     WHEN,
     Pair,
     compare,
@@ -37,7 +38,6 @@ from equipoise.plotting.vibration.panels import (
     told_speed,
 )
 from equipoise.signals import Periodic
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.plotting.balancing.looks import (
     LOOKS,
     Pair,
@@ -36,7 +37,6 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -19,10 +19,10 @@ from equipoise.plotting.vibration import numbered
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.best import Best
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.studies.selection import Best
+    from equipoise.studies.tolerances import Tolerances
 
 Units = Mapping[str, "Unit"]
 Own = tuple["np.ndarray[Any, Any]", "np.ndarray[Any, Any]"]

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.style import INK, MAIN, blank, heading, short
 from equipoise.plotting.vibration.panels import (
     LEFT,
@@ -25,14 +26,13 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say
+from equipoise.studies.design_space import Make
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
-    from equipoise.studies.study import Make
 
 Array = np.ndarray[Any, Any]
 

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, INK, MAIN, STRESS, short, shown
 from equipoise.plotting.vibration.panels import (
     continued,
@@ -19,14 +20,13 @@ from equipoise.plotting.vibration.panels import (
     name_panel,
     name_y,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
-    from equipoise.studies.scatter import Scatter
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.tolerances import Tolerances
+    from equipoise.studies.variance import Scatter
 
 ROW = 2.15
 """Inches: height of a row of panels."""

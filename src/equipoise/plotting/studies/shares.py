@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from equipoise.i18n import say
 from equipoise.plotting.style import MAIN, PALE, SMALL, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import LEFT as HEAD
 from equipoise.plotting.vibration.panels import (
@@ -20,12 +21,11 @@ from equipoise.plotting.vibration.panels import (
     name_panel,
     place,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.studies.tolerance import Cause, Tolerances
+    from equipoise.studies.tolerances import Cause, Tolerances
 
 LEFT, TOP, BOTTOM = 2.6, 0.62, 0.5
 """Inches: margins; at the left stand the paths."""

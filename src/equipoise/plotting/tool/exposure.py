@@ -11,10 +11,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from equipoise.exposure.directive import ACTION, LIMIT
-from equipoise.exposure.iso_5349 import EIGHT_HOURS
+from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.plotting.style import INK, PALE, blank, heading, short, shown
 from equipoise.plotting.tool.speeds import (
     SPEED,
@@ -44,10 +44,9 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.exposed import ToolExposure
+    from equipoise.handheld.exposed import ToolExposure
 
 Array = np.ndarray[Any, Any]
 

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, MAIN, STRESS, blank, heading, shown
 from equipoise.plotting.tool.shaft import (
     MM,
@@ -26,10 +27,9 @@ from equipoise.plotting.tool.shaft import (
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.vibration.curves import LINE, legend_at, rows_of
 from equipoise.plotting.vibration.panels import FOOT, WIDTH, place
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.tools.modes import PlaneModes, ToolModes
+    from equipoise.handheld.modes import PlaneModes, ToolModes
 
 Array = np.ndarray[Any, Any]
 

@@ -11,12 +11,12 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from equipoise.figures.labels import spread
+from equipoise.i18n import say, to_say
 from equipoise.plotting.style import FAINT, INK, LINES, SMALL, blank, inches, short
 from equipoise.plotting.vibration.panels import WIDTH
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Station, Tool
+    from equipoise.handheld.model import Station, Tool
 
 Array = np.ndarray[Any, Any]
 

@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.plotting.style import FAINT, LINES, shown
 from equipoise.plotting.vibration.curves import (
     DECADES,
@@ -20,10 +21,9 @@ from equipoise.plotting.vibration.curves import (
 )
 from equipoise.plotting.vibration.map import names_above
 from equipoise.plotting.vibration.panels import RPM
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
 
 Array = np.ndarray[Any, Any]
 

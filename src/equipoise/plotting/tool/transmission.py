@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, LINES, blank, heading, short
 from equipoise.plotting.tool.shaft import plane_named
 from equipoise.plotting.tool.speeds import (
@@ -43,11 +44,10 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.transmission import Transmissions
 
 Array = np.ndarray[Any, Any]
 

@@ -14,13 +14,13 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
 from equipoise.figures.labels import spread
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, NORMAL, SMALL, STRESS, fit, short
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, RPM, WIDTH, log_scale
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.structures.resonance import Resonance
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.free import Resonance
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from equipoise.figures.labels import spread
+from equipoise.i18n import say
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, SMALL, STRESS, blank, heading, shown
 from equipoise.plotting.vibration.curves import (
     LOUD_BAND,
@@ -22,10 +23,9 @@ from equipoise.plotting.vibration.curves import (
     speed_label,
 )
 from equipoise.plotting.vibration.panels import LEFT, RPM, WIDTH, name_x, name_y, place
-from equipoise.words import say
 
 if TYPE_CHECKING:
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

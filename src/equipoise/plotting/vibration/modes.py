@@ -9,16 +9,16 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import AXES
 from equipoise.plotting.style import NORMAL, blank, fit, heading, shown
 from equipoise.plotting.vibration.body import Shape, View
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, place
 from equipoise.plotting.vibration.view import draw_view, keys_of, settle, write_keys
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
-    from equipoise.structures.free import FreeVibration
-    from equipoise.structures.modes import Mode
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.modes import Mode
 
 VIEWS: dict[View, str] = {
     "side": to_say("from the side"),

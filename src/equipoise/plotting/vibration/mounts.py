@@ -13,6 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
+from equipoise.i18n import say
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, MAIN, PALE, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -34,12 +35,11 @@ from equipoise.plotting.vibration.signals import (
     phase_label,
     sampled,
 )
-from equipoise.structures.choice import usual_step
-from equipoise.structures.linear import Linear
-from equipoise.words import say
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear
 
 if TYPE_CHECKING:
-    from equipoise.structures.response import GaugeSignals, MountForce, Response
+    from equipoise.vibration.response import GaugeSignals, MountForce, Response
 
 Array = np.ndarray[Any, Any]
 

@@ -12,9 +12,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
+from equipoise.i18n import say
 from equipoise.plotting.crank import crank_label, runs_left
 from equipoise.plotting.style import FAINT, NORMAL, blank, fit, heading, shown
-from equipoise.words import say
 
 Array = np.ndarray[Any, Any]
 

@@ -8,6 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.i18n import say, to_say
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.style import LINES, SMALL, short, shown
 from equipoise.plotting.vibration.panels import (
@@ -19,11 +20,10 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.structures.response import Response
+    from equipoise.vibration.response import Response
 
 Array = np.ndarray[Any, Any]
 

@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.plotting.style import INK, LINES, blank, heading, shown
 from equipoise.plotting.vibration.curves import (
     KINDS,
@@ -41,12 +42,11 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
-from equipoise.words import say, to_say
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

@@ -14,6 +14,7 @@ from matplotlib.patches import Patch, Polygon
 from matplotlib.ticker import FuncFormatter
 
 from equipoise.figures.labels import Labels
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import Gauge, Mount, unit_vector
 from equipoise.plotting.style import INK, LINES, MAIN, PALE, STRESS, short, shown
 from equipoise.plotting.vibration.body import AXIS_SEEN, Shape, View, seen
@@ -23,7 +24,6 @@ from equipoise.plotting.vibration.symbols import (
     draw_pivot,
     draw_turning,
 )
-from equipoise.words import say, to_say
 
 Array = np.ndarray[Any, Any]
 

@@ -1,0 +1,207 @@
+"""The best numbers of all, where squares make a cone program not convex: branch and bound.
+
+Over an interval of y / w a square lies below its chord, so that the program with y^2 / w <= lift <=
+chord bounds the cost from below; with every ratio held where it was found, the program is exact and
+bounds it from above.  Intervals are cut where a square is missed most, until both meet.  Where the
+first solution misses no square, it is the best already.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import count
+from math import inf, isfinite
+
+import numpy as np
+
+from equipoise.balancing.design_variables import Square
+from equipoise.balancing.program import Array, NoSolutionError, Program, Solved, StalledError
+
+MISSED = 1e-8
+"""Of a square, scaled numbers, that is taken for rounding."""
+CLOSE = 2e-9
+"""Between the bounds, over the scale of the cost, at which the search ends."""
+MOST_NODES = 400
+TANGENT_WIDTHS = (0.3, 0.1, 0.03, 0.01, 1e-3, 1e-4)
+"""Over the interval: how far a ratio may go from where the square is replaced by its tangent."""
+WIDE = 10.0
+"""Half the first interval of a ratio without limits, over lengths of the machine."""
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Best:
+    """The best numbers that were found: x, its value, a proved lower bound, prices of limits.
+
+    program : whose solution x is, with every square that matters held exactly.
+    nodes : intervals that were looked at.
+    """
+
+    x: Array
+    value: float
+    bound: float
+    prices: dict[str, float]
+    program: Program
+    nodes: int
+
+
+@dataclass(frozen=True, eq=False)
+class _Node:
+    """Intervals of the squares' ratios, and the solution of the program over them."""
+
+    intervals: tuple[tuple[float, float], ...]
+    solved: Solved
+
+
+def minimise(
+    program: Program,
+    squares: Sequence[Square],
+    scale: float = 1.0,
+    progress: Progress | None = None,
+    above: float = inf,
+) -> Best:
+    """The least cost.
+
+    Parameters
+    ----------
+    squares : those whose lifts change the cost or a limit; the program keeps them above already.
+    scale : of the cost.
+    above : a cost that has been reached already; a problem whose bound lies above is not looked
+        into, and its bound returned as if it were its cost.
+
+    Raises
+    ------
+    NoSolutionError : the constraints cannot be met.
+    """
+    search = _Search(program, squares, scale)
+    return search.run(progress, above)
+
+
+class _Search:
+    def __init__(self, program: Program, squares: Sequence[Square], scale: float) -> None:
+        self.program, self.squares = program, squares
+        self.scale = scale
+        self.best: Best | None = None
+        self.nodes = 0
+        self.lost = inf  # the least bound of intervals that could not be looked into
+
+    def run(self, progress: Progress | None, above: float) -> Best:
+        self.nodes += 1
+        intervals = tuple((square.low, square.high) for square in self.squares)
+        root = _Node(intervals, self.program.solve())  # which keeps to these intervals already
+        if self._exact(root) or root.solved.bound > above:
+            return self._as_best(root.solved, self.program, root.solved.bound)
+        if any(not isfinite(s.high - s.low) for s in self.squares):
+            root = self._node(tuple(_finite(s) for s in self.squares))
+        order = count()
+        waiting = [(root.solved.bound, next(order), root)]
+        bound = root.solved.bound
+        while waiting and self.nodes < MOST_NODES:
+            bound = waiting[0][0]
+            if self._closed(bound):
+                break
+            _, _, node = heapq.heappop(waiting)
+            self._try(node)
+            for intervals in self._halves(node):
+                try:
+                    half = self._node(intervals)
+                except StalledError:
+                    self.lost = min(self.lost, node.solved.bound)
+                    continue
+                except NoSolutionError:
+                    continue
+                if not self._closed(half.solved.bound):
+                    heapq.heappush(waiting, (half.solved.bound, next(order), half))
+            if progress is not None:
+                progress(self.nodes, MOST_NODES)
+        if self.best is None:
+            raise NoSolutionError("no numbers were found that meet every limit")
+        if not waiting:  # every other interval is worse than the best by less than is told apart
+            bound = self.best.value - CLOSE * self.scale
+        bound = min(self.best.value, self.lost, max(bound, root.solved.bound))
+        prices = self._prices(self.best)
+        return replace(self.best, bound=bound, prices=prices, nodes=self.nodes)
+
+    def _closed(self, bound: float) -> bool:
+        return self.best is not None and bound > self.best.value - CLOSE * self.scale
+
+    def _node(self, intervals: tuple[tuple[float, float], ...]) -> _Node:
+        self.nodes += 1
+        program = self.program.copy()
+        for square, (low, high) in zip(self.squares, intervals, strict=True):
+            square.keep_between(program, low, high)
+        return _Node(intervals, program.solve())
+
+    def _exact(self, node: _Node) -> bool:
+        return all(square.missed(node.solved.x) < MISSED for square in self.squares)
+
+    def _as_best(self, solved: Solved, program: Program, bound: float) -> Best:
+        return Best(solved.x, solved.value, bound, solved.prices, program, self.nodes)
+
+    def _try(self, node: _Node) -> None:
+        """Look for a better solution from where a node's lies."""
+        ratios = [square.ratio(node.solved.x) for square in self.squares]
+        self._hold(ratios)
+        for width in TANGENT_WIDTHS:
+            moved = self._along_tangent(ratios, width)
+            if moved is None:
+                return
+            if self._hold(moved):
+                ratios = moved
+
+    def _hold(self, ratios: list[float]) -> bool:
+        """Solve with the ratios held; whether that is better than the best so far."""
+        program = self.program.copy()
+        for square, ratio in zip(self.squares, ratios, strict=True):
+            square.keep_at(program, ratio)
+        try:
+            solved = program.solve()
+        except NoSolutionError:
+            return False
+        if self.best is not None and solved.value >= self.best.value:
+            return False
+        self.best = self._as_best(solved, program, -inf)
+        return True
+
+    def _along_tangent(self, ratios: list[float], width: float) -> list[float] | None:
+        """Ratios of the solution with every square replaced by its tangent there."""
+        try:
+            found = self._tangent(ratios, width).solve()
+        except NoSolutionError:
+            return None
+        return [square.ratio(found.x) for square in self.squares]
+
+    def _tangent(self, ratios: list[float], width: float) -> Program:
+        """The program with every square replaced by its tangent at a ratio."""
+        program = self.program.without_squares({square.lift for square in self.squares})
+        for square, ratio in zip(self.squares, ratios, strict=True):
+            low, high = _finite(square)
+            square.keep_tangent(program, ratio, width * (high - low))
+        return program
+
+    def _prices(self, best: Best) -> dict[str, float]:
+        """Prices where ratios are free to follow a limit, as they are not while they are held."""
+        ratios = [square.ratio(best.x) for square in self.squares]
+        try:
+            return self._tangent(ratios, TANGENT_WIDTHS[-1]).solve().prices
+        except NoSolutionError:
+            return best.prices
+
+    def _halves(self, node: _Node) -> list[tuple[tuple[float, float], ...]]:
+        """The node's intervals, with that cut in two whose square is missed most."""
+        missed = [square.missed(node.solved.x) for square in self.squares]
+        worst = int(np.argmax(missed))
+        low, high = node.intervals[worst]
+        middle, here = (low + high) / 2, self.squares[worst].ratio(node.solved.x)
+        cut = min(max((middle + here) / 2, low + 0.1 * (high - low)), high - 0.1 * (high - low))
+        before, after = node.intervals[:worst], node.intervals[worst + 1 :]
+        return [(*before, half, *after) for half in ((low, cut), (cut, high))]
+
+
+def _finite(square: Square) -> tuple[float, float]:
+    low = square.low if isfinite(square.low) else -WIDE
+    high = square.high if isfinite(square.high) else WIDE
+    return low, high

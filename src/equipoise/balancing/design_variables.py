@@ -1,0 +1,321 @@
+"""What is free to change, as numbers of a cone program with what they do to the links.
+
+Every part adds scaled numbers to the program, keeps them within its limits, says what a unit of
+each does to its link's inertial parameters, and reads the result back.  Where a number has to be
+the square of another over a third (the inertia of a mass that may move), the program can only keep
+it above; such squares are told, and `branch` makes equalities of them.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from math import hypot, inf
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.program import Affine, Program
+from equipoise.mechanism.balance import CenterMove, SpringChoice
+from equipoise.mechanism.model import Machine, Vector
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.parameters import spring_columns
+from equipoise.mechanism.spring import Spring
+
+Array = np.ndarray[Any, Any]
+
+ROUNDING = 1e-14
+"""Over a moment of inertia: what is left of it about the centre of mass that is rounding."""
+
+
+@dataclass(frozen=True)
+class Square:
+    """lift = y^2 / w, with y / w between `low` and `high`; numbers by place, w None for 1."""
+
+    lift: int
+    y: int
+    w: int | None
+    low: float
+    high: float
+
+    def ratio(self, x: Array) -> float:
+        """y / w, 0 where there is no w."""
+        w = 1.0 if self.w is None else float(x[self.w])
+        return min(max(float(x[self.y]) / w, self.low), self.high) if w > 0 else 0.0
+
+    def missed(self, x: Array) -> float:
+        """By how much the lift lies above y^2 / w."""
+        w = 1.0 if self.w is None else float(x[self.w])
+        return max(0.0, float(x[self.lift]) - (float(x[self.y]) ** 2 / w if w > 0 else 0.0))
+
+    def keep_above(self, program: Program) -> None:
+        """lift w >= y^2."""
+        program.rotated(Affine.of(self.lift, 1.0), self._over(), Affine.of(self.y, 1.0), self.lift)
+
+    def keep_between(self, program: Program, low: float, high: float) -> None:
+        """y / w in the interval, and the lift below the chord over it."""
+        w = self._over()
+        for limit, sign in ((low, 1.0), (high, -1.0)):
+            if abs(limit) < inf:
+                program.nonnegative(self._sum(w, 0.0, sign, -sign * limit))
+        if high - low < inf:
+            program.nonnegative(self._sum(w, -1.0, low + high, -low * high))
+
+    def keep_at(self, program: Program, ratio: float) -> None:
+        """y / w at a ratio, and the lift with it."""
+        w = self._over()
+        program.zero(self._sum(w, 0.0, 1.0, -ratio))
+        program.zero(self._sum(w, 1.0, 0.0, -(ratio**2)))
+
+    def keep_tangent(self, program: Program, ratio: float, width: float) -> None:
+        """y / w near a ratio, and the lift on the tangent there."""
+        w = self._over()
+        program.zero(self._sum(w, 1.0, -2 * ratio, ratio**2))
+        for sign in (1.0, -1.0):
+            program.nonnegative(self._sum(w, 0.0, sign, width - sign * ratio))
+
+    def _over(self) -> Affine:
+        """w as a row."""
+        return Affine.of([], np.zeros((1, 0)), 1.0) if self.w is None else Affine.of(self.w, 1.0)
+
+    def _sum(self, w: Affine, lift: float, y: float, over: float) -> Affine:
+        """The row lift * lift + y * y + over * w."""
+        columns = np.concatenate([[self.lift, self.y], w.columns])
+        factors = np.concatenate([[lift, y], over * w.factors[0]])
+        return Affine.of(columns, factors, over * w.constant[0])
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing to change, as a workshop needs it.
+
+    kind : ``center of mass``, ``added mass``, ``spring``, ``gears``, ``phases``.
+    link : what is changed.  values : its figures in SI units and radians.
+    """
+
+    kind: str
+    link: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"kind": self.kind, "link": self.link, **self.values}
+
+
+@dataclass(frozen=True)
+class Bound:
+    """A limit that a part has of itself: its name in the program, and what of it is used; SI."""
+
+    name: str
+    at_most: float
+    used: float
+    unit: str
+
+
+class DesignVariables(ABC):
+    """Numbers that are free, of one link.
+
+    count : how many.  mass_place : which of them is an added mass (and its unit, kg), or None.
+    """
+
+    link: str
+    count: int
+    mass_place: int | None = None
+    mass_unit: float = 1.0
+
+    @property
+    @abstractmethod
+    def effect(self) -> Array:
+        """(count, 4) mass, first moments and inertia about the link's origin for a unit of each."""
+
+    @abstractmethod
+    def constrain(self, program: Program, places: Array) -> list[Square]:
+        """Keep the numbers at their places within their limits."""
+
+    def tightened(self, numbers: Array, matters: Array) -> Array:
+        """The numbers (count,), with squares made equal, and inertia least where it does nothing.
+
+        matters : (count,) whether each number changes anything that is asked.
+        """
+        return numbers
+
+    def lightened(self, numbers: Array, matters: Array) -> Array:
+        """Numbers that do the same with the least mass."""
+        return numbers
+
+    def bounds(self, numbers: Array) -> list[Bound]:
+        """Limits that have a price."""
+        return []
+
+    def stopped(self, numbers: Array) -> str:
+        """What to tell where a number has come to an end that nobody asked for; else nothing."""
+        return ""
+
+    @abstractmethod
+    def changes(self, numbers: Array) -> list[Change]:
+        """What the numbers (count,) mean."""
+
+
+def with_parameters(machine: Machine, link: str, values: Array) -> Machine:
+    """The machine with mass, first moments and inertia of a link about its origin."""
+    mass, x, y, inertia = (float(value) for value in values)
+    if mass <= 0:
+        return machine.with_link(link, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0)
+    center = (x / mass, y / mass)
+    own = inertia - (x * x + y * y) / mass
+    own = own if own > ROUNDING * inertia else 0.0
+    return machine.with_link(link, mass=mass, center_of_mass=center, inertia=own)
+
+
+class MovedCenter(DesignVariables):
+    """The centre of mass of a link, moved: its coordinates over a length, and their squares.
+
+    The machine that it starts from has the centre in the link's origin.
+    """
+
+    count = 4
+
+    def __init__(self, machine: Machine, move: CenterMove) -> None:
+        body = machine.links[move.link]
+        assert body.mass is not None and body.center_of_mass is not None
+        self.link, self.move = move.link, move
+        self.mass, self.before = body.mass, body.center_of_mass
+        limits = [*(move.x or ()), *(move.y or ()), *(move.center or ()), move.radius or 0.0]
+        sizes = [hypot(*point) for point in body.points.values()] + [abs(x) for x in limits]
+        self.length = max(sizes) or 1.0
+
+    @property
+    def effect(self) -> Array:
+        first, second = self.mass * self.length, self.mass * self.length**2
+        return np.array([[0, first, 0, 0], [0, 0, first, 0], [0, 0, 0, second], [0, 0, 0, second]])
+
+    def constrain(self, program: Program, places: Array) -> list[Square]:
+        boxes = [self._box(axis) for axis in (0, 1)]
+        squares = []
+        for k, (low, high) in enumerate(boxes):
+            square = Square(int(places[2 + k]), int(places[k]), None, low, high)
+            square.keep_above(program)
+            square.keep_between(program, low, high)
+            squares.append(square)
+        if self.move.center is not None and self.move.radius is not None:
+            rows = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+            start = np.array([self.move.radius, *(-np.array(self.move.center))]) / self.length
+            slope = Affine(np.zeros((3, 0)), np.zeros(0, int), np.array([1 / self.length, 0, 0]))
+            circle = Affine(rows, places[:2], start)
+            program.cones(circle, 3, self._room, slope)
+        return squares
+
+    def _box(self, axis: int) -> tuple[float, float]:
+        """Limits of a coordinate, over the length."""
+        given = (self.move.x, self.move.y)[axis]
+        if given is not None:
+            return given[0] / self.length, given[1] / self.length
+        if self.move.center is not None and self.move.radius is not None:
+            middle = self.move.center[axis]
+            reach = self.move.radius
+            return (middle - reach) / self.length, (middle + reach) / self.length
+        return -inf, inf
+
+    def tightened(self, numbers: Array, matters: Array) -> Array:
+        before = np.array(self.before) / self.length
+        place = np.where(matters[:2] | matters[2:], numbers[:2], before)  # else it may stay
+        return np.concatenate([place, place**2])
+
+    @property
+    def _room(self) -> str:
+        return f"room of {self.link}'s centre of mass"
+
+    def bounds(self, numbers: Array) -> list[Bound]:
+        if self.move.center is None or self.move.radius is None:
+            return []
+        away = hypot(*(numbers[:2] * self.length - np.array(self.move.center)))
+        return [Bound(self._room, self.move.radius, float(away), "m")]
+
+    def changes(self, numbers: Array) -> list[Change]:
+        found = numbers[:2] * self.length
+        center: Vector = (float(found[0]), float(found[1]))
+        values = {"from": self.before, "to": center, "mass": self.mass}
+        return [Change("center of mass", self.link, values)]
+
+
+NOTHING = 1e-6
+"""Over the most: stiffness, and its product with the free length, that are none."""
+LONGEST = 2.0
+"""Free length over the largest distance of points, where none is given: longer and softer springs
+would pull ever more evenly, and have no end."""
+
+
+class FreeSpring(DesignVariables):
+    """Two numbers: stiffness over the most, and stiffness times free length over the most times a
+    length.
+    """
+
+    count = 2
+
+    def __init__(self, machine: Machine, choice: SpringChoice) -> None:
+        self.link, self.choice = choice.link, choice
+        place = complex(*machine.frame[choice.to])
+        sizes = [abs(complex(*p) - place) for p in machine.frame.values()]
+        sizes += [abs(complex(*p)) for p in machine.links[choice.link].points.values()]
+        self.length = max(choice.free_length or sizes) or 1.0
+
+    @property
+    def effect(self) -> Array:
+        return np.zeros((2, 4))
+
+    @property
+    def _units(self) -> Array:
+        """Stiffness, N/m, and constant pull, N, of a unit of each number."""
+        return np.array([self.choice.stiffness, self.choice.stiffness * self.length])
+
+    def constrain(self, program: Program, places: Array) -> list[Square]:
+        k, pull = map(int, places)
+        slope = Affine.of([], np.zeros((1, 0)), 1 / self.choice.stiffness)
+        program.nonnegative(Affine.of(k, 1.0))
+        program.nonnegative(Affine.of(k, -1.0, 1.0), self._name, slope)
+        low, high = self.choice.free_length or (0.0, LONGEST * self.length)
+        program.nonnegative(Affine.of([k, pull], [-low / self.length, 1.0]))
+        program.nonnegative(Affine.of([k, pull], [high / self.length, -1.0]))
+        return []
+
+    @property
+    def _name(self) -> str:
+        return f"stiffness on {self.link}"
+
+    def bounds(self, numbers: Array) -> list[Bound]:
+        most = self.choice.stiffness
+        return [Bound(self._name, most, float(numbers[0]) * most, "N/m")]
+
+    def stopped(self, numbers: Array) -> str:
+        longest = LONGEST * float(numbers[0])
+        if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
+            return ""
+        return (
+            f"the spring on {self.link} has come to twice the largest distance of points, "
+            "where its free length was stopped; give it free_length"
+        )
+
+    def columns(self, motion: Motion, output: str) -> Array:
+        """Effect (2, N) on the drive's torque or on a joint's force."""
+        choice = self.choice
+        torque, joints = spring_columns(motion, choice.link, choice.point, choice.to)
+        found = torque if output == "drive_torque" else joints[output.removeprefix("joints.")]
+        units = self._units * np.array([1.0, -1.0])  # the pull is towards the frame's point
+        return np.asarray(found * units[:, None])
+
+    def spring(self, numbers: Array) -> Spring | None:
+        """The spring, or None where there is to be none."""
+        stiffness, pull = numbers * self._units
+        if np.max(numbers) < NOTHING:
+            return None
+        choice = self.choice
+        free = float(pull / stiffness)
+        free = free if free > NOTHING * self.length else 0.0
+        return Spring(choice.link, choice.point, choice.to, float(stiffness), free)
+
+    def changes(self, numbers: Array) -> list[Change]:
+        spring = self.spring(numbers)
+        values: dict[str, Any] = {"point": self.choice.point, "to": self.choice.to}
+        values["stiffness"] = 0.0 if spring is None else spring.stiffness
+        values["free_length"] = 0.0 if spring is None else spring.free_length
+        return [Change("spring", self.link, values)]

@@ -1,0 +1,303 @@
+"""Which linear conditions on the inertial parameters balance a linkage, or leave it a pure sine.
+
+The shaking force and moment are linear in the parameters of all links, values @ columns.  What must
+vanish of them, all orders or all but the crank's own, is a matrix whose null space holds every
+balanced machine; grouped like base parameters, its rows are the conditions.  Four-bars get the
+conditions of Berkof and Lowen, which are (80) and (83) of Yamashita, Ichikawa and Mori.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine, size_of, unknown
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.parameters import (
+    QUANTITIES,
+    independent_columns,
+    parameter_names,
+    parameter_values,
+    regressor,
+)
+from equipoise.results.result import Result
+from equipoise.signals import harmonics
+
+Array = np.ndarray[Any, Any]
+Kind = Literal["zero", "sine"]
+
+KINDS: tuple[Kind, ...] = ("zero", "sine")
+OUTPUTS = ("shaking_force", "shaking_force.x", "shaking_force.y", "shaking_moment")
+ANGLES, MOST_ANGLES, LEAST_ANGLES = 360, 40_000, 40
+"""Crank angles in a turn; in a cycle of many turns, all together and still in a turn."""
+NOTHING = 1e-10
+"""Share of the largest effect of any parameter below which there is none."""
+RANK = 1e-12
+"""Share of an effect below which what earlier ones leave of it is rounding."""
+ROUNDING = 1e-13
+"""Of an effect, relative to itself."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Conditions(Result):
+    """Conditions coefficients @ values = 0, necessary and sufficient, none of which is superfluous.
+
+    kind : ``zero`` or ``sine``.  outputs : names of what they are about.
+    parameters : P pairs of link and quantity, about the origin of the link's axes.
+    coefficients : (B, P); the parameter that comes first in a row's order, first moments and
+        inertia of all links and then masses, has the coefficient 1.
+    residuals : (B,) what the machine's own parameters give, in `units`.
+    units : of each row's residual, by that parameter: kg m, kg m2, or kg of masses alone.
+    readings : each row in words, divided by lengths.  sentences : the same with "= 0".
+    without_effect : parameters that stand in no row.
+    """
+
+    kind: Kind
+    outputs: tuple[str, ...]
+    parameters: tuple[tuple[str, str], ...]
+    coefficients: Array
+    residuals: Array
+    units: tuple[str, ...]
+    readings: tuple[Reading, ...]
+
+    @property
+    def count(self) -> int:
+        return len(self.coefficients)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        return tuple(f"{one.text} = 0" for one in self.readings)
+
+    @property
+    def without_effect(self) -> tuple[tuple[str, str], ...]:
+        unused = ~np.any(self.coefficients, axis=0)
+        return tuple(self.parameters[k] for k in np.flatnonzero(unused))
+
+    def __str__(self) -> str:
+        return "\n".join(self.sentences)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units; coefficients by parameter, zeros left out."""
+        rows = []
+        for k, row in enumerate(self.coefficients):
+            terms = {".".join(self.parameters[j]): float(row[j]) for j in np.flatnonzero(row)}
+            rows.append(
+                {
+                    "condition": self.sentences[k],
+                    "coefficients": terms,
+                    "residual": float(self.residuals[k]),
+                    "unit": self.units[k],
+                }
+            )
+        names = [".".join(pair) for pair in self.without_effect]
+        outputs = list(self.outputs)
+        return {"kind": self.kind, "outputs": outputs, "conditions": rows, "without_effect": names}
+
+
+def conditions(
+    machine: Machine, kind: Kind = "zero", outputs: Sequence[str] = ("shaking_force",)
+) -> Conditions:
+    """Conditions under which outputs vanish, or are pure sines, at constant crank speed.
+
+    Parameters
+    ----------
+    kind : ``zero``, or ``sine``: each component has order 1 of the crank's speed alone.  (A mean
+        it never has.)
+    outputs : of ``shaking_force``, ``shaking_force.x``, ``shaking_force.y`` and
+        ``shaking_moment``, which is about the drive pivot.  Weight and loads are no part of them.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the linkage cannot turn fully.
+    UsageError : there is no such kind or output.
+    """
+    if kind not in KINDS:
+        raise UsageError(f"got {kind!r} for kind; give zero or sine")
+    wanted = _outputs(outputs)
+    scale = parameter_scales(machine)
+    effects, turns = _effects(machine, wanted)
+    matrix = _must_vanish(effects * scale[:, None, None], turns, kind)
+    leading, rows = _grouped(matrix, scale)
+    names, values = parameter_names(machine), parameter_values(machine)
+    return Conditions(
+        kind,
+        wanted,
+        names,
+        rows,
+        rows @ values,
+        tuple(UNITS[names[k][1]] for k in leading),
+        tuple(reading(machine, row) for row in rows),
+    )
+
+
+def parameter_scales(machine: Machine) -> Array:
+    """What one unit of mass at the size of the machine makes of each parameter (P,)."""
+    size = machine_size(machine)
+    return np.tile([1.0, size, size, size**2], len(machine.links))
+
+
+def _outputs(outputs: Sequence[str]) -> tuple[str, ...]:
+    wanted = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+    if not wanted:
+        raise UsageError("give at least one output, such as shaking_force")
+    for output in wanted:
+        if output not in OUTPUTS:
+            raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
+    return wanted
+
+
+def _effects(machine: Machine, outputs: tuple[str, ...]) -> tuple[Array, int]:
+    """Effect of each parameter on each component over a cycle (P, C, N), and the cycle's turns.
+
+    At 1 rad/s; moments are divided by the size of the machine, to stand beside forces.
+    """
+    turns = assemble(machine).cycle.turns
+    angles = max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns))
+    found = regressor(move(machine, angles, 1.0, 0.0))
+    force, size = found.shaking_force, machine_size(machine)
+    parts = {
+        "shaking_force": (force.real, force.imag),
+        "shaking_force.x": (force.real,),
+        "shaking_force.y": (force.imag,),
+        "shaking_moment": (found.shaking_moment / size,),
+    }
+    return np.stack([part for output in outputs for part in parts[output]], axis=1), turns
+
+
+def _must_vanish(effects: Array, turns: int, kind: Kind) -> Array:
+    """What must vanish of the effects (R, P): the amplitudes of all orders that are not allowed.
+
+    What rounding has left of an effect of allowed orders alone is no effect.
+    """
+    amplitudes = harmonics(effects)
+    sizes = np.linalg.norm(amplitudes.reshape(len(amplitudes), -1), axis=1)
+    if kind == "sine":
+        amplitudes[..., [0, turns]] = 0.0
+    rows = amplitudes.reshape(len(amplitudes), -1).T
+    rows[:, np.linalg.norm(rows, axis=0) <= NOTHING * np.max(sizes)] = 0.0
+    return np.concatenate([rows.real, rows.imag])
+
+
+def _grouped(matrix: Array, scale: Array) -> tuple[list[int], Array]:
+    """Leading parameter of each condition, and the conditions (B, P).
+
+    Masses come last in the order in which columns are grouped: so a condition is told by a first
+    moment wherever one can meet it.
+    """
+    masses = np.arange(matrix.shape[1]) % len(QUANTITIES) == QUANTITIES.index("mass")
+    order = np.argsort(masses, kind="stable")
+    if not np.any(matrix):
+        return [], np.zeros((0, matrix.shape[1]))
+    sizes = np.linalg.norm(matrix, axis=0)
+    sizes[sizes == 0] = 1.0
+    columns = (matrix / sizes)[:, order]
+    kept, grouping = independent_columns(columns, RANK)
+    rows = np.zeros_like(grouping)
+    rows[:, order] = _without_noise(columns[:, kept], grouping, columns)
+    leading = [int(order[k]) for k in kept]
+    factor = (scale / sizes)[leading]
+    return leading, rows * factor[:, None] * (sizes / scale)
+
+
+def _without_noise(kept: Array, grouping: Array, columns: Array) -> Array:
+    """Factors (B, P) of columns = kept @ factors, without those that only rounding has made.
+
+    Where the kept columns are nearly dependent, rounding makes factors that cancel each other.
+    Small ones are left out together, the others fitted anew, and this is taken where nothing is
+    lost by it.
+    """
+    noise = ROUNDING * np.linalg.norm(np.linalg.pinv(kept), axis=1)
+    found = grouping.copy()
+    for k, column in enumerate(columns.T):
+        used = np.abs(grouping[:, k]) > noise
+        fitted = np.linalg.lstsq(kept[:, used], column, rcond=None)[0] if np.any(used) else []
+        if np.linalg.norm(kept[:, used] @ fitted - column) <= ROUNDING:
+            found[:, k] = 0.0
+            found[used, k] = fitted
+    return found
+
+
+UNITS = dict(zip(QUANTITIES, ("kg", "kg m", "kg m", "kg m2"), strict=True))
+
+
+@dataclass(frozen=True)
+class Reading:
+    """A combination of inertial parameters in words.
+
+    text : such as ``coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm``.
+    factor : by which the combination was multiplied for it.  unit : of the text.
+    """
+
+    text: str
+    factor: float
+    unit: str
+
+
+def machine_size(machine: Machine) -> float:
+    """Diagonal of the largest link, or of the frame where all links are points, m."""
+    sizes = [size_of(link.points) for link in machine.links.values()]
+    return max(sizes) or size_of(machine.frame) or 1.0
+
+
+def joint_length(machine: Machine, link: str) -> float:
+    """Distance of a link's two joints that are farthest apart; its size where there are none, m."""
+    own = machine.links[link].points
+    others = [other.points for name, other in machine.links.items() if name != link]
+    slides = {name for slider in machine.sliders for name in (slider.point, slider.through)}
+    places = [
+        complex(*place)
+        for name, place in own.items()
+        if name in slides or any(name in body for body in (machine.frame, *others))
+    ]
+    apart = max((abs(a - b) for a, b in combinations(places, 2)), default=0.0)
+    return apart or size_of(own) or machine_size(machine)
+
+
+def reading(machine: Machine, row: Array, signed: bool = False) -> Reading:
+    """A combination (P,) of a machine's inertial parameters in words.
+
+    It is divided so that a mass stands alone, else so that the first moment that comes first stands
+    over the length of its link: as (80) and (83) of Yamashita, Ichikawa and Mori, divided by their
+    lengths.  Unless `signed`, it is turned so that the first term is positive.
+    """
+    names = parameter_names(machine)
+    terms = [(*names[k], float(row[k])) for k in np.flatnonzero(row)]
+    sign = -1.0 if terms[0][2] < 0 and not signed else 1.0
+    if len(terms) == 1:
+        link, quantity, value = terms[0]
+        text = f"{link}.{quantity}"
+        return Reading(f"-{text}" if sign * value < 0 else text, sign / abs(value), UNITS[quantity])
+    factor = sign / _divisor(machine, terms)
+    parts = [_term(link, quantity, factor * value) for link, quantity, value in terms]
+    return Reading(_joined(parts), factor, "kg")
+
+
+def _divisor(machine: Machine, terms: list[tuple[str, str, float]]) -> float:
+    """Positive, in SI units of a combination over kg."""
+    for wanted, power in (("mass", 0), ("moment", 1), ("inertia", 2)):
+        for link, quantity, value in terms:
+            if quantity.startswith(wanted):
+                return abs(value) * joint_length(machine, link) ** power
+    return 1.0
+
+
+def _term(link: str, quantity: str, value: float) -> tuple[str, str]:
+    """Sign and size of a term in kg."""
+    sign, size, name = "-" if value < 0 else "+", abs(value), f"{link}.{quantity}"
+    if quantity == "mass":
+        return sign, name if f"{size:.5g}" == "1" else f"{size:.5g} {name}"
+    if quantity == "inertia":
+        return sign, f"{name} / ({1e3 / size**0.5:.5g} mm)^2"
+    return sign, f"{name} / {1e3 / size:.5g} mm"
+
+
+def _joined(terms: list[tuple[str, str]]) -> str:
+    first = "-" if terms[0][0] == "-" else ""
+    return " ".join([first + terms[0][1], *(f"{sign} {text}" for sign, text in terms[1:])])

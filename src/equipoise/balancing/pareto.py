@@ -1,0 +1,159 @@
+"""The trade-off between two objectives: how small one can become for every value of the other.
+
+Each point is the least value of the second with the first as a limit, and as good as any can be.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.measures import unit_of
+from equipoise.balancing.optimisation import balance
+from equipoise.balancing.problem import Problem
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import Balance, Limit, Objective
+from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
+
+Array = np.ndarray[Any, Any]
+Progress = Callable[[int, int], None]
+
+POINTS = 21
+SAME, HELD = 1e-7, 3e-9
+"""Over the value before: less than this between the ends is no trade-off; how exactly the least
+second objective is held while the first is made small."""
+TOUCH = 1e-4
+"""Over the range: how far from the very end the first point lies, so that it can be reached."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Front(Result):
+    """A trade-off curve, from the least first objective to the least second one.
+
+    first, second : what is traded.  points : the balanced machine at each.
+    values : (P, 2) of both objectives, SI units.
+    """
+
+    original: Machine
+    first: Objective
+    second: Objective
+    points: tuple[Balanced, ...]
+    values: Array
+
+    @property
+    def gap(self) -> float:
+        """The largest of all points."""
+        return max(point.gap or 0.0 for point in self.points)
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values of both objectives, and of the added mass."""
+        masses = np.array([point.added_mass for point in self.points])
+        return [
+            (self.first.name, unit_of(self.first, self.original), self.values[:, 0]),
+            (self.second.name, unit_of(self.second, self.original), self.values[:, 1]),
+            ("added mass", "kg", masses),
+        ]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, SI units and radians."""
+        points = [
+            {
+                "first": value[0],
+                "second": value[1],
+                "added_mass": point.added_mass,
+                "gap": point.gap,
+                "changes": [change.to_dict() for change in point.changes],
+            }
+            for value, point in zip(self.values.tolist(), self.points, strict=True)
+        ]
+        before = {
+            one.name: Problem.value_of(self.original, one) for one in (self.first, self.second)
+        }
+        return {
+            "title": self.original.title,
+            "first": self.first.name,
+            "second": self.second.name,
+            "before": before,
+            "points": points,
+        }
+
+
+def trade_off(
+    machine: Machine,
+    first: Objective,
+    second: Objective,
+    plan: Balance | None = None,
+    points: int = POINTS,
+    progress: Progress | None = None,
+) -> Front:
+    """The least second objective for values of the first, from its own least upwards.
+
+    Parameters
+    ----------
+    plan : what may be changed, and limits; its objectives do not count.  That of the machine if
+        None.
+    points : of the curve.
+    progress : is called with how many points are done, and how many there are.
+
+    Raises
+    ------
+    UsageError : as in `balance`; or both objectives are smallest together.
+    """
+    plan = machine.balance if plan is None else plan
+    if plan is None:
+        plan = Balance()
+    if plan.phases is not None:
+        raise UsageError("a front is not drawn over phases; leave them out")
+    if first.name == second.name:
+        raise UsageError(f"{first.name} cannot be traded against itself; give another objective")
+    ends = [balance(machine, replace(plan, objectives=(one,))) for one in (first, second)]
+    ends[1] = _least_of_both(machine, plan, first, ends[1])
+    low, high = (Problem.value_of(end.machine, first) for end in ends)
+    before = ends[0].objectives[first.name][0] or 1.0
+    if high - low <= SAME * before:
+        raise UsageError(
+            f"{first.name} and {second.name} become smallest together, so that there is nothing to "
+            "trade"
+        )
+    found = []
+    for done, value in enumerate(_spaced(low, high, points), 1):
+        limit = Limit(first, at_most=value)
+        asked = replace(plan, objectives=(second,), limits=(*plan.limits, limit))
+        found.append(balance(machine, asked) if done < points else ends[1])
+        if progress is not None:
+            progress(done, points)
+    both = [[Problem.value_of(one.machine, which) for which in (first, second)] for one in found]
+    return Front(machine, first, second, tuple(found), np.array(both))
+
+
+def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Balanced) -> Balanced:
+    """Of all with the least second objective, the one with the least first, if it is found."""
+    (second,) = least.plan.objectives
+    before, after = least.objectives[second.name]
+    limit = Limit(second, at_most=after + HELD * before)
+    try:
+        found = balance(machine, replace(plan, objectives=(first,), limits=(*plan.limits, limit)))
+    except UsageError:  # as near to the least as that, there may be no room to move
+        return least
+    if Problem.value_of(found.machine, first) >= Problem.value_of(least.machine, first):
+        return least
+    value = Problem.value_of(found.machine, second)
+    return replace(
+        least,  # whose bound is that of the second objective
+        machine=found.machine,
+        changes=found.changes,
+        objectives={second.name: (before, value)},
+        cost=least.cost * value / after if after else least.cost,
+    )
+
+
+def _spaced(low: float, high: float, count: int) -> list[float]:
+    """Values from low to high, closer together near low, where the curve is steep."""
+    share = np.linspace(0.0, 1.0, count) ** 2
+    width = high - low
+    return [float(value) for value in low + width * (TOUCH + (1 - TOUCH) * share)]

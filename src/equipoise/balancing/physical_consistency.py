@@ -1,0 +1,354 @@
+"""Whether a linkage can be balanced completely by its own masses, and the proof where it cannot.
+
+Any distribution of mass in a link has mass m, first moment S and moment of inertia J about the
+origin of its axes with (J - I) m >= |S|^2, where I is the moment of inertia about the centre of
+mass: a convex set, of second-order cones.  Here m and I are no smaller than now.  A set of linear
+conditions, as those of `linear_conditions`, either has a solution among these, or a combination of
+the conditions has a positive least value for all masses (Farkas): the proof.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.linear_conditions import (
+    Conditions,
+    conditions,
+    machine_size,
+    parameter_scales,
+    reading,
+)
+from equipoise.balancing.program import Affine, NoSolutionError, Program
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.parameters import QUANTITIES
+
+Array = np.ndarray[Any, Any]
+
+MASS, X, Y, INERTIA = range(len(QUANTITIES))
+EXACT = (1e-10,)
+"""Asked of the solver: a link without mass has none, not even a billionth."""
+SMALL = 1e-6
+"""Relative to the mass of the machine, and this at its size: less is what the solver leaves."""
+TRACE = 1e-3
+"""The same, where a link without mass needs some."""
+PIVOT, ROUNDING = 1e-10, 1e-12
+"""Relative sizes below which a number counts as none."""
+SUSPECT = (1e-2, 1e-4, ROUNDING)
+"""Shares of the largest factor of a combination below which one may be rounding: tried in turn."""
+MOST = 1e4
+"""Times the mass of the machine, and this at its size: more no link gets, where the solver needs a
+bound."""
+
+
+@dataclass(frozen=True, eq=False)
+class ConsistentMasses:
+    """What masses are free to do, all relative to mass and size of the machine.
+
+    rows : (B, P) conditions, orthogonal to each other.
+    mass, inertia : (L,) least ones, inertia about centres of mass.
+    unit : kg.  scale : (P,) of the parameters, in SI units.
+    """
+
+    links: tuple[str, ...]
+    rows: Array
+    mass: Array
+    inertia: Array
+    unit: float
+    scale: Array
+
+    @classmethod
+    def of(cls, machine: Machine, found: Conditions) -> ConsistentMasses:
+        links = machine.links
+        mass = np.array([link.mass or 0.0 for link in links.values()])
+        inertia = np.array([link.inertia or 0.0 for link in links.values()])
+        unit = float(np.sum(mass)) or 1.0
+        scale = parameter_scales(machine) * unit
+        rows = np.linalg.qr((found.coefficients * scale).T)[0].T
+        least = inertia / (unit * machine_size(machine) ** 2)
+        return cls(tuple(links), rows, mass / unit, least, unit, scale)
+
+    def least_added(self) -> dict[str, float] | None:
+        """Least mass to be added, kg by link; None where no mass suffices.
+
+        0 stands for a link without mass that needs some, however little.
+        """
+        program, x, share = self._program()
+        program.zero(Affine.of(share, 1.0, -1.0))
+        exact = program.copy()
+        exact.zero(Affine.of(x[:, MASS], np.eye(len(x)), -self.mass))
+        # The cone says as much of a link without mass, but too faintly for the solver to be sure.
+        moments = x[self.mass == 0][:, [X, Y]].ravel()
+        exact.zero(Affine.of(moments, np.eye(len(moments))))
+        if exact.feasible(stalled=False):
+            return {}
+        program.cost = dict.fromkeys(x[:, MASS].tolist(), 1.0)
+        try:
+            masses = program.solve().x[x[:, MASS]]
+        except NoSolutionError:
+            return None
+        added = dict(zip(self.links, (masses - self.mass).tolist(), strict=True))
+        massless = {link for link, own in zip(self.links, self.mass, strict=True) if own == 0}
+        traces = {link for link in massless if SMALL < added[link] <= TRACE}
+        least = TRACE if traces else SMALL
+        found = {link: more * self.unit for link, more in added.items() if more > least}
+        return found | dict.fromkeys(sorted(traces), 0.0)
+
+    def by_points(self) -> bool:
+        """Whether links without moments of inertia could meet the conditions.
+
+        The conditions and the cones stay as they are when all masses grow alike; so moments of
+        inertia can be kept whole, with more mass, or not at all.
+        """
+        program, _, share = self._program()
+        program.nonnegative(Affine.of(share, [[1.0], [-1.0]], [0.0, 1.0]))
+        program.cost = {int(share): -1.0}  # with a cost the solver is surer than without one
+        try:
+            program.solve()
+        except NoSolutionError:
+            return False
+        return True
+
+    def _program(self) -> tuple[Program, Array, Any]:
+        """Parameters (L, 4) that meet the conditions, and the share of inertia that is kept."""
+        program = Program(tolerances=EXACT)
+        x = program.numbers(self.rows.shape[1]).reshape(-1, len(QUANTITIES))
+        share = program.numbers(1)[0]
+        program.zero(Affine.of(x.ravel(), self.rows))
+        program.nonnegative(Affine.of(x[:, MASS], np.eye(len(x)), -self.mass))
+        for (mass, first, second, inertia), own in zip(x, self.inertia, strict=True):
+            program.rotated(
+                Affine.of([inertia, share], [1.0, -own]),
+                Affine.of(mass, 1.0),
+                Affine.of([first, second], np.eye(2)),
+            )
+        return program, x, share
+
+    def contradiction(self) -> tuple[Array, float] | None:
+        """A combination (P,) of the conditions with a positive least value, and that value.
+
+        In SI units.  None where the solver found none: the conditions can be met, or as nearly as
+        one likes.
+        """
+        for bounded in (False, True):
+            program, y = self._combinations(bounded)
+            try:
+                found = program.solve().x[y]
+            except NoSolutionError:
+                continue
+            for share in SUSPECT:
+                combination = self._tidied(found, share)
+                size = float(np.max(np.abs(combination)))
+                if size <= SMALL:  # all of it is what the solver leaves of zero
+                    continue
+                least = self._least(combination / size)
+                if least > SMALL:
+                    return combination / self.scale, size * least
+        return None
+
+    def _combinations(self, bounded: bool) -> tuple[Program, Array]:
+        """Combinations y (B,) of the conditions, with minus their least value as cost.
+
+        The factors of all masses and inertias add up to at most 1.  Often one ray of combinations
+        alone has a least value for all masses; so that rounding does not lose it, bounds of mass
+        and inertia, with prices, leave room about it.
+        """
+        program = Program(tolerances=EXACT)
+        count = len(self.links)
+        y, lost = program.numbers(len(self.rows)), program.numbers(count)
+        prices = program.numbers(2 * count if bounded else 0)
+        factors = self.rows.T.reshape(count, len(QUANTITIES), -1)
+        for k, (own, less) in enumerate(zip(factors, lost, strict=True)):
+            light, slow = prices[k : k + 1], prices[count + k : count + k + 1]
+            one = np.ones(len(light))
+            program.nonnegative(Affine.of([*y, less, *light], [[*own[MASS], -1.0, *one]]))
+            program.rotated(
+                Affine.of([*y, *slow], [[*own[INERTIA], *one]]),
+                Affine.of(less, 1.0),
+                Affine.of(y, own[[X, Y]] / 2),
+            )
+        if bounded:
+            program.nonnegative(Affine.of(prices, np.eye(2 * count)))
+        whole = np.sum(factors[:, [MASS, INERTIA]], axis=(0, 1))
+        program.nonnegative(Affine.of(y, -whole, 1.0))
+        least = self.mass @ factors[:, MASS] + self.inertia @ factors[:, INERTIA]
+        bounds = MOST - np.concatenate([self.mass, self.inertia])
+        costs = [*-least, *self.mass, *bounds[: len(prices)]]
+        program.cost = dict(zip([*y, *lost, *prices], map(float, costs), strict=True))
+        return program, y
+
+    def _tidied(self, y: Array, share: float) -> Array:
+        """The combination (P,) next to one that has no factors below a share of the largest."""
+        combination = y @ self.rows
+        gone = np.abs(combination) < share * np.max(np.abs(combination))
+        unwanted = self.rows[:, gone].T
+        unwanted = np.where(np.abs(unwanted) < PIVOT, 0.0, unwanted)  # no inverse of rounding
+        tidied = (y - np.linalg.pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
+        return (
+            np.where(gone, 0.0, tidied)
+            if np.allclose(tidied[gone], 0.0, atol=1e-12)
+            else combination
+        )
+
+    def _least(self, combination: Array) -> float:
+        """Least value of a combination (P,); minus infinity where it has none.
+
+        Of a link's factors a it is a_J I + (a_m - |a_S|^2 / 4 a_J) m with the least m and I, where
+        the bracket is not negative.
+        """
+        total = 0.0
+        rounding = PIVOT * float(np.max(np.abs(combination)))
+        for own, mass, inertia in zip(
+            combination.reshape(-1, len(QUANTITIES)), self.mass, self.inertia, strict=True
+        ):
+            moments = float(own[X] ** 2 + own[Y] ** 2)
+            turning = max(float(own[INERTIA]), 0.0)
+            if turning > rounding:
+                lost = moments / (4 * turning)
+            else:
+                lost = np.inf if moments > rounding else 0.0
+            bracket = float(own[MASS]) - lost
+            if bracket < -SMALL or own[INERTIA] < -rounding:
+                return -np.inf
+            total += turning * inertia + max(bracket, 0.0) * mass
+        return total
+
+
+ASKED: dict[str, tuple[str, ...]] = {
+    "shaking force": ("shaking_force",),
+    "shaking moment": ("shaking_moment",),
+    "shaking force and moment": ("shaking_force", "shaking_moment"),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Proof:
+    """A combination of the conditions that no distribution of mass can make zero.
+
+    coefficients : (P,) of the parameters.  text : the combination in words.
+    least : the least value that it can have, in `unit`.
+    """
+
+    coefficients: Array
+    text: str
+    least: float
+    unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """Whether something can be balanced completely at constant crank speed, and why.
+
+    what : of `ASKED`.
+    possible : with every mass, and every moment of inertia about a centre of mass, at least as
+        large as now.
+    added_mass : least mass (kg) that has to be added to links, link -> kg; empty where every mass
+        can stay as it is, None where it is not possible.  0 stands for a link that has no mass and
+        needs some, however little.
+    by_points : whether it is possible if links have no moments of inertia about their centres of
+        mass, as mass points.  (With some of their moments of inertia, all is as with the whole.)
+    reason : a sentence.
+    proof : where it is not possible.
+    """
+
+    what: str
+    possible: bool
+    added_mass: Mapping[str, float] | None
+    by_points: bool
+    reason: str
+    proof: Proof | None
+
+    @property
+    def masses_kept(self) -> bool:
+        """Whether it is possible with every mass as it is."""
+        return self.added_mass is not None and not self.added_mass
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units."""
+        proof = None
+        if self.proof is not None:
+            proof = {name: getattr(self.proof, name) for name in ("text", "least", "unit")}
+        return {
+            "possible": self.possible,
+            "masses_kept": self.masses_kept,
+            "added_mass": None if self.added_mass is None else dict(self.added_mass),
+            "by_points": self.by_points,
+            "reason": self.reason,
+            "proof": proof,
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class Feasibility:
+    """What of a machine can be balanced completely by redistributing and adding mass."""
+
+    force: Answer
+    moment: Answer
+    both: Answer
+
+    @property
+    def answers(self) -> tuple[Answer, Answer, Answer]:
+        return self.force, self.moment, self.both
+
+    def __str__(self) -> str:
+        return "\n".join(answer.reason for answer in self.answers)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units."""
+        return {answer.what.replace(" ", "_"): answer.to_dict() for answer in self.answers}
+
+
+def feasibility(machine: Machine) -> Feasibility:
+    """Whether shaking force, shaking moment about the drive pivot, or both can be made zero.
+
+    Mass may be moved within every link and added to it; the crank's speed is constant.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    MotionError : the linkage cannot turn fully.
+    """
+    return Feasibility(*(_answer(machine, what) for what in ASKED))
+
+
+def _answer(machine: Machine, what: str) -> Answer:
+    masses = ConsistentMasses.of(machine, conditions(machine, "zero", ASKED[what]))
+    added = masses.least_added()
+    if added is not None:
+        return Answer(what, True, added, True, _possible(what, added), None)
+    proof, points = _proof(machine, masses), masses.by_points()
+    return Answer(what, False, None, points, _impossible(what, proof, points), proof)
+
+
+def _proof(machine: Machine, masses: ConsistentMasses) -> Proof | None:
+    found = masses.contradiction()
+    if found is None:
+        return None
+    row, least = found
+    words = reading(machine, row, signed=True)
+    return Proof(row * words.factor, words.text, least * words.factor, words.unit)
+
+
+def _possible(what: str, added: Mapping[str, float]) -> str:
+    if not added:
+        return f"The {what} can be made zero, with every mass as it is."
+    where = ", ".join(
+        f"{1e3 * more:.4g} g on {link}" if more else f"some mass, however little, on {link}"
+        for link, more in added.items()
+    )
+    return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
+
+
+def _impossible(what: str, proof: Proof | None, points: bool) -> str:
+    if proof is None:
+        return f"The {what} can at best be approached, by ever larger masses."
+    because = (
+        f"The {what} cannot be made zero: {proof.text} would have to be 0, but is at least "
+        f"{proof.least:.4g} {proof.unit} with masses and moments of inertia no smaller than now"
+    )
+    if points:
+        return f"{because}; only mass points, without moments of inertia, could do it."
+    return f"{because}."

@@ -1,0 +1,287 @@
+"""The best numbers of one problem: closed form, cone program, or branch and bound.
+
+The closed form is that of first moments where nothing but a mean square is asked: moved centres of
+mass without limits, and weights of given mass in rooms without limits.  Where nothing meets all
+limits, the fewest that clash are told, and how far one of them can be met.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from math import inf, isfinite
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.branch_and_bound import Best, minimise
+from equipoise.balancing.design_variables import Change, DesignVariables, MovedCenter
+from equipoise.balancing.measures import mean_square_rows, unit_of
+from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
+from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
+from equipoise.balancing.weights import AddedWeight
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import Limit
+from equipoise.mechanism.model import Machine
+
+Array = np.ndarray[Any, Any]
+Progress = Callable[[int, int], None]
+
+SLACK, WORSE = 2e-9, 5e-9
+"""Over the value before: by how much the cost may rise where that saves mass, as asked of the
+solver and as read off the signals."""
+STILL, SETTLED, ROUNDS = 1e-9, 1e-8, 20
+"""Changes of cost and of numbers at which gauges have been read near enough; steps from near to
+nearer."""
+SHARES = (1.0, 0.5, 0.25, 0.1, 0.03, 0.01, 0.003)
+"""Of a step towards the best of a nearby problem that are tried."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Best numbers of one problem, the machine that they make, and the gears it has.
+
+    ties : choices of gears that are as good.
+    """
+
+    problem: Problem
+    best: Best
+    numbers: list[Array]
+    machine: Machine
+    method: str
+    meshes: tuple[Change, ...] = ()
+    ties: int = 1
+
+
+def solve_problem(
+    problem: Problem, progress: Progress | None = None, above: float = inf
+) -> Solution:
+    """The best numbers of one problem; step by step from near to near, where gauges are read or
+    gears may change their flanks.
+
+    above : of several problems, the least cost so far.
+    """
+    problem = _begun(problem)
+    found = _solve_once(problem, progress, above)
+    bent = problem.reads_gauges and problem.supports_more
+    if not bent and not problem.flips:
+        return found
+    cost = problem.cost_of(found.machine)
+    for _ in range(ROUNDS):
+        near = problem.near(found.numbers)
+        towards = _solve_once(near, progress)
+        if _limits_gauges(problem):  # which are kept where they are read, not a step before
+            better = towards if _apart(found, towards) > SETTLED else None
+        else:
+            better = _on_the_way(near, found, towards, cost)
+        if better is None:
+            return replace(found, best=towards.best)
+        found, cost = better, problem.cost_of(better.machine)
+    return found
+
+
+def _limits_gauges(problem: Problem) -> bool:
+    return any(one.objective.output.startswith("gauges.") for one in problem.plan.limits)
+
+
+def _apart(one: Solution, other: Solution) -> float:
+    """The largest difference of any number, scaled."""
+    pairs = zip(one.numbers, other.numbers, strict=True)
+    return max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
+
+
+def _begun(problem: Problem) -> Problem:
+    """The problem, read near a machine that keeps the limits of gauges as far as can be.
+
+    Near the machine as it is, with a lighter support, they may look as if they could not be kept.
+    """
+    gauged = [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
+    if not gauged or not problem.supports_more:
+        return problem
+    others = tuple(one for one in problem.plan.limits if one not in gauged)
+    objectives = tuple(one.objective for one in gauged)
+    first = replace(problem, plan=replace(problem.plan, objectives=objectives, limits=others))
+    return problem.near(solve_problem(first).numbers)
+
+
+def _on_the_way(
+    problem: Problem, found: Solution, towards: Solution, cost: float
+) -> Solution | None:
+    """A solution between two that costs less than the first; None where there is none."""
+    for share in SHARES:
+        pairs = zip(found.numbers, towards.numbers, strict=True)
+        between = [(1 - share) * one + share * other for one, other in pairs]
+        numbers = problem.tightened(between)
+        machine = problem.machine_with(numbers)
+        if problem.cost_of(machine) < cost - STILL:
+            return replace(towards, numbers=numbers, machine=machine)
+    return None
+
+
+def _solve_once(problem: Problem, progress: Progress | None, above: float = inf) -> Solution:
+    problem.check_influence()
+    numbers = closed_form(problem)
+    if numbers is not None:
+        machine = problem.machine_with(numbers)
+        best = as_best(problem, problem.cost_of(machine))
+        return Solution(problem, best, numbers, machine, "closed form")
+    built = problem.built
+    try:
+        best = minimise(built.program, built.squares, problem.whole, progress, above)
+    except StalledError as error:
+        raise UsageError(f"{error}; change a limit a little, or free less") from error
+    except NoSolutionError:
+        raise infeasibility(problem) from None
+    numbers = problem.split(best.x) if above < inf else _lightest_numbers(problem, best)
+    numbers = problem.lightened(numbers)
+    method = "cone program" if best.nodes == 1 else "branch and bound"
+    return Solution(problem, best, numbers, problem.machine_with(numbers), method)
+
+
+def _lightest_numbers(problem: Problem, best: Best) -> list[Array]:
+    """Of the numbers that are as good, those that add the least mass."""
+    found = problem.split(best.x)
+    masses, units = problem.added_masses(problem.built.places)
+    if not len(masses) or (problem.reads_gauges and not problem.leaves_masses_open):
+        return found
+    program = best.program.copy()
+    terms = np.array(list(program.cost))
+    weights = np.array([program.cost[int(term)] for term in terms])
+    program.nonnegative(Affine.of(terms, -weights, best.value + SLACK * problem.whole))
+    program.cost = {int(m): float(u) for m, u in zip(masses, units / np.max(units), strict=True)}
+    try:
+        lighter = problem.split(program.solve().x)
+    except NoSolutionError:  # as near to the best as that, there may be no room to move
+        return found
+    worse = problem.cost_at(lighter) - best.value
+    return lighter if worse <= WORSE * problem.whole else found
+
+
+def closed_form(problem: Problem) -> list[Array] | None:
+    """Numbers of each part at the least mean square, or None where there is no closed form."""
+    plan = problem.plan
+    squared = plan.combine == "squares" or len(plan.objectives) == 1
+    if plan.limits or not squared or plan.added_mass is not None:
+        return None
+    if any(one.measure not in {"rms", "ripple"} or len(one.speeds) > 1 for one in plan.objectives):
+        return None
+    free = [_free_numbers(part) for part in problem.parts]
+    if not free or any(numbers is None for numbers in free):
+        return None
+    counts = np.cumsum([0, *(part.count for part in problem.parts)])
+    places = np.concatenate([start + n for start, n in zip(counts, free, strict=False)])
+    found = _least_squares(problem, places, _given_numbers(problem))
+    if found is None:
+        return None
+    return problem.tightened(np.split(found, counts[1:-1]))
+
+
+def _free_numbers(part: DesignVariables) -> Array | None:
+    """Which numbers of a part are first moments without limits; None where it has limits."""
+    if isinstance(part, MovedCenter):
+        move = part.move
+        return np.array([0, 1]) if (move.x, move.y, move.center) == (None,) * 3 else None
+    if isinstance(part, AddedWeight) and part.weight.mass is not None:
+        free = part.weight.shape in {"any", "point"} and not isfinite(part.weight.radius)
+        return np.array([1, 2]) if free else None
+    return None
+
+
+def _given_numbers(problem: Problem) -> Array:
+    """All numbers, with those that are given and 0 elsewhere."""
+    numbers = [np.zeros(part.count) for part in problem.parts]
+    for part, own in zip(problem.parts, numbers, strict=True):
+        if isinstance(part, AddedWeight) and part.weight.mass is not None:
+            own[0] = part.weight.mass / part.mass_unit
+    return np.concatenate(numbers)
+
+
+def _least_squares(problem: Problem, places: Array, given: Array) -> Array | None:
+    """All numbers, with those at some places such that the sum of squares is least."""
+    matrices, vectors = [], []
+    others = np.setdiff1d(np.arange(len(given)), places)
+    lifts = others[given[others] == 0]
+    for one in problem.plan.objectives:
+        (signal,) = problem.signals[one.name]
+        if np.max(np.abs(signal.columns[lifts]), initial=0.0) > WITHOUT_EFFECT:
+            return None  # an inertia that grows with the square of a place
+        matrix, vector = mean_square_rows(signal, one.measure)
+        matrices.append(one.weight * matrix[:, places])
+        vectors.append(one.weight * (vector + matrix @ given))
+    moments = np.linalg.lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
+    found = given.copy()
+    found[places] = moments
+    return found
+
+
+def as_best(problem: Problem, cost: float) -> Best:
+    """A closed form as what the search would have found: no limit, no interval, no gap."""
+    return Best(np.zeros(0), cost, cost, {}, Program(), 0)
+
+
+MOST_LIMITS = 40
+"""Beyond which the fewest are not looked for."""
+
+
+def infeasibility(problem: Problem) -> UsageError:
+    """The error that tells which limits clash."""
+    program = problem.built.program
+    names = program.names
+    if program.without(set(names)).feasible():
+        clash = _infeasible_subset(program) if len(names) <= MOST_LIMITS else names
+        told = listed([_limit_in_words(problem, name) for name in clash])
+        which = "this limit cannot be met" if len(clash) == 1 else "these limits clash"
+        return UsageError(f"{which}: {told}; {_way_out(problem, clash)}")
+    return UsageError(
+        "what may be changed contradicts itself: a given mass has no place in its room, or the "
+        "most that may be added is less than what is given"
+    )
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names as they are told one after the other."""
+    return " and ".join([*filter(None, [", ".join(names[:-1])]), *names[-1:]])
+
+
+def _infeasible_subset(program: Program) -> list[str]:
+    """Limits none of which can be left out without the others becoming possible."""
+    needed = list(program.names)
+    for name in program.names:
+        others = [other for other in needed if other != name]
+        dropped = set(program.names) - set(others)
+        if not program.without(dropped).feasible():
+            needed = others
+    return needed
+
+
+def _limit_in_words(problem: Problem, name: str) -> str:
+    limit = next((limit for limit in problem.plan.limits if limit.name == name), None)
+    if limit is None:
+        most = problem.plan.added_mass
+        return f"{name} at most {1e3 * most:.4g} g" if name == ADDED and most else name
+    if limit.ratio is not None:
+        return f"{name} at most {limit.ratio * 100:.4g} % of before"
+    return f"{name} at most {limit.at_most:.4g} {_unit(problem, limit)}"
+
+
+def _way_out(problem: Problem, clash: list[str]) -> str:
+    """How small the first of the clashing outputs can become while the others are kept."""
+    limit = next((limit for limit in problem.plan.limits if limit.name in clash), None)
+    if limit is None:
+        return "allow more of it" if len(clash) == 1 else "allow more of one of them"
+    plan = problem.plan
+    others = tuple(other for other in plan.limits if other.name in clash and other != limit)
+    relaxed = replace(plan, objectives=(limit.objective,), limits=others)
+    try:
+        asked = Problem(problem.machine, relaxed, problem.start, problem.parts, problem.close)
+        least = asked.built.program.solve().value * asked.scale(limit.objective)
+    except NoSolutionError:
+        return "allow more of one of them"
+    least /= limit.objective.weight
+    kept = "the other is kept" if len(clash) == 2 else "the others are kept"
+    where = f" while {kept}" if len(clash) > 1 else ""
+    return f"{limit.name} can become {least:.4g} {_unit(problem, limit)} at the least{where}"
+
+
+def _unit(problem: Problem, limit: Limit) -> str:
+    return unit_of(limit.objective, problem.machine)

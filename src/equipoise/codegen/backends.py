@@ -1,0 +1,324 @@
+"""Loops that run: compiled by Numba and kept on disk, or done by NumPy where Numba is missing.
+
+A source is written to a file whose name tells its content and that of the kernels, because the
+cache of compiled code looks at that file alone.
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import importlib.util
+import inspect
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from functools import cache
+from pathlib import Path
+from threading import Lock
+from types import ModuleType, SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from equipoise.codegen.source import Source
+from equipoise.mechanism import kernels
+
+Array = np.ndarray[Any, Any]
+Loop = Callable[[Array, Array, Array], None]
+"""Is called with table (P, T), grid (G, N) and what it fills, (P, R); it lets other threads run."""
+
+INLINE = {"forceinline": True, "fastmath": True, "error_model": "numpy"}
+SIGNATURE = "void(float64[:, ::1], float64[:, ::1], float64[:, ::1])"
+FOLDER = "EQUIPOISE_CACHE"
+"""Variable of the environment with the folder for compiled loops."""
+NOTICE = (
+    "Numba is not installed, so designs are computed by NumPy, which takes ten to thirty times as "
+    'long; install it by: pip install "equipoise[studies]"'
+)
+
+
+@cache
+def engine() -> str:
+    """What runs loops here: ``numba`` or ``numpy``; says so, once, where it is the slow one."""
+    if importlib.util.find_spec("numba") is not None:
+        return "numba"
+    print(f"equipoise: {NOTICE}", file=sys.stderr)
+    return "numpy"
+
+
+def loop_of(text: str) -> tuple[Loop | None, ModuleType]:
+    """The compiled loop of a source, None without Numba, and the module of the source."""
+    with _one_at_a_time:
+        return _loop_of(text)
+
+
+_one_at_a_time = Lock()
+
+
+@cache
+def _loop_of(text: str) -> tuple[Loop | None, ModuleType]:
+    path = _file_of(text)
+    module = _imported(f"equipoise_{path.stem}", path)
+    if engine() == "numpy":
+        vars(module).update(_kernels_of(kernels), **vars(NUMPY_FUNCTIONS))
+        return None, module
+    vars(module).update(_compiled_kernels(), **compiled_functions())
+    return _compile(module), module
+
+
+def run_loop(source: Source, table: Array, grid: Array) -> Array:
+    """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
+    loop, module = loop_of(source.text)
+    if loop is None:
+        return run_numpy(source, module.state, table, grid)
+    out = np.empty((len(table), source.width))
+    loop(table, grid, out)
+    return out
+
+
+def _compile(module: ModuleType) -> Loop:
+    """Compile a module's loop, or take it from the cache."""
+    import numba
+
+    vars(module)["state"] = numba.njit(**INLINE)(module.state)
+    options = {"nogil": True, "fastmath": True, "error_model": "numpy"}
+    try:
+        return numba.njit(SIGNATURE, cache=True, **options)(module.loop)  # type: ignore[no-any-return]
+    except (OSError, RuntimeError):  # no place for the cache: compile for this run alone
+        return numba.njit(SIGNATURE, **options)(module.loop)  # type: ignore[no-any-return]
+
+
+@cache
+def _compiled_kernels() -> dict[str, Any]:
+    """The kernels, loaded a second time and compiled to be taken into loops."""
+    import numba
+
+    module = _imported("equipoise_compiled_kernels", Path(inspect.getfile(kernels)))
+    for name, kernel in _kernels_of(module).items():
+        vars(module)[name] = numba.njit(**INLINE)(kernel)
+    return {name: vars(module)[name] for name in _kernels_of(kernels)}
+
+
+def _kernels_of(module: ModuleType) -> dict[str, Any]:
+    return {name: found for name, found in vars(module).items() if inspect.isfunction(found)}
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+
+def _file_of(text: str) -> Path:
+    """The file of a source, written whole or not at all."""
+    here = sys.modules[__name__]
+    parts = (text, *map(inspect.getsource, (kernels, here)))
+    key = hashlib.sha256("\0".join(parts).encode()).hexdigest()[:20]
+    for folder in _folders():
+        path = folder / f"loop_{key}.py"
+        try:
+            if not path.exists():
+                folder.mkdir(parents=True, exist_ok=True)
+                handle, name = tempfile.mkstemp(dir=folder, suffix=".tmp")
+                with os.fdopen(handle, "w", encoding="utf-8") as file:
+                    file.write(text)
+                os.replace(name, path)
+        except OSError:
+            continue
+        return path
+    raise AssertionError("a new temporary folder can be written to")
+
+
+def _folders() -> Iterator[Path]:
+    """Where loops may be kept, the best place first; the last is for this process alone."""
+    own = os.environ.get(FOLDER)
+    if own:
+        yield Path(own)
+    else:
+        from platformdirs import user_cache_path
+
+        yield user_cache_path("equipoise", appauthor=False) / "loops"
+    last = tempfile.mkdtemp(prefix="equipoise-")
+    atexit.register(shutil.rmtree, last, ignore_errors=True)
+    yield Path(last)
+
+
+def _imported(name: str, path: Path) -> ModuleType:
+    """A file as a module of its own, which compiled code from the cache looks for by its name."""
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None and spec.loader is not None
+    module = sys.modules[name] = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@cache
+def compiled_functions() -> dict[str, Any]:
+    """Functions by name, to be called from compiled loops."""
+    import numba
+
+    return {
+        "smallest": _extreme("llvm.minnum"),
+        "greatest": _extreme("llvm.maxnum"),
+        "angle_of": numba.njit(**INLINE)(angle_of),
+        "rotation": numba.njit(**INLINE)(_rotation(_nearest())),
+    }
+
+
+# The polynomials below are Chebyshev interpolations, exact to 1e-17.
+
+
+def angle_of(u: Any) -> Any:
+    """Angle of a rotation u, of at most 2.09 rad to either side: from the tangent of its fourth."""
+    half = (0.5 + 0.5 * u.real) ** 0.5
+    quarter = 0.5 * u.imag / (half * (1.0 + half))
+    z = quarter * quarter
+    arc = -0.005280870051487617
+    arc = arc * z + 0.018095230564342743
+    arc = arc * z + -0.032661656028653945
+    arc = arc * z + 0.043802683513332864
+    arc = arc * z + -0.051663638584717154
+    arc = arc * z + 0.05864670804294048
+    arc = arc * z + -0.0666435417001706
+    arc = arc * z + 0.07692094669579978
+    arc = arc * z + -0.09090895671012374
+    arc = arc * z + 0.11111110560344459
+    arc = arc * z + -0.14285714272114403
+    arc = arc * z + 0.19999999999824117
+    arc = arc * z + -0.3333333333333243
+    arc = arc * z + 1.0
+    return 4.0 * quarter * arc
+
+
+def _rotation(nearest: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    def rotation(angle: Any) -> Any:
+        """exp(i angle), as the fourth power of that of a fourth of the angle."""
+        turns = angle * 0.15915494309189535
+        quarter = (turns - nearest(turns)) * 1.5707963267948966
+        z = quarter * quarter
+        cos = -1.1353379638297575e-11
+        cos = cos * z + 2.0875582380663952e-09
+        cos = cos * z + -2.7557313097790086e-07
+        cos = cos * z + 2.4801587283881152e-05
+        cos = cos * z + -0.0013888888888861095
+        cos = cos * z + 0.04166666666666645
+        cos = cos * z + -0.5
+        cos = cos * z + 1.0
+        sin = 1.5894736651849094e-10
+        sin = sin * z + -2.5050716974102745e-08
+        sin = sin * z + 2.755731337640013e-06
+        sin = sin * z + -0.000198412698286503
+        sin = sin * z + 0.008333333333320363
+        sin = sin * z + -0.16666666666666616
+        sin = sin * z + 1.0
+        u = complex(cos, quarter * sin)
+        u = u * u
+        return u * u
+
+    return rotation
+
+
+def _extreme(instruction: str) -> Any:
+    """The smaller or larger of two numbers by one instruction.
+
+    A comparison, or `min` and `max`, which look after NaN, would keep the loop from handling
+    several crank angles at once.
+    """
+    from llvmlite import ir
+    from numba import types
+    from numba.extending import intrinsic
+
+    number = ir.DoubleType()
+
+    def extreme(context: Any, a: Any, b: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            kind = ir.FunctionType(number, [number, number])
+            function = builder.module.declare_intrinsic(instruction, [number], kind)
+            # What is put aside on the stack lies across lines of the cache otherwise.  llvmlite
+            # tells the alignment only beside another attribute.
+            builder.function.attributes.alignstack = 64
+            builder.function.attributes.add("nounwind")
+            return builder.call(function, arguments, fastmath=("fast",))
+
+        return types.float64(types.float64, types.float64), generate
+
+    return intrinsic(extreme)
+
+
+def _nearest() -> Any:
+    """The whole number next to a number, by one instruction."""
+    from llvmlite import ir
+    from numba import types
+    from numba.extending import intrinsic
+
+    number = ir.DoubleType()
+
+    def nearest(context: Any, a: Any) -> Any:
+        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+            kind = ir.FunctionType(number, [number])
+            function = builder.module.declare_intrinsic("llvm.rint", [number], kind)
+            return builder.call(function, arguments)
+
+        return types.float64(types.float64), generate
+
+    return intrinsic(nearest)
+
+
+AT_A_TIME = 16_384
+"""Designs times crank angles, so that the values of a state stay in the processor's cache."""
+
+
+def _rotation_of_array(angle: Array) -> Array:
+    turned: Array = np.exp(1j * angle)
+    return turned
+
+
+NUMPY_FUNCTIONS = SimpleNamespace(
+    smallest=np.minimum, greatest=np.maximum, angle_of=np.angle, rotation=_rotation_of_array
+)
+
+
+def run_numpy(source: Source, state: Callable[..., Any], table: Array, grid: Array) -> Array:
+    """What a loop would gather (P, R) of designs (P, T) over a grid (G, N)."""
+    out = np.empty((len(table), source.width))
+    step = max(1, AT_A_TIME // grid.shape[1])
+    with np.errstate(all="ignore"):
+        for begin in range(0, len(table), step):
+            some = slice(begin, begin + step)
+            _fill(out[some], source, state, table[some], grid)
+    return out
+
+
+def _fill(out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array) -> None:
+    arguments = [*grid, *_columns(source, table)]
+    shape = (len(table), grid.shape[1])
+    values = [np.broadcast_to(value, shape) for value in state(*arguments)]
+    signals = dict(zip(source.gathered.signals, values, strict=False))
+    for k, (signal, kind) in enumerate(source.gathered.columns):
+        out[:, k] = _GATHER[kind](signals[signal])
+    numbers = values[len(signals) : len(signals) + len(source.watched)]
+    cosines = values[len(signals) + len(source.watched) :]
+    places = (source.weakest, np.min, numbers), (source.strongest, np.max, numbers)
+    for place, ways, found in (*places, (source.nearest, np.min, cosines)):
+        for column, number in zip(out[:, place].T, found, strict=True):
+            column[:] = ways(number, axis=1)
+
+
+def _columns(source: Source, table: Array) -> list[Array]:
+    """Columns (P, 1) of the table, two for a vector."""
+    found, place = [], 0
+    for slot in source.slots:
+        column = table[:, place, None]
+        found.append(column + 1j * table[:, place + 1, None] if slot.vector else column)
+        place += 1 + slot.vector
+    return found
+
+
+_GATHER: dict[str, Callable[[Array], Array]] = {
+    "sum": lambda x: x.sum(axis=1),
+    "squares": lambda x: np.einsum("ij,ij->i", x, x),
+    "highest": lambda x: x.max(axis=1),
+    "lowest": lambda x: x.min(axis=1),
+    "highest_at": lambda x: x.argmax(axis=1),
+    "lowest_at": lambda x: x.argmin(axis=1),
+}

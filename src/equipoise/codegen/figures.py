@@ -1,0 +1,135 @@
+"""Figures of an analysis that a loop can compute, what it gathers, and why a design has none."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+COMPUTED = 0
+NO_ASSEMBLY = 1
+NO_FULL_TURN = 2
+CHANGE_POINT = 3
+NO_MACHINE = 4
+NOT_STILL = 5
+NOT_COMPUTED = 6
+NO_FIGURE = 7
+
+REASONS: dict[int, str] = {
+    COMPUTED: "computed",
+    NO_ASSEMBLY: "does not assemble",
+    NO_FULL_TURN: "does not turn fully",
+    CHANGE_POINT: "change point",
+    NO_MACHINE: "not a machine",
+    NOT_STILL: "figures do not stand still",
+    NOT_COMPUTED: "cannot be computed",
+    NO_FIGURE: "no such figure",
+}
+"""Number -> words.
+
+1: its links cannot be joined at any crank angle.  4: a number that no machine can have, such as a
+mass below zero.  5: not even with `MOST_ANGLES` crank angles.  7: the design is computed, but lacks
+a figure, such as that of a tip that never reaches the soil.
+"""
+
+MOST_ANGLES = 65_536
+"""Crank angles in a turn beyond which figures are given up as not standing still."""
+
+
+Array = np.ndarray[Any, Any]
+
+GATHERED = {
+    "mean": ("sum",),
+    "rms": (),
+    "peak": ("highest", "lowest"),
+    "max": ("highest",),
+    "min": ("lowest",),
+    "peak_to_peak": ("highest", "lowest"),
+    "max_at": ("highest", "highest_at"),
+    "min_at": ("lowest", "lowest_at"),
+    "peak_at": ("highest", "lowest", "highest_at", "lowest_at"),
+}
+"""Figure -> what it is made of beside the sum of squares, which tells how large a signal is."""
+PLACES = ("max_at", "min_at", "peak_at")
+KINDS = ("sum", "squares", "highest", "highest_at", "lowest", "lowest_at")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure of a signal, such as the ``rms`` of ``shaking_force.y``."""
+
+    signal: str
+    name: str
+
+
+def figure_of(value: str) -> Figure | None:
+    """The figure by its path in the output of an analysis; None for what is no such figure."""
+    signal, dot, name = value.removeprefix("summary.").rpartition(".")
+    return Figure(signal, name) if dot and name in GATHERED else None
+
+
+@dataclass(frozen=True)
+class Gathered:
+    """What a loop gathers: a kind of `KINDS` of a signal, one column of its output each."""
+
+    columns: tuple[tuple[str, str], ...]
+
+    @classmethod
+    def of(cls, wanted: Sequence[Figure]) -> Gathered:
+        needed = {(figure.signal, "squares") for figure in wanted}
+        needed |= {(f.signal, kind) for f in wanted for kind in GATHERED[f.name]}
+        signals = list(dict.fromkeys(figure.signal for figure in wanted))
+        order = [(signal, kind) for signal in signals for kind in KINDS]
+        return cls(tuple(column for column in order if column in needed))
+
+    @property
+    def signals(self) -> tuple[str, ...]:
+        return tuple(dict.fromkeys(signal for signal, _ in self.columns))
+
+    def column(self, found: Array, signal: str, kind: str) -> Array:
+        """One column (P,) of what was gathered (P, R)."""
+        column: Array = found[:, self.columns.index((signal, kind))]
+        return column
+
+    def joined(self, one: Array, other: Array) -> Array:
+        """What was gathered at two sets of crank angles, together."""
+        result = np.empty_like(one)
+        for k, (signal, kind) in enumerate(self.columns):
+            a, b = one[:, k], other[:, k]
+            if kind in ("sum", "squares"):
+                result[:, k] = a + b
+            elif kind in ("highest", "lowest"):
+                result[:, k] = np.maximum(a, b) if kind == "highest" else np.minimum(a, b)
+            else:
+                sign = 1 if kind == "highest_at" else -1
+                extreme = kind.removesuffix("_at")
+                first = sign * self.column(one, signal, extreme)
+                second = sign * self.column(other, signal, extreme)
+                result[:, k] = np.where(second > first, b, a)
+        return result
+
+    def figure(self, found: Array, figure: Figure, count: int) -> Array:
+        """A figure (P,) from what was gathered (P, R) at `count` crank angles."""
+
+        def column(kind: str) -> Array:
+            return self.column(found, figure.signal, kind)
+
+        if figure.name == "mean":
+            return column("sum") / count
+        if figure.name == "rms":
+            return self.rms(found, figure.signal, count)
+        if figure.name in ("max", "min", "max_at", "min_at"):
+            return column(figure.name.replace("max", "highest").replace("min", "lowest"))
+        high, low = column("highest"), column("lowest")
+        if figure.name == "peak_to_peak":
+            return high - low
+        if figure.name == "peak":
+            return np.maximum(high, -low)
+        return np.where(high >= -low, column("highest_at"), column("lowest_at"))
+
+    def rms(self, found: Array, signal: str, count: int) -> Array:
+        """Root of the mean square (P,) of a signal."""
+        root: Array = np.sqrt(self.column(found, signal, "squares") / count)
+        return root

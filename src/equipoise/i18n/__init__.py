@@ -1,0 +1,105 @@
+"""Texts of pictures and reports in the reader's language; the English text is the key.
+
+The catalogues beside this file hold a line for each text: ``"shaking force" = "起振力"``.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from typing import Any
+
+LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
+"""Code of a language -> its own name."""
+
+_spoken = ContextVar("spoken", default="en")
+
+
+def say(text: str, **values: Any) -> str:
+    """A text in the language that is spoken, its ``{placeholders}`` filled in.
+
+    text : in English, as in the catalogues; one that is in none of them stays English.
+    """
+    said = catalogue(_spoken.get()).get(text, text)
+    return said.format(**values) if values else said
+
+
+def to_say(text: str) -> str:
+    """Mark a text that is said later: as it is, but known to be wanted in the catalogues."""
+    return text
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Note:
+    """A sentence with its values, said in the language of whoever reads it.
+
+    template : as in the catalogues.  values : for its ``{placeholders}``; Notes among them are said
+    in the same language.
+    """
+
+    template: str
+    values: Mapping[str, Any]
+
+    def __init__(self, template: str, /, **values: Any) -> None:
+        object.__setattr__(self, "template", template)
+        object.__setattr__(self, "values", values)
+
+    def __str__(self) -> str:
+        """The sentence in English."""
+        with speaking("en"):
+            return self.said()
+
+    def __repr__(self) -> str:
+        return f"Note({str(self)!r})"
+
+    def __hash__(self) -> int:
+        return hash((self.template, *map(str, self.values.values())))
+
+    def said(self) -> str:
+        """The sentence in the language that is spoken."""
+        values = {
+            name: value.said() if isinstance(value, Note) else value
+            for name, value in self.values.items()
+        }
+        return say(self.template, **values)
+
+    @property
+    def is_translated(self) -> bool:
+        """Whether the language that is spoken has the sentence."""
+        return spoken() == "en" or self.template in catalogue(spoken())
+
+
+@contextmanager
+def speaking(language: str) -> Iterator[None]:
+    """Inside, `say` speaks a language, one of `LANGUAGES`; other threads are not disturbed.
+
+    Raises
+    ------
+    KeyError : there is no such language.
+    """
+    if language not in LANGUAGES:
+        raise KeyError(language)
+    token = _spoken.set(language)
+    try:
+        yield
+    finally:
+        _spoken.reset(token)
+
+
+def spoken() -> str:
+    """Code of the language that is spoken."""
+    return _spoken.get()
+
+
+@cache
+def catalogue(language: str) -> Mapping[str, str]:
+    """English text -> text in a language; empty for English itself."""
+    if language == "en":
+        return {}
+    file = resources.files(__name__) / f"{language}.toml"
+    return tomllib.loads(file.read_text(encoding="utf-8"))

@@ -1,0 +1,33 @@
+"""How results are shown: blocks on a terminal, on a page, in print, in a notebook; the report.
+
+Content stands beside the results, in the modules ``blocks`` of their rooms; here it is rendered.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from equipoise.present.cells import Units
+    from equipoise.results.result import Result
+
+
+def show(
+    result: Result, width: int | None = None, units: Units | None = None, **options: Any
+) -> None:
+    """Print what a result shows.
+
+    width : signs in a line; those of the terminal if None.
+    units : that are chosen, by dimension, such as ``{"length": "cm"}``.
+    options : of the result's `blocks`.
+    """
+    from equipoise.present.terminal import print_blocks
+
+    print_blocks(result.title, result.blocks(**options), width, units)
+
+
+def html_of(result: Result) -> str:
+    """What a result shows as a part of a page; a notebook asks for it."""
+    from equipoise.present.html import html_of as rendered
+
+    return rendered(result)

@@ -1,0 +1,217 @@
+"""Tables as texts: units of columns and rows, digits; the same numbers for every renderer."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import isnan
+
+from equipoise.i18n import say
+from equipoise.quantities import Dimension, Display, change, display, in_unit, number, typeset
+from equipoise.results.blocks import Cell, Change, Column, Many, Span, Table, Value
+
+Units = Mapping[Dimension, str]
+"""Units that a reader has chosen, by dimension."""
+Kind = tuple[Dimension | None, str | None]
+
+MORE_DIGITS = {"rad": 2, "turn": 3}
+"""Of angles, beyond those behind the point in degrees."""
+
+
+@dataclass(frozen=True)
+class Text:
+    """A cell as text.
+
+    at : where the value holds.  number : whether it is set to the right.  strong : whether a limit
+    is broken, or something got worse.
+    """
+
+    text: str = ""
+    at: str = ""
+    number: bool = False
+    strong: bool = False
+
+
+@dataclass(frozen=True)
+class Head:
+    """A heading: its words, the unit below them, and the unit of where the values hold."""
+
+    label: str
+    unit: str = ""
+    at: str = ""
+
+
+@dataclass(frozen=True)
+class Grid:
+    """A table whose cells are texts; units and numbers in plain signs."""
+
+    title: str
+    heads: tuple[Head, ...]
+    rows: tuple[tuple[Text, ...], ...]
+
+    def is_words(self, column: int) -> bool:
+        """Whether the cells of a column are words, which are set to the left."""
+        return not any(row[column].number for row in self.rows)
+
+
+def grid(table: Table, units: Units | None = None) -> Grid:
+    """A table as texts; a unit of a row stands behind its first words.
+
+    units : that are chosen, by dimension; those that suit the sizes otherwise.
+    """
+    shown = _displays(table, units or {})
+    pairs = list(zip(table.columns, zip(*table.rows, strict=True), strict=False))
+    heads = tuple(_head(column, cells, shown) for column, cells in pairs)
+    heads = heads or tuple(Head(column.label) for column in table.columns)
+    rows = tuple(tuple(_row(table, row, shown)) for row in table.rows)
+    return Grid(table.title, heads, rows)
+
+
+def _row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Iterator[Text]:
+    unit = _unit_of_row(table, row, shown)
+    for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
+        text = _text(cell, column, shown)
+        if place == 0 and unit:
+            text = replace(text, text=say(", ").join(filter(None, (text.text, unit))))
+        yield text
+
+
+def _unit_of_row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> str:
+    """The unit of numbers of which not even the column tells it."""
+    own = (
+        shown[_kind(value, column)].unit
+        for column, cell in zip(table.columns, row, strict=True)
+        for value in _values(cell)
+        if value.dimension is not None and column.dimension is None
+    )
+    return next(own, "")
+
+
+def _values(cell: Cell) -> tuple[Value, ...]:
+    if isinstance(cell, Many):
+        return cell.values
+    if isinstance(cell, Span):
+        return (Value(cell.low), Value(cell.high))
+    return (cell,) if isinstance(cell, Value) else ()
+
+
+def _kind(value: Value, column: Column) -> Kind:
+    if value.dimension is not None:
+        return value.dimension, value.unit
+    return column.dimension, column.unit
+
+
+def _displays(table: Table, units: Units) -> dict[Kind, Display]:
+    """The unit of each kind of number: the same in the whole table, so that they compare."""
+    sizes: dict[Kind, list[float]] = {}
+    places: set[Kind] = set()
+    for row in table.rows:
+        for column, cell in zip(table.columns, row, strict=True):
+            for value in _values(cell):
+                rounding = abs(value.value) <= 1e-10 * abs(value.scale)
+                sizes.setdefault(_kind(value, column), []).append(0.0 if rounding else value.value)
+            places.add(column.at)
+    heads = {(column.dimension, column.unit) for column in table.columns}
+    for kind in (heads | places) - sizes.keys():
+        sizes[kind] = []
+    return {kind: _display(*kind, values, units) for kind, values in sizes.items()}
+
+
+def _display(
+    dimension: Dimension | None, unit: str | None, values: list[float], units: Units
+) -> Display:
+    if dimension is None:
+        return Display(unit or "", 1.0)
+    if dimension in units:
+        return in_unit(units[dimension])
+    return in_unit(unit) if unit is not None else display(dimension, values)
+
+
+def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Head:
+    held = any(value.at is not None for cell in cells for value in _values(cell))
+    at = shown[column.at].unit if held else ""
+    return Head(column.label, shown[column.dimension, column.unit].unit, at)
+
+
+# -- cells -----------------------------------------------------------------------------------------
+
+
+def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
+    if cell is None or isinstance(cell, str):
+        return Text(cell or "")
+    if isinstance(cell, Change):
+        return Text(change(cell.before, cell.after), number=True, strong=cell.worse)
+    if isinstance(cell, Many):
+        told = [_text(value, column, shown) for value in cell.values]
+        words = [f"{one.text} ({one.at})" if one.at else one.text for one in told]
+        more = [say("and {count} more", count=cell.more)] if cell.more else []
+        return Text(say(", ").join([*words, *more]), strong=any(one.strong for one in told))
+    if isinstance(cell, Span):
+        unit = shown[column.dimension, column.unit]
+        scale = max(abs(cell.low), abs(cell.high), cell.scale)
+        ends = [Value(end, scale, digits=cell.digits) for end in (cell.low, cell.high)]
+        low, high = (_number(end, unit, column.dimension) for end in ends)
+        equal = cell.high - cell.low <= 1e-10 * scale
+        return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
+    dimension = cell.dimension if cell.dimension is not None else column.dimension
+    text = _number(cell, shown[_kind(cell, column)], dimension)
+    at = "" if cell.at is None else _place(cell.at, column.at[0], shown[column.at])
+    return Text(text, at, number=True, strong=cell.broken or cell.worse)
+
+
+def _number(cell: Value, unit: Display, dimension: Dimension | None) -> str:
+    if isnan(cell.value):
+        return say("none")
+    if cell.after is None:
+        return number(unit.factor * cell.value, unit.factor * cell.scale, cell.digits)
+    after = cell.after
+    if dimension == "angle":
+        after += MORE_DIGITS.get(unit.unit, 0)
+    return f"{round(unit.factor * cell.value, after) + 0.0:.{after}f}"
+
+
+def _place(value: float, dimension: Dimension, unit: Display) -> str:
+    after = 1 if dimension == "angle" else None
+    return _number(Value(value, after=after), unit, dimension)
+
+
+# -- print -----------------------------------------------------------------------------------------
+
+_MINUS = re.compile(r"(?<![\w.)²³⁻])-(?=[0-9])")
+_POWER = re.compile(r"[0-9]e[+-][0-9]+")
+_RAISED = re.compile(r"(?<=[a-z])\^[23]")
+_UNIT = re.compile(r"(?<![A-Za-z])(k?N|k?g) (mm?|s)(?![A-Za-z])")
+_VALUE = re.compile(
+    r"(?<=[0-9)]) (?=(?:k?N|k?g|k?J|[cm]?m|m?rad|m?s|min|h|rpm|Hz|[%°])[²³]?(?![A-Za-z0-9]))"
+)
+
+
+def printed(text: str) -> str:
+    """A text as print has it: true minus, raised powers, no line that ends before a unit."""
+    text = _POWER.sub(lambda found: typeset(f"{found[0]}"), text)
+    text = _MINUS.sub("\N{MINUS SIGN}", text)
+    text = _RAISED.sub(lambda found: typeset(found[0]), text)
+    bound = _UNIT.sub("\\1\N{NO-BREAK SPACE}\\2", text)
+    return _VALUE.sub("\N{NO-BREAK SPACE}", bound)
+
+
+_PLAIN = {
+    "²": "^2",
+    "³": "^3",
+    "°": " deg",
+    "→": "->",
+    "…": "...",
+    "µ": "u",
+    "λ": "lambda",
+    "±": "+-",
+    "−": "-",
+    "\xa0": " ",
+}
+
+
+def plain(text: str) -> str:
+    """A text in signs that any terminal has."""
+    for sign, letters in _PLAIN.items():
+        text = text.replace(sign, letters)
+    return text

@@ -1,0 +1,351 @@
+"""Dimensions: the units that are accepted, what each is in SI units, and how they are written.
+
+Factors are decimal text, exact, or 28 digits where pi or a third comes in.  A test holds them to
+pint's standard registry; they stand here because importing pint takes as long as importing NumPy,
+and a command should start at once.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+Dimension = Literal[
+    "length",
+    "angle",
+    "mass",
+    "inertia",
+    "angular speed",
+    "angular acceleration",
+    "acceleration",
+    "force",
+    "torque",
+    "speed",
+    "frequency",
+    "time",
+    "stiffness",
+    "damping",
+    "damping per length",
+    "torsional stiffness",
+    "torsional damping",
+    "power",
+    "density",
+    "energy",
+    "bending stiffness",
+    "mass per length",
+    "modulus",
+    "unbalance",
+]
+
+
+@dataclass(frozen=True)
+class Kind:
+    """What is known of a dimension.
+
+    Attributes
+    ----------
+    noun : with its article.
+    units : all that are accepted, and SI units in each; the SI unit first.
+    printed : those that `format_exact` tries before the SI unit, the most usual first.
+    example : a quantity for error messages and the JSON Schema.
+    """
+
+    noun: str
+    units: Mapping[str, str]
+    printed: tuple[str, ...]
+    example: str
+
+    @property
+    def si(self) -> str:
+        """The SI unit."""
+        return next(iter(self.units))
+
+
+KINDS: dict[Dimension, Kind] = {
+    "length": Kind(
+        "a length",
+        {
+            "m": "1",
+            "mm": "0.001",
+            "cm": "0.01",
+            "km": "1000",
+            "um": "0.000001",
+            "in": "0.0254",
+            "ft": "0.3048",
+        },
+        printed=("mm", "m"),
+        example="33.5 mm",
+    ),
+    "angle": Kind(
+        "an angle",
+        {
+            "rad": "1",
+            "deg": "0.01745329251994329576923690768",
+            "turn": "6.283185307179586476925286767",
+        },
+        printed=("deg", "rad"),
+        example="-83 deg",
+    ),
+    "mass": Kind(
+        "a mass",
+        {
+            "kg": "1",
+            "g": "0.001",
+            "mg": "0.000001",
+            "t": "1000",
+            "lb": "0.45359237",
+            "oz": "0.028349523125",
+        },
+        printed=("g", "kg"),
+        example="199 g",
+    ),
+    "inertia": Kind(
+        "a moment of inertia",
+        {
+            "kg m^2": "1",
+            "kg cm^2": "0.0001",
+            "kg mm^2": "0.000001",
+            "g m^2": "0.001",
+            "g cm^2": "0.0000001",
+            "g mm^2": "0.000000001",
+            "lb in^2": "0.0002926396534292",
+            "lb ft^2": "0.0421401100938048",
+            "kgf m s^2": "9.80665",
+            "kgf cm s^2": "0.0980665",
+            "gf cm s^2": "0.0000980665",
+        },
+        printed=("kg mm^2", "kg m^2"),
+        example="30 kg mm^2",
+    ),
+    "angular speed": Kind(
+        "an angular speed",
+        {
+            "rad/s": "1",
+            "deg/s": "0.01745329251994329576923690768",
+            "turn/s": "6.283185307179586476925286767",
+            "rpm": "0.1047197551196597746154214461",
+        },
+        printed=("rpm", "rad/s"),
+        example="193 rpm",
+    ),
+    "angular acceleration": Kind(
+        "an angular acceleration",
+        {
+            "rad/s^2": "1",
+            "deg/s^2": "0.01745329251994329576923690768",
+            "rpm/s": "0.1047197551196597746154214461",
+        },
+        printed=("rad/s^2", "rpm/s"),
+        example="0 rad/s^2",
+    ),
+    "acceleration": Kind(
+        "an acceleration",
+        {"m/s^2": "1", "mm/s^2": "0.001", "ft/s^2": "0.3048", "gn": "9.80665"},
+        printed=("m/s^2",),
+        example="-9.80665 m/s^2",
+    ),
+    "force": Kind(
+        "a force",
+        {
+            "N": "1",
+            "kN": "1000",
+            "mN": "0.001",
+            "kgf": "9.80665",
+            "gf": "0.00980665",
+            "lbf": "4.4482216152605",
+        },
+        printed=("N",),
+        example="12 N",
+    ),
+    "torque": Kind(
+        "a torque",
+        {
+            "N m": "1",
+            "N mm": "0.001",
+            "N cm": "0.01",
+            "kN m": "1000",
+            "kgf m": "9.80665",
+            "kgf cm": "0.0980665",
+            "gf cm": "0.0000980665",
+            "lbf ft": "1.3558179483314004",
+            "lbf in": "0.1129848290276167",
+        },
+        printed=("N m",),
+        example="1.5 N m",
+    ),
+    "speed": Kind(
+        "a speed",
+        {
+            "m/s": "1",
+            "mm/s": "0.001",
+            "cm/s": "0.01",
+            "km/h": "0.2777777777777777777777777778",
+            "ft/s": "0.3048",
+        },
+        printed=("m/s", "km/h"),
+        example="0.3 m/s",
+    ),
+    "frequency": Kind(
+        "a frequency",
+        {"Hz": "1", "kHz": "1000"},
+        printed=("Hz",),
+        example="50 Hz",
+    ),
+    "time": Kind(
+        "a time",
+        {"s": "1", "ms": "0.001", "min": "60", "h": "3600"},
+        printed=("s", "h", "min"),
+        example="2 s",
+    ),
+    "stiffness": Kind(
+        "a stiffness",
+        {
+            "N/m": "1",
+            "N/mm": "1000",
+            "kN/m": "1000",
+            "kgf/m": "9.80665",
+            "kgf/cm": "980.665",
+            "kgf/mm": "9806.65",
+            "lbf/in": "175.1268352464763779527559055",
+        },
+        printed=("N/m",),
+        example="20 kN/m",
+    ),
+    "damping": Kind(
+        "a damping coefficient",
+        {"N s/m": "1", "N s/mm": "1000", "kN s/m": "1000", "kgf s/m": "9.80665"},
+        printed=("N s/m",),
+        example="300 N s/m",
+    ),
+    "damping per length": Kind(
+        "a damping coefficient per length",
+        {"N s/m^2": "1", "kN s/m^2": "1000"},
+        printed=("N s/m^2",),
+        example="300 N s/m^2",
+    ),
+    "torsional stiffness": Kind(
+        "a torsional stiffness",
+        {
+            "N m/rad": "1",
+            "kN m/rad": "1000",
+            "N m/deg": "57.29577951308232087679815481",
+            "kgf m/rad": "9.80665",
+        },
+        printed=("N m/rad",),
+        example="500 N m/rad",
+    ),
+    "torsional damping": Kind(
+        "a torsional damping coefficient",
+        {"N m s/rad": "1", "N m s/deg": "57.29577951308232087679815481", "kgf m s/rad": "9.80665"},
+        printed=("N m s/rad",),
+        example="3 N m s/rad",
+    ),
+    "power": Kind(
+        "a power",
+        {"W": "1", "mW": "0.001", "kW": "1000"},
+        printed=("W",),
+        example="40 W",
+    ),
+    "density": Kind(
+        "a density",
+        {
+            "kg/m^3": "1",
+            "g/cm^3": "1000",
+            "kg/dm^3": "1000",
+            "lb/in^3": "27679.90471020312119364396209",
+        },
+        printed=("kg/m^3",),
+        example="7850 kg/m^3",
+    ),
+    "energy": Kind(
+        "an energy",
+        {"J": "1", "mJ": "0.001", "kJ": "1000"},
+        printed=("J",),
+        example="12 J",
+    ),
+    "bending stiffness": Kind(
+        "a bending stiffness",
+        {
+            "N m^2": "1",
+            "N mm^2": "0.000001",
+            "kN m^2": "1000",
+            "kgf m^2": "9.80665",
+            "kgf cm^2": "0.000980665",
+            "kgf mm^2": "0.00000980665",
+            "lbf in^2": "0.00286981465730146418",
+        },
+        printed=("N m^2",),
+        example="980 N m^2",
+    ),
+    "mass per length": Kind(
+        "a mass per length",
+        {"kg/m": "1", "g/m": "0.001", "kg/mm": "1000", "lb/ft": "1.488163943569553805774278215"},
+        printed=("g/m", "kg/m"),
+        example="2.3 kg/m",
+    ),
+    "modulus": Kind(
+        "a modulus of elasticity",
+        {
+            "Pa": "1",
+            "kPa": "1000",
+            "MPa": "1000000",
+            "GPa": "1000000000",
+            "N/mm^2": "1000000",
+            "kgf/mm^2": "9806650",
+            "psi": "6894.757293168361336722673445",
+        },
+        printed=("GPa", "MPa"),
+        example="70 GPa",
+    ),
+    "unbalance": Kind(
+        "an unbalance",
+        {
+            "kg m": "1",
+            "kg mm": "0.001",
+            "g m": "0.001",
+            "g cm": "0.00001",
+            "g mm": "0.000001",
+            "oz in": "0.000720077887375",
+        },
+        printed=("g mm", "kg m"),
+        example="300 g mm",
+    ),
+}
+
+FACTORS: dict[str, str] = {
+    unit: factor for kind in KINDS.values() for unit, factor in kind.units.items()
+}
+"""SI units in one unit, as decimal text."""
+SI: dict[Dimension, str] = {dimension: kind.si for dimension, kind in KINDS.items()}
+"""SI unit of each dimension."""
+
+HUGE, TINY = 1e30, 1e-30
+"""Limits of what is taken for a quantity in SI units."""
+
+NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
+_SEPARATOR = "(?: | ?[*\N{MIDDLE DOT}] ?)"
+POWERS = {"2": "\N{SUPERSCRIPT TWO}", "3": "\N{SUPERSCRIPT THREE}"}
+"""Exponents in units, and the sign for each that is read too."""
+
+
+def pattern(dimension: Dimension) -> str:
+    """Regular expression of exactly the texts that `parse` reads, in ECMA 262 syntax."""
+    units = sorted(map(_unit_pattern, KINDS[dimension].units), key=len, reverse=True)
+    return f"^({NUMBER}) +({'|'.join(units)})$"
+
+
+def _unit_pattern(unit: str) -> str:
+    text = unit.replace(" ", _SEPARATOR)
+    for digit, raised in POWERS.items():
+        text = text.replace(f"^{digit}", f"(?:(?:\\^|\\*\\*){digit}|{raised})")
+    return text
+
+
+def plain_unit(unit: str) -> str:
+    """Return the unit as the lists have it."""
+    unit = unit.replace("**", "^")
+    for digit, raised in POWERS.items():
+        unit = unit.replace(raised, f"^{digit}")
+    return re.sub(" ?[*\N{MIDDLE DOT}] ?", " ", unit)

@@ -1,0 +1,270 @@
+"""An analysis: motion and forces of a machine, as plain data, tables and blocks."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.assessment import FourBar, four_bar
+from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
+from equipoise.mechanism.model import Machine, Vector
+from equipoise.mechanism.motion import Motion, Named, move
+from equipoise.results.outputs import Outputs
+from equipoise.results.result import Result
+from equipoise.signals import Figures, Periodic
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+Array = np.ndarray[Any, Any]
+Values = dict[str, Any]
+
+LATERAL = ("roll_moment", "yaw_moment")
+"""Moments about x and y, from linkages side by side."""
+LEAST_ANGLES = 90
+"""In a turn, from which harmonics are taken: those that matter end before half of it."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(Result):
+    """What a machine does over its crank angles.
+
+    motion : always there.  solved : its forces, or None where masses are missing.
+    """
+
+    shown_in: ClassVar[str] = "results.tables"
+
+    motion: Motion
+    solved: Forces | None
+
+    @property
+    def machine(self) -> Machine:
+        return self.motion.machine
+
+    @property
+    def crank_angle(self) -> Array:
+        """(N,) rad."""
+        return self.motion.crank_angle
+
+    @property
+    def forces(self) -> Forces:
+        """Forces; raises `MassError` where masses are missing."""
+        if self.solved is None:
+            raise MassError(massless(self.machine))
+        return self.solved
+
+    @cached_property
+    def four_bar(self) -> FourBar | None:
+        """Names and figures of the four-bar at the crank, where there is one."""
+        return four_bar(self.machine)
+
+    @cached_property
+    def outputs(self) -> Outputs:
+        """Every output of motion and forces, by name."""
+        return Outputs.of(self)
+
+    @cached_property
+    def summary(self) -> Mapping[str, Figures]:
+        """Mean, RMS, peak and extremes of outputs, by name."""
+        return Named("output", ((one.name, one.figures) for one in self.outputs.summed))
+
+    @cached_property
+    def together(self) -> Mapping[str, Array]:
+        """Shaking force (complex), shaking, roll and yaw moment, and drive torque (N,) of all rows.
+
+        Each row's crank is ahead by its phase.  Moments are about the drive's pivot of the first,
+        but for the shaking moment, which is about the point that the forces have.  Empty where
+        there is one row, or the crank angles are not those of a whole cycle.
+        """
+        rows = self.machine.rows
+        if len(rows) < 2 or not self.motion.whole_cycle or self.solved is None:
+            return {}
+        found, count = self.solved, len(self.crank_angle)
+        force = found.shaking_force
+        signals = np.array([force.x, force.y, found.shaking_moment, found.drive_torque])
+        one = Periodic.of(signals, self.motion.turns)
+        whole = {"shaking_force": np.zeros(count, complex)}
+        whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, "drive_torque")}
+        for row in rows:
+            x, y, moment, torque = one.shifted(row.phase).samples(count)
+            whole["shaking_force"] += x + 1j * y
+            whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
+            whole["roll_moment"] -= row.lateral * y
+            whole["yaw_moment"] += row.lateral * x
+            whole["drive_torque"] += torque
+        return whole
+
+    @property
+    def has_orders(self) -> bool:
+        """Whether its crank angles are such that harmonics can be taken."""
+        motion = self.motion
+        return motion.whole_cycle and len(self.crank_angle) >= LEAST_ANGLES * motion.turns
+
+    @cached_property
+    def by_order(self) -> Mapping[str, Periodic]:
+        """Outputs by order: shaking force and moment, drive torque, and acceleration of the common
+        centre of mass (``mass_center.ax``, ``mass_center.ay``, m/s2).
+
+        Raises
+        ------
+        MassError : masses are missing.
+        UsageError : the crank angles are not equally spaced over the whole cycle.
+        """
+        _ = self.forces
+        if not self.motion.whole_cycle:
+            raise UsageError("orders need crank angles over the whole cycle; give a number of them")
+        in_a_turn = len(self.crank_angle) // self.motion.turns
+        if in_a_turn < LEAST_ANGLES:
+            raise UsageError(
+                f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
+                "high ones are taken for low ones"
+            )
+        return Named("output", ((one.name, one.periodic) for one in self.outputs.ordered))
+
+    def to_dict(self, split: bool = False) -> Values:
+        """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
+
+        split : whether to add every force by cause and by link.
+        """
+        return to_dict(self, split)
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Every array as an `xarray.Dataset` over crank angle (rad); loads xarray."""
+        import xarray
+
+        coordinate = {"crank_angle": ("crank_angle", self.crank_angle, {"units": "rad"})}
+        arrays = {
+            one.name: ("crank_angle", one.values, {"units": one.unit, "long_name": one.label()})
+            for one in self.outputs.arrays
+        }
+        return xarray.Dataset(arrays, coordinate, attrs=_heading(self))
+
+    def to_frame(self) -> pandas.DataFrame:
+        """Every array as a column of a `pandas.DataFrame` over crank angle; loads pandas."""
+        import pandas
+
+        index = pandas.Index(self.crank_angle, name="crank_angle")
+        return pandas.DataFrame({one.name: one.values for one in self.outputs.arrays}, index=index)
+
+
+def to_dict(analysis: Analysis, split: bool = False) -> Values:
+    """Nested values in SI units; arrays are (N,)."""
+    result = _heading(analysis)
+    result["crank_angle"] = analysis.crank_angle
+    result |= {"links": {}, "points": {}}
+    found = analysis.solved
+    if found is None:
+        result["missing"] = massless(analysis.machine)
+    else:
+        for family, joints in (("joints", found.joints), ("gears", found.gears)):
+            result[family] = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
+        result["about"] = {"x": found.about.real, "y": found.about.imag}
+    for one in analysis.outputs.arrays:
+        values = result
+        for key in one.path[:-1]:
+            values = values.setdefault(key, {})
+        values[one.path[-1]] = one.values
+    if found is not None and split:
+        result.update(_split(found))
+    result["summary"] = _summary(analysis)
+    return result
+
+
+def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
+    """Outputs by order, as in `Analysis.by_order`, up to an order; SI units and rad.
+
+    zero : rad, direction from which crank angles count.
+    """
+    found = {}
+    for name, whole in analysis.by_order.items():
+        signal = whole.shifted(zero)
+        kept = slice(0, signal.count_to(orders))
+        found[name] = {
+            "orders": signal.orders[kept],
+            "a": signal.amplitudes.real[kept],
+            "b": -signal.amplitudes.imag[kept],
+            "harmonics": signal.sizes[kept],
+            "phases": signal.phases[kept],
+        }
+    return found
+
+
+def _heading(analysis: Analysis) -> Values:
+    motion = analysis.motion
+    heading: Values = {
+        "title": analysis.machine.title,
+        "speed": motion.speed,
+        "acceleration": motion.acceleration,
+    }
+    if motion.whole_cycle:
+        heading["turns"] = motion.turns
+    return heading
+
+
+def _split(found: Forces) -> Values:
+    """Every force by cause, and by link: output -> cause or link -> array, or x and y."""
+    split = found.split
+    names = ["shaking_force", "shaking_moment", "frame_force", "frame_moment", "drive_torque"]
+    result: Values = {}
+    for key, parts in (("by_cause", split.by_cause), ("by_link", split.by_link)):
+        result[key] = {name: _parts(parts(name)) for name in names}
+        result[key]["joints"] = {n: _parts(parts(f"joints.{n}")) for n in split.joints}
+        result[key]["gears"] = {n: _parts(parts(f"gears.{n}")) for n in split.gears}
+    return result
+
+
+def _parts(parts: Mapping[str, Array]) -> Values:
+    return {
+        name: {"x": part.real, "y": part.imag} if np.iscomplexobj(part) else part
+        for name, part in parts.items()
+    }
+
+
+def _summary(analysis: Analysis) -> Values:
+    summary: Values = {
+        name: {**asdict(figure), "peak_to_peak": figure.peak_to_peak}
+        for name, figure in analysis.summary.items()
+    }
+    if analysis.four_bar is not None:
+        summary["four_bar"] = asdict(analysis.four_bar)
+    return summary
+
+
+def analyze(
+    machine: Machine,
+    angles: int | Sequence[float] | np.ndarray[Any, Any] = 360,
+    speed: float | None = None,
+    acceleration: float | None = None,
+    about: str | Vector | complex | None = None,
+) -> Analysis:
+    """Motion and forces of a machine.
+
+    Parameters
+    ----------
+    angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
+        takes several turns where gears or loops need them), or the crank angles themselves, rad.
+    speed, acceleration : of the crank, rad/s and rad/s2; those of the machine where not given.
+    about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+
+    Returns
+    -------
+    Analysis whose forces are None where the machine lacks masses.
+
+    Raises
+    ------
+    MobilityError, MotionError, ModelError : the linkage cannot be moved so.
+    UsageError : an argument cannot be used.
+    """
+    motion = move(machine, angles, speed, acceleration)
+    if about is not None:
+        place_of(machine, about)  # a wrong point is told of a model without masses too
+    if massless(machine):
+        return Analysis(motion, None)
+    return Analysis(motion, forces(motion, about))

@@ -1,0 +1,164 @@
+"""What a result shows, as plain values: whatever renders it, a terminal, a page or a notebook.
+
+A result builds its blocks in the language that is spoken.  Numbers stay as they are, in SI units;
+who renders them chooses digits and signs by `equipoise.quantities`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from equipoise.i18n import Note
+from equipoise.quantities import Dimension
+from equipoise.results.charts import Chart
+
+# -- cells of tables -------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Value:
+    """A number in a table, in SI units; a plain number where it has no dimension.
+
+    scale : beside which a smaller value is rounding, and is shown as 0.
+    at : where it holds, such as a crank angle, rad; not shown where None.
+    digits : significant ones; after : digits behind the point instead, where given.
+    broken : whether it breaks a limit.  worse : whether it got worse.
+    dimension, unit : as of `Column`, where the numbers of a column are not all alike.
+    """
+
+    value: float
+    scale: float = 0.0
+    at: float | None = None
+    digits: int = 4
+    after: int | None = None
+    broken: bool = False
+    worse: bool = False
+    dimension: Dimension | None = None
+    unit: str | None = None
+
+
+@dataclass(frozen=True)
+class Span:
+    """The smallest and largest of some values, in SI units; one number where they are equal."""
+
+    low: float
+    high: float
+    scale: float = 0.0
+    digits: int = 4
+
+
+@dataclass(frozen=True)
+class Change:
+    """By how much a figure has changed, in per cent; nothing where it came from 0.
+
+    worse : whether a reader has to be told that it got worse.
+    """
+
+    before: float
+    after: float
+    worse: bool = False
+
+
+@dataclass(frozen=True)
+class Many:
+    """Several values in one cell.  more : how many further ones there are, which are not told."""
+
+    values: tuple[Value, ...]
+    more: int = 0
+
+
+Cell = str | Value | Span | Change | Many | None
+"""Words, a number, a range, a change, several numbers, or nothing."""
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table.
+
+    label : its heading.
+    dimension : of its numbers; they are plain ones where None.
+    unit : in which they are shown; the one that suits their sizes where not given.  A unit without
+        a dimension, such as ``%``, is that of the numbers as they are.
+    at : dimension and unit of where its values hold.
+    """
+
+    label: str
+    dimension: Dimension | None = None
+    unit: str | None = None
+    at: tuple[Dimension, str] = ("angle", "deg")
+
+
+# -- blocks ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Text:
+    """Running text.  strong : whether a limit is broken by what it tells."""
+
+    kind: ClassVar[str] = "text"
+    text: str
+    strong: bool = False
+
+
+@dataclass(frozen=True)
+class Facts:
+    """Sentences of a kind; `title` stands above them where there is one."""
+
+    kind: ClassVar[str] = "facts"
+    title: str
+    items: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table; columns whose cells are words are set to the left, numbers to the right."""
+
+    kind: ClassVar[str] = "table"
+    title: str
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+
+
+@dataclass(frozen=True)
+class Notes:
+    """What a reader has to know of the result."""
+
+    kind: ClassVar[str] = "notes"
+    notes: tuple[Note | str, ...]
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A chart, or a drawing that is made when it is wanted.
+
+    chart : its data.  draw : makes it otherwise, as `figures` renders it.
+    """
+
+    kind: ClassVar[str] = "picture"
+    name: str
+    caption: str
+    chart: Chart | None = None
+    draw: Callable[[], Any] | None = None
+
+
+@dataclass(frozen=True)
+class Listing:
+    """Text as it stands in a file."""
+
+    kind: ClassVar[str] = "listing"
+    title: str
+    text: str
+
+
+Block = Text | Facts | Table | Notes | Picture | Listing
+
+
+@dataclass(frozen=True)
+class Section:
+    """A heading and what stands below it; `name` is its anchor."""
+
+    name: str
+    title: str
+    blocks: tuple[Block, ...]

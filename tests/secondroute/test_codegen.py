@@ -1,0 +1,167 @@
+"""Figures of batches against one analysis of each design's own machine, built without columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_emit
+from equipoise.codegen.figures import Figure
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Gear, Machine
+from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of, wanted_of
+from support.designs import design, drawn, named, numbers_of, paths_of, reason_of
+from support.machines import KINDS, make
+from unit.mechanism.build import heavy, machine
+
+ANGLES = 60
+TOLERANCE = 1e-10
+"""Both routes run the same formulas on the same numbers; near a change point rounding grows."""
+
+EXAMPLES = sorted(
+    name for name in eq.examples("linkage") if can_emit(assemble(eq.load(name)))
+)  # fmt: skip
+RANDOM = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in (0, 1)]
+FEW = [
+    "shaking_force", "frame_moment", "drive_torque", "points.P.ax", "joints.B/coupler.force_y",
+    "joints.piston on frame.moment", "joints.block on arm", "joints.standing on frame",
+    "joints.yoke on frame", "gears.rocker to weight", "links.weight.angular_acceleration",
+]  # fmt: skip
+"""Signals that between them need every step of `every_dyad`."""
+
+
+@pytest.fixture
+def numpy_engine(tmp_path: Path) -> Iterator[None]:
+    with by_numpy(tmp_path):
+        yield
+
+
+def compared(
+    base: Machine, count: int, seed: int, wanted: Sequence[Figure] = (), polar: bool = False
+) -> int:
+    """Compare designs of a machine in which every number varies; tell how many could be moved.
+
+    wanted : figures; all figures of all signals if none.
+    """
+    numbers = numbers_of(base, polar=polar)
+    values = drawn(numbers, count, seed)
+    wanted = wanted or wanted_of(signals_of(base))
+    signals = list(dict.fromkeys(figure.signal for figure in wanted))
+    figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
+    moved = 0
+    for row, got, reason in zip(values, figures, reasons, strict=True):
+        told = reason_of(base, numbers, row)
+        assert reason == told
+        if told:
+            assert np.isnan(got).all()
+            continue
+        known = known_of(design(base, numbers, row), ANGLES, signals)
+        same_figures(got, wanted, known, ANGLES, TOLERANCE)
+        moved += 1
+    return moved
+
+
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_example(name: str, numpy_engine: None) -> None:
+    base = eq.load(name)
+    assert compared(base, 3, 1)
+    assert compared(base, 1, 2, polar=True)
+
+
+@pytest.mark.parametrize(("kind", "seed"), RANDOM)
+def test_random_machine(kind: str, seed: int, numpy_engine: None) -> None:
+    assert compared(make(kind, seed).machine, 4, seed, polar=seed == 1)
+
+
+def test_every_dyad_compiled() -> None:
+    base = every_dyad()
+    used = {step.kernel.__name__ for step in assemble(base).motion if hasattr(step, "kernel")}
+    assert used == {"gear", "point", "rrr", "rrp", "rpr", "rpp", "prp"}
+    wanted = [*wanted_of(FEW, "rms", "peak_to_peak"), *wanted_of(FEW[:1], "mean", "peak_at")]
+    assert compared(base, 12, 3, wanted) > 6
+
+
+def test_every_signal_of_every_dyad(numpy_engine: None) -> None:
+    assert compared(every_dyad(), 4, 5)
+
+
+def test_gears_in_proportion_to_the_crank_compiled() -> None:
+    base = eq.load("planetary-planting-arm")
+    assert compared(base, 6, 3, wanted_of(["shaking_force.x", "joints.B"], "rms", "min_at"))
+
+
+# -- gears -----------------------------------------------------------------------------------------
+
+
+def train(first: float, second: float, driver: str = "rocker", carrier: str = "frame") -> Machine:
+    """A four-bar one of whose links drives a gear that drives another one."""
+    centers = {"W": (6.0, -2.0), "V": (7.0, -4.0)} if carrier == "frame" else {}
+    held = {} if centers else {"W": (1.0, 2.0), "V": (2.0, 2.5)}
+    return machine(
+        {"A": (0.0, 0.0), "D": (3.0, 0.3), **centers},
+        {
+            "crank": heavy(A=(0.0, 0.0), B=(1.0, 0.1), **(held if carrier == "crank" else {})),
+            "coupler": heavy(B=(0.0, 0.0), C=(3.0, 0.0)),
+            "rocker": heavy(D=(0.0, 0.0), C=(2.5, 0.0)),
+            "first": heavy(W=(0.0, 0.0), U=(0.3, 0.1)),
+            "second": heavy(V=(0.0, 0.0), T=(0.1, 0.1)),
+        },
+        assembly={"C": "left"},
+        gears=(
+            Gear(driver, "first", first, carrier=carrier, start=0.4),
+            Gear("first", "second", second, carrier=carrier, start=-2.9),
+        ),
+    )
+
+
+@pytest.mark.parametrize(
+    ("base", "turns"),
+    [
+        pytest.param(train(-1.7, -0.3), 1, id="swinging driver, any ratio"),
+        pytest.param(train(2.5, -0.4), 1, id="gear on a gear"),
+        pytest.param(train(-0.5, 1 / 3, driver="crank"), 6, id="several turns"),
+        pytest.param(train(-1.5, -2.0, "coupler", "crank"), 2, id="turning carrier"),
+        pytest.param(train(0.75, -1.5, "frame", "crank"), 8, id="planets round the frame"),
+    ],
+)
+def test_train_of_gears(base: Machine, turns: int, numpy_engine: None) -> None:
+    assert assemble(base).cycle.turns == turns
+    assert compared(base, 4, 7) >= 2
+
+
+def test_driver_that_turns_fully(numpy_engine: None) -> None:
+    """A gear behind a drag link winds on with it, in a cycle of three turns."""
+    four = eq.load("drag-link")
+    rocker = assemble(four).groups[0].links[1]
+    links = {**four.links, "weight": heavy(W=(0.0, 0.0), U=(0.03, 0.0))}
+    base = machine(
+        {**four.frame, "W": (1.0, -5.0)},
+        links,
+        assembly=dict(four.assembly),
+        drive=four.drive,
+        gears=(Gear(rocker, "weight", -1 / 3),),
+    )
+    assert assemble(base).cycle.turns == 3
+    assert compared(base, 4, 1)
+
+
+def test_other_windings_are_right_or_told(numpy_engine: None) -> None:
+    """A rocker may become a link that turns fully; then the gear behind it turns on too."""
+    base = train(-2.0, -0.5)
+    numbers = named(base, "frame.points.D.x", "links.crank.points.B.x")
+    values = np.array([[3.0, 1.0], [1.0, 3.2], [0.5, 3.1], [3.1, 0.9]])
+    signals = ["shaking_force.y", "drive_torque"]
+    wanted = wanted_of(signals)
+    figures, reasons = Batch(base, paths_of(numbers), wanted, angles=ANGLES)(values)
+    assert list(reasons[[0, 3]]) == [0, 0]
+    for row, got, reason in zip(values, figures, reasons, strict=True):
+        assert reason_of(base, numbers, row) == 0
+        assert reason in (0, 6)
+        if reason == 0:
+            known = known_of(design(base, numbers, row), ANGLES, signals)
+            same_figures(got, wanted, known, ANGLES, TOLERANCE)

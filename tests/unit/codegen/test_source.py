@@ -1,0 +1,266 @@
+"""Sources written out: valid whatever things are called, and nothing but calls of kernels."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import inspect
+import keyword
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.codegen.batch import Batch
+from equipoise.codegen.emit import can_emit, emit
+from equipoise.codegen.figures import Figure, Gathered
+from equipoise.codegen.source import RESERVED, Sheet, Source
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import FRAME, Machine
+from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of
+from support.designs import drawn, numbers_of, paths_of
+from support.machines import KINDS, make
+from unit.mechanism.build import four_bar
+
+SUPPORT = {"angle_of", "rotation", "smallest", "greatest", "complex"}
+
+
+def source_of(machine: Machine, *signals: str) -> Source:
+    wanted = [Figure(signal, "rms") for signal in signals or signals_of(machine)]
+    return emit(assemble(machine), Gathered.of(wanted))
+
+
+def state_of(source: Source) -> ast.FunctionDef:
+    functions = [f for f in ast.parse(source.text).body if isinstance(f, ast.FunctionDef)]
+    assert [function.name for function in functions] == ["state", "loop"]
+    return functions[0]
+
+
+# -- what is written -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_state_calls_kernels_on_what_it_knows(kind: str) -> None:
+    """Every name is given before it is used, once, and every call is of a kernel."""
+    source = source_of(make(kind, 0).machine)
+    state = state_of(source)
+    known = {argument.arg for argument in state.args.args}
+    assert len(known) == len(source.rows) + len(source.slots)
+    formulas = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
+    for line in state.body:
+        names = [node for node in ast.walk(line) if isinstance(node, ast.Name)]
+        called = {n.func.id for n in ast.walk(line) if isinstance(n, ast.Call)}  # type: ignore[attr-defined]
+        assert called <= formulas | SUPPORT
+        used = {name.id for name in names if isinstance(name.ctx, ast.Load)} - called
+        assert used <= known
+        known |= {name.id for name in names if isinstance(name.ctx, ast.Store)}
+
+
+def test_numbers_are_not_in_the_source() -> None:
+    """Machines of one build share a loop, whatever their lengths, masses and speed."""
+    one, other = make("crank_rocker", 1).machine, make("crank_rocker", 1).machine
+    numbers = numbers_of(one, 0.02)
+    from support.designs import design
+
+    other = design(one, numbers, drawn(numbers, 1, 3)[0])
+    assert other != one
+    assert source_of(one).text == source_of(other).text
+
+
+def test_only_what_is_asked_for() -> None:
+    bare = source_of(four_bar(3.0, 1.0, 3.0, 2.5), "points.C.vx")
+    assert not any(slot.name.startswith(("mass", "gravity")) for slot in bare.slots)
+    assert "inertia_demand" not in bare.text
+    assert "rrr_forces" not in bare.text
+    shaken = source_of(four_bar(3.0, 1.0, 3.0, 2.5), "drive_torque")
+    assert "inertia_demand" in shaken.text
+    assert "rrr_forces" not in shaken.text
+
+
+def test_slots_read_any_linkage() -> None:
+    machine = make("stephenson", 0).machine
+    source = source_of(machine)
+    for slot in source.slots:
+        value = slot.read(assemble(machine))
+        assert isinstance(complex(value), complex)
+        assert slot.vector or not np.iscomplexobj(value)
+
+
+# -- names -----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        ["p(B 1)", "p(B_1)", "p(B-1)", "p(B.1)"],
+        ["p(ä)", "p(ö)", "p(é)", "p(点)"],
+        ["mass(x)", "mass x", "mass_x"],
+        [*keyword.kwlist, *sorted(RESERVED)],
+        ["", ")", "(", "_"],
+        ["p(B)", "p(B))"],
+    ],
+)
+def test_identifiers(values: list[str]) -> None:
+    sheet = Sheet()
+    found = [sheet.name(value) for value in values]
+    assert len(set(found)) == len(set(values))
+    assert all(name.isidentifier() and name.isascii() for name in found)
+    assert not RESERVED & set(found)
+    assert [sheet.name(value) for value in values] == found
+
+
+STRANGE = {
+    "spaces": lambda k, name: f"  the {name} no. {k} ",
+    "umlauts": lambda k, name: "äöüßéñ点线Ω∂"[k % 10] * (1 + k // 10),
+    "digits": lambda k, name: str(k),
+    "keywords": lambda k, name: sorted(keyword.kwlist)[k],
+    "kernels": lambda k, name: sorted(RESERVED - set(keyword.kwlist))[k],
+    "names of the loop": lambda k, name: (
+        [*"xgikn", "out", "grid", "x0", "g0", "table"][k % 10] + ("" if k < 10 else f"_{k // 10}")
+    ),
+    "builtins": lambda k, name: [n for n in dir(builtins) if n[0].islower()][k],
+    "the same identifier": lambda k, name: "a" + "-_ .:+"[k % 6] * (1 + k // 6),
+    "names of values": lambda k, name: (
+        ["p", "u", "w", "phi", "mass", "arm", "speed"][k % 7]
+        + ("_" + "abcdefghi"[k // 7] if k > 6 else "")
+    ),
+    "quotes": lambda k, name: "\"'\\{}%()[]"[k % 10] * (1 + k // 10),
+    "long": lambda k, name: f"{k:x>199}",
+}
+
+
+def renamed(machine: Machine, rename: Callable[[int, str], str]) -> tuple[Machine, dict[str, str]]:
+    """A machine with other names of links and points, and what each name has become."""
+    points = dict.fromkeys([*machine.frame, *(p for b in machine.links.values() for p in b.points)])
+    new = {name: rename(k, name) for k, name in enumerate([*points, *machine.links])}
+    new[FRAME] = FRAME
+    links = {
+        new[name]: replace(link, points={new[p]: place for p, place in link.points.items()})
+        for name, link in machine.links.items()
+    }
+    changed = replace(
+        machine,
+        drive=replace(machine.drive, link=new[machine.drive.link]),
+        frame={new[name]: place for name, place in machine.frame.items()},
+        links=links,
+        assembly={new[name]: side for name, side in machine.assembly.items()},
+        sliders=tuple(
+            replace(s, link=new[s.link], point=new[s.point], on=new[s.on], through=new[s.through])
+            for s in machine.sliders
+        ),
+        gears=tuple(
+            replace(g, driver=new[g.driver], driven=new[g.driven], carrier=new[g.carrier])
+            for g in machine.gears
+        ),
+        loads=tuple(
+            replace(
+                load, link=new[load.link], point=None if load.point is None else new[load.point]
+            )
+            for load in machine.loads
+        ),
+        springs=tuple(
+            replace(s, link=new[s.link], point=new[s.point], to=new[s.to]) for s in machine.springs
+        ),
+    )
+    return changed, new
+
+
+@pytest.fixture
+def numpy_engine(tmp_path: Path) -> Iterator[None]:
+    with by_numpy(tmp_path):
+        yield
+
+
+def same_under_other_names(
+    base: Machine, rename: Callable[[int, str], str], signals: dict[str, str]
+) -> None:
+    """Compare a batch of a renamed machine with one of the machine, and with an analysis of it.
+
+    signals : of the machine, each with the pattern of its name.
+    """
+    other, new = renamed(base, rename)
+    numbers = numbers_of(other, 1e-3)
+    values = drawn(numbers, 3, 1)
+    values[0] = [number.value for number in numbers]
+    plain = [Figure(signal, "rms") for signal in signals]
+    called = [Figure(pattern.format_map(new), "rms") for pattern in signals.values()]
+    figures, reasons = Batch(other, paths_of(numbers), called, angles=24)(values)
+    told, why = Batch(base, paths_of(numbers_of(base, 1e-3)), plain, angles=24)(values)
+    assert not reasons.any()
+    assert not why.any()
+    assert np.array_equal(figures, told)
+    known = known_of(other, 24, [figure.signal for figure in called])
+    same_figures(figures[0], called, known, 24, 1e-10)
+
+
+@pytest.mark.parametrize("names", STRANGE)
+def test_strange_names(names: str, numpy_engine: None) -> None:
+    signals = {
+        "shaking_force": "shaking_force",
+        "points.P.vx": "points.{P}.vx",
+        "links.weight.angular_velocity": "links.{weight}.angular_velocity",
+        "joints.C": "joints.{C}",
+        "joints.B/rod.force_x": "joints.{B}/{rod}.force_x",
+        "joints.piston on frame.moment": "joints.{piston} on frame.moment",
+        "gears.rocker to weight": "gears.{rocker} to {weight}",
+    }
+    same_under_other_names(every_dyad(), STRANGE[names], signals)
+
+
+def test_strange_names_compiled() -> None:
+    names = ["lambda", "rrr", "x0", "B 1", "B_1", "ä", "1", "state"]
+    signals = {"shaking_force": "shaking_force", "joints.C": "joints.{C}"}
+    same_under_other_names(four_bar(3.0, 1.0, 3.0, 2.5), lambda k, _: names[k], signals)
+
+
+# -- what cannot be written ------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "signal",
+    [
+        "",
+        "points",
+        "points.B",
+        "points.Q.x",
+        "points.B.z",
+        "links.crank.angle",
+        "links.frame.angular_velocity",
+        "joints.Q",
+        "joints.B.moment",
+        "joints.B.normal",
+        "joints",
+        "shaking_force.z",
+        "torque",
+    ],
+)
+def test_unknown_signal(signal: str) -> None:
+    with pytest.raises(UsageError, match="no signal is called"):
+        source_of(four_bar(3.0, 1.0, 3.0, 2.5), signal)
+
+
+def test_forces_need_masses() -> None:
+    bare = four_bar(3.0, 1.0, 3.0, 2.5).with_link(
+        "rocker", mass=None, center_of_mass=None, inertia=None
+    )
+    assert source_of(bare, "points.C.ax")
+    with pytest.raises(MassError, match="rocker"):
+        source_of(bare, "shaking_force.x")
+
+
+@pytest.mark.parametrize("name", ["class-three", "transplanter"])
+def test_loops_and_soil_are_refused(name: str) -> None:
+    """Newton's method and soil cannot be written out, and must not be left out in silence."""
+    assert not can_emit(assemble(eq.load(name)))
+    with pytest.raises(UsageError):
+        source_of(eq.load(name), "drive_torque")
+
+
+def test_all_else_can_be_written() -> None:
+    for name in set(eq.examples("linkage")) - {"class-three", "transplanter"}:
+        assert can_emit(assemble(eq.load(name))), name

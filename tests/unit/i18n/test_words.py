@@ -1,0 +1,62 @@
+"""The catalogues hold what is said, all of it and nothing else."""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+from string import Formatter
+from threading import Thread
+
+import pytest
+
+import equipoise
+from equipoise.i18n import LANGUAGES, catalogue, say, speaking
+
+SOURCES = Path(equipoise.__file__).parent
+TRANSLATED = sorted(set(LANGUAGES) - {"en"})
+
+
+@cache
+def said() -> set[str]:
+    """First arguments of `say` and `to_say` in the whole package; each has to be a plain text."""
+    found = set()
+    for path in SOURCES.rglob("*.py"):
+        if path.parent.name == "i18n":
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                first = node.args[0] if node.args else None
+                if node.func.id == "to_say":
+                    assert isinstance(first, ast.Constant), f"{path}:{node.lineno}"
+                if node.func.id in ("say", "to_say") and isinstance(first, ast.Constant):
+                    found.add(first.value)
+    return found
+
+
+def placeholders(text: str) -> set[str]:
+    return {name for _, name, _, _ in Formatter().parse(text) if name is not None}
+
+
+@pytest.mark.parametrize("language", TRANSLATED)
+def test_every_text_is_translated_and_none_is_left_over(language):
+    texts, held = said(), catalogue(language)
+    assert texts - held.keys() == set()
+    assert held.keys() - texts == set()
+    assert {text for text in texts if placeholders(text) != placeholders(held[text])} == set()
+
+
+def test_a_language_is_spoken_inside_its_block_and_in_its_thread_only():
+    heard = []
+    with speaking("ko"):
+        Thread(target=lambda: heard.append(say("Summary"))).start()
+        heard.append(say("Summary"))
+        with speaking("ja"):
+            heard.append(say("Gravity ({value}) m/s²", value="0, −9.807"))
+        heard.append(say("joint {name}", name="{B}"))
+    heard.append(say("not in any catalogue {name}", name="B"))
+    assert sorted(heard) == sorted(
+        ["Summary", "요약", "重力加速度 (0, −9.807) m/s²", "조인트 {B}", "not in any catalogue B"]
+    )
+    with pytest.raises(KeyError, match="fr"), speaking("fr"):
+        pass

@@ -1,0 +1,201 @@
+"""An analysis as plain data: nested values, columns with units, tables."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.results.outputs import unit_of
+
+NAMES = sorted(eq.examples("linkage"))
+
+
+def analysis(name: str = "geared-counterweight", angles: Any = 12) -> eq.Analysis:
+    return eq.analyze(eq.load(name), angles)
+
+
+def bare() -> eq.Analysis:
+    machine = eq.load("yamashita-1")
+    given = machine.with_link("rocker", mass=None, center_of_mass=None, inertia=None)
+    return eq.analyze(given, 8)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_keys(name: str) -> None:
+    found = analysis(name).to_dict()
+    machine = eq.load(name)
+    assert list(found)[:7] == [
+        "title", "speed", "acceleration", "turns", "crank_angle", "links", "points"
+    ]  # fmt: skip
+    assert list(found["links"]) == list(machine.links)
+    for link in found["links"].values():
+        assert list(link) == ["angle", "angular_velocity", "angular_acceleration"]
+    for point in found["points"].values():
+        assert list(point) == ["x", "y", "vx", "vy", "ax", "ay"]
+    for joint in found["joints"].values():
+        assert {"on", "by", "force_x", "force_y"} <= joint.keys()
+    assert {"shaking_force", "shaking_moment", "drive_torque", "summary"} <= found.keys()
+    assert "missing" not in found
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_array_has_one_value_a_crank_angle(name: str) -> None:
+    found = analysis(name)
+    for one in found.outputs:
+        assert one.values.shape == found.crank_angle.shape, one.name
+        assert one.values.dtype == float, one.name
+        assert np.all(np.isfinite(one.values)), one.name
+
+
+def test_values_are_those_of_the_analysis() -> None:
+    found = analysis()
+    values, forces = found.to_dict(), found.forces
+    np.testing.assert_allclose(values["crank_angle"], np.arange(12) * np.pi / 6)
+    np.testing.assert_array_equal(values["shaking_force"]["y"], forces.shaking_force.y)
+    np.testing.assert_array_equal(values["joints"]["B"]["force_x"], forces.joints["B"].x)
+    mesh = values["gears"]["rocker to counterweight"]
+    assert (mesh["on"], mesh["by"]) == ("counterweight", "rocker")
+    np.testing.assert_array_equal(values["points"]["A"]["vx"], found.motion.points["A"].vx)
+    np.testing.assert_array_equal(values["drive_torque"], forces.drive_torque)
+    assert values["about"] == {"x": 0.0, "y": 0.0}
+
+
+@pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "scotch-yoke"])
+def test_split_is_added_where_asked_for(name: str) -> None:
+    values = analysis(name).to_dict(split=True)
+    assert "by_cause" not in analysis(name).to_dict()
+    for key, parts in (("by_cause", 5), ("by_link", len(values["links"]))):
+        told = values[key]
+        assert told["joints"].keys() == values["joints"].keys()
+        assert told["gears"].keys() == values["gears"].keys()
+        assert len(told["drive_torque"]) == parts
+        np.testing.assert_allclose(
+            sum(told["drive_torque"].values()), values["drive_torque"], atol=1e-10
+        )
+        for family in ("joints", "gears"):
+            for joint, whole in values[family].items():
+                total = sum(part["x"] for part in told[family][joint].values())
+                np.testing.assert_allclose(total, whole["force_x"], atol=1e-9)
+
+
+def test_a_machine_without_masses() -> None:
+    found = bare()
+    values = found.to_dict()
+    assert "missing for rocker" in values["missing"]
+    assert not {"joints", "shaking_force", "drive_torque"} & values.keys()
+    assert list(values["summary"]) == ["transmission.C", "four_bar"]
+    assert {one.group for one in found.outputs} == {"links", "points", "transmission"}
+    with pytest.raises(UsageError, match="no output is called 'drive_torque'; there are "):
+        found.outputs["drive_torque"]
+
+
+def test_turns_are_told_of_whole_cycles_only() -> None:
+    assert analysis().to_dict()["turns"] == 1
+    assert "turns" not in analysis(angles=[0.1, 0.2]).to_dict()
+
+
+# -- summary ---------------------------------------------------------------------------------------
+
+
+def test_summary() -> None:
+    found = analysis("quick-return", 90)
+    summary = found.to_dict()["summary"]
+    assert list(found.summary) == [one.name for one in found.outputs.summed]
+    for name in found.summary:
+        signal, told = found.outputs[name].values, summary[name]
+        assert told["max"] == signal.max()
+        assert told["min"] == signal.min()
+        assert told["mean"] == pytest.approx(signal.mean())
+        assert told["peak"] == np.abs(signal).max()
+        assert told["peak_to_peak"] == pytest.approx(np.ptp(signal))
+        assert told == {**asdict(found.summary[name]), "peak_to_peak": told["peak_to_peak"]}
+    assert "joints.block on lever.moment" in summary
+    assert "four_bar" not in summary
+
+
+def test_summary_of_a_four_bar() -> None:
+    found = analysis("yamashita-1").to_dict()["summary"]["four_bar"]
+    assert found["type"] == "crank-rocker"
+    assert found["a"] == pytest.approx(0.088)
+
+
+# -- tables ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("column", "unit"),
+    [
+        ("crank_angle", "rad"),
+        ("links.rocker.angle", "rad"),
+        ("links.rocker.angular_velocity", "rad/s"),
+        ("links.rocker.angular_acceleration", "rad/s^2"),
+        ("points.P.x", "m"),
+        ("points.P.vy", "m/s"),
+        ("points.P.ax", "m/s^2"),
+        ("points.weight.x", "m"),
+        ("joints.B.force_x", "N"),
+        ("joints.block on lever.normal", "N"),
+        ("joints.block on lever.moment", "N m"),
+        ("gears.rocker to weight.tangential", "N"),
+        ("gears.rocker to weight.radial", "N"),
+        ("shaking_force.x", "N"),
+        ("weight.y", "N"),
+        ("frame_force.y", "N"),
+        ("shaking_moment", "N m"),
+        ("weight_moment", "N m"),
+        ("frame_moment", "N m"),
+        ("drive_torque", "N m"),
+    ],
+)
+def test_units(column: str, unit: str) -> None:
+    assert unit_of(column) == unit
+
+
+@pytest.mark.parametrize("point", ["shaking_force", "weight", "frame_force"])
+def test_points_that_are_called_like_forces(point: str) -> None:
+    assert unit_of(f"points.{point}.x") == "m"
+
+
+@pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
+def test_frame_of_pandas(name: str) -> None:
+    pandas = pytest.importorskip("pandas")
+    found = analysis(name)
+    frame = found.to_frame()
+    assert isinstance(frame, pandas.DataFrame)
+    assert frame.index.name == "crank_angle"
+    np.testing.assert_array_equal(frame.index, found.crank_angle)
+    assert list(frame.columns) == [one.name for one in found.outputs.arrays]
+    np.testing.assert_array_equal(frame["drive_torque"], found.forces.drive_torque)
+
+
+@pytest.mark.parametrize("name", ["geared-counterweight", "quick-return", "class-three"])
+def test_dataset_of_xarray(name: str) -> None:
+    pytest.importorskip("xarray")
+    found = analysis(name)
+    dataset = found.to_dataset()
+    assert dict(dataset.sizes) == {"crank_angle": 12}
+    assert dataset.attrs["title"] == eq.load(name).title
+    assert dataset.attrs["speed"] == found.motion.speed
+    assert list(dataset.data_vars) == [one.name for one in found.outputs.arrays]
+    for key, array in dataset.data_vars.items():
+        assert array.attrs["units"] == unit_of(str(key))
+        assert array.attrs["long_name"] == found.outputs[str(key)].label()
+    np.testing.assert_array_equal(dataset["drive_torque"], found.forces.drive_torque)
+
+
+def test_tables_without_masses() -> None:
+    names = [one.name for one in bare().outputs.arrays]
+    assert "points.P.ax" in names
+    assert not [name for name in names if name.startswith(("joints", "shaking", "drive"))]
+
+
+def test_machine_and_four_bar_of_an_analysis() -> None:
+    found = analysis("yamashita-1")
+    assert found.machine is found.motion.machine
+    assert found.four_bar is not None
+    assert found.four_bar == eq.four_bar(found.machine)
