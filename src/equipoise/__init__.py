@@ -105,7 +105,7 @@ _HOMES = {
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighting",
     "Work": "handheld.model",
-    "analyze": "pipeline",
+    "analyze": "results.analysis",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
     "balance": "balancing.optimisation",
@@ -289,7 +289,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
-    from equipoise.pipeline import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
@@ -297,6 +296,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps
     from equipoise.schema.models import examples as examples
     from equipoise.schema.models import json_schema as json_schema
