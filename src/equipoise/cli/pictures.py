@@ -329,8 +329,8 @@ def _angles_of(kind: str, seconds: float) -> int:
 
 def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
     from equipoise.figures import film
-    from equipoise.figures.svg import animated_svg
     from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
     from equipoise.symbols.scene import Scene
 
     scene = Scene.of(found.motion)
