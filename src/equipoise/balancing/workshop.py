@@ -8,10 +8,11 @@ from typing import Any
 
 from equipoise.balancing.design_variables import Change
 from equipoise.i18n import say
-from equipoise.report.numbers import number, place
+from equipoise.quantities import number
+from equipoise.results.tables import place
 
 
-def told(change: Change) -> Iterator[str]:
+def sentences(change: Change) -> Iterator[str]:
     """What to change; one sentence for the change, then one for each piece of an added mass."""
     values = dict(change.values)
     if change.kind == "center of mass":
@@ -128,6 +129,14 @@ def _gears(link: str, values: dict[str, Any]) -> str:
             second=second,
             module=module,
         )
+    if "masses" in values:
+        on_driver, on_shaft = map(_grams, values["masses"])
+        text += "; " + say(
+            "the gears add {first} g to {driver} and {second} g to the shaft",
+            first=on_driver,
+            driver=values["driver"],
+            second=on_shaft,
+        )
     return text
 
 
@@ -136,8 +145,8 @@ def _phases(phases: tuple[float, ...]) -> str:
 
 
 def _direction(radians: float) -> str:
-    shown = round(degrees(radians), 1) + 0.0
-    return f"{shown if shown > -180 else shown + 360:.1f}".removesuffix(".0").replace("-", "−")
+    shown = round(degrees(radians), 2) + 0.0
+    return f"{shown if shown > -180 else shown + 360:.2f}".removesuffix(".00")
 
 
 def _grams(mass: float) -> str:
