@@ -15,7 +15,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from equipoise.tools.model import Tool
+from equipoise.handheld.model import Tool
 
 
 @contextmanager

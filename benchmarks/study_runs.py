@@ -23,7 +23,7 @@ from equipoise.codegen.backends import FOLDER, run_loop
 from equipoise.codegen.batch import Batch
 from equipoise.codegen.designs import all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
-from equipoise.io.template import Template
+from equipoise.schema.template import Template
 from equipoise.studies.run import sweep
 from equipoise.studies.sampling import samples
 from equipoise.studies.spread import Range

@@ -30,16 +30,16 @@ from scipy.linalg import eig, eigh
 from scipy.linalg.lapack import zgbsv
 from scipy.optimize import differential_evolution
 
-from equipoise.tools.design import design_tool
-from equipoise.tools.exposed import grips
-from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import Excitation, Hand, Harness, Station, Tool
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import respond_tool
-from equipoise.tools.sections import Shaft, Tube
-from equipoise.tools.studies import changed
-from equipoise.tools.transmission import transmit
-from equipoise.tools.wishes import DesignLimit, DesignPlan, DesignVariable
+from equipoise.handheld.design import design_tool
+from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariable
+from equipoise.handheld.exposed import grips
+from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.shaft import Shaft, Tube
+from equipoise.handheld.studies import changed
+from equipoise.handheld.transmission import transmit
 from timing import in_turn, report
 
 try:

@@ -13,10 +13,9 @@ import numpy as np
 from scipy.integrate import solve_bvp
 
 import equipoise as eq
-from equipoise.structures.coupled import Coupled
-from equipoise.structures.exact import solve_exact
-from equipoise.structures.following import follow
-from equipoise.structures.linear import Linear
+from equipoise.vibration.coupled import Coupled, follow
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.linear import Linear
 from timing import in_turn, report
 
 MACHINE = eq.load("yamashita-rig")

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Absorber": "tools.model",
+    "Absorber": "handheld.model",
     "AddedMass": "mechanism.balance",
     "Analysis": "results.analysis",
     "Balance": "mechanism.balance",
@@ -27,26 +27,26 @@ _HOMES = {
     "Conditions": "balancing.linear_conditions",
     "Correlation": "studies.study",
     "Decay": "measured.decay",
-    "DesignLimit": "tools.wishes",
-    "DesignPlan": "tools.wishes",
-    "DesignVariable": "tools.wishes",
+    "DesignLimit": "handheld.design_plan",
+    "DesignPlan": "handheld.design_plan",
+    "DesignVariable": "handheld.design_plan",
     "Drive": "mechanism.model",
     "EquipoiseError": "errors",
-    "Excitation": "tools.model",
+    "Excitation": "handheld.model",
     "Exposure": "exposure.daily",
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
     "FourBar": "mechanism.fourbar",
-    "FreeVibration": "structures.free",
+    "FreeVibration": "vibration.free",
     "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
     "Gear": "mechanism.model",
     "GearedWeight": "mechanism.balance",
     "Goal": "planting.goals",
-    "Hand": "tools.model",
-    "Harness": "tools.model",
-    "Impedance": "tools.model",
+    "Hand": "handheld.model",
+    "Harness": "handheld.model",
+    "Impedance": "handheld.model",
     "Landscape": "studies.landscape",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
@@ -60,7 +60,7 @@ _HOMES = {
     "Mount": "mechanism.support",
     "Normal": "studies.spread",
     "Objective": "mechanism.balance",
-    "Operation": "tools.model",
+    "Operation": "handheld.model",
     "Output": "studies.study",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
@@ -71,40 +71,40 @@ _HOMES = {
     "Range": "studies.spread",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
-    "Response": "structures.response",
+    "Response": "vibration.response",
     "Row": "mechanism.support",
     "Sampling": "studies.study",
     "Searched": "studies.search",
-    "Section": "tools.sections",
-    "Segment": "tools.sections",
-    "Shaft": "tools.sections",
+    "Section": "handheld.shaft",
+    "Segment": "handheld.shaft",
+    "Shaft": "handheld.shaft",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
     "Spring": "mechanism.spring",
     "SpringChoice": "mechanism.balance",
-    "Station": "tools.model",
+    "Station": "handheld.model",
     "Store": "studies.store",
     "Study": "studies.study",
     "Support": "mechanism.support",
-    "Sweep": "structures.sweep",
+    "Sweep": "vibration.sweep",
     "Task": "exposure.daily",
-    "Template": "io.template",
+    "Template": "schema.template",
     "Tolerances": "studies.tolerance",
-    "Tool": "tools.model",
-    "ToolDesign": "tools.design",
-    "ToolExposure": "tools.exposed",
-    "ToolModes": "tools.modes",
-    "ToolResponse": "tools.response",
-    "ToolSweep": "tools.sweep",
-    "Transient": "structures.transient",
-    "Transmissions": "tools.transmission",
-    "Tube": "tools.sections",
+    "Tool": "handheld.model",
+    "ToolDesign": "handheld.design",
+    "ToolExposure": "handheld.exposed",
+    "ToolModes": "handheld.modes",
+    "ToolResponse": "handheld.response",
+    "ToolSweep": "handheld.sweep",
+    "Transient": "vibration.transient",
+    "Transmissions": "handheld.transmission",
+    "Tube": "handheld.shaft",
     "Uniform": "studies.spread",
     "Vary": "studies.study",
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighted",
-    "Work": "tools.model",
+    "Work": "handheld.model",
     "analyze": "pipeline",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
@@ -114,52 +114,52 @@ _HOMES = {
     "choose_phases": "balancing.phase_search",
     "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
-    "design_tool": "tools.design",
-    "dumps": "io.models",
-    "dumps_tool": "io.tools",
-    "examples": "io.models",
+    "design_tool": "handheld.design",
+    "dumps": "schema.models",
+    "dumps_tool": "schema.tools",
+    "examples": "schema.models",
     "export": "studies.export",
-    "expose_tool": "tools.exposed",
+    "expose_tool": "handheld.exposed",
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
     "four_bar": "mechanism.fourbar",
-    "from_rest": "structures.transient",
+    "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
-    "json_schema": "io.models",
+    "json_schema": "schema.models",
     "landscape": "studies.landscape",
     "least_moments": "balancing.least_norm",
-    "load": "io.models",
-    "load_study": "io.studies",
-    "load_tool": "io.tools",
-    "loads": "io.models",
-    "loads_tool": "io.tools",
-    "machine_of": "io.stored",
+    "load": "schema.models",
+    "load_study": "schema.studies",
+    "load_tool": "schema.tools",
+    "loads": "schema.models",
+    "loads_tool": "schema.tools",
+    "machine_of": "schema.study_units",
     "move": "mechanism.motion",
     "open_store": "studies.store",
     "plant": "planting.summary",
-    "read_accelerations": "io.accelerations",
-    "read_record": "io.records",
+    "read_accelerations": "schema.records",
+    "read_record": "schema.records",
     "regressor": "mechanism.parameters",
-    "respond": "structures.forced",
-    "respond_tool": "tools.response",
-    "resume": "io.stored",
-    "save": "io.models",
-    "save_tool": "io.tools",
+    "respond": "vibration.forced",
+    "respond_tool": "handheld.response",
+    "resume": "schema.study_units",
+    "save": "schema.models",
+    "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.swinging",
     "sweep": "studies.run",
-    "sweep_speed": "structures.sweep",
-    "sweep_tool": "tools.sweep",
+    "sweep_speed": "vibration.sweep",
+    "sweep_tool": "handheld.sweep",
     "tolerance": "studies.tolerance",
-    "tool_sensitivities": "tools.felt",
+    "tool_sensitivities": "handheld.exposed",
     "trade_off": "balancing.pareto",
-    "transmit": "tools.transmission",
-    "vary_tool": "tools.studies",
-    "vibrate_freely": "structures.free",
-    "vibrate_tool": "tools.modes",
+    "transmit": "handheld.transmission",
+    "vary_tool": "handheld.studies",
+    "vibrate_freely": "vibration.free",
+    "vibrate_tool": "handheld.modes",
     "view": "web.widget",
     "weigh_orders": "exposure.measured",
     "weigh_signal": "exposure.measured",
@@ -191,22 +191,36 @@ if TYPE_CHECKING:
     from equipoise.exposure.measured import weigh_signal as weigh_signal
     from equipoise.exposure.measured import weigh_spectrum as weigh_spectrum
     from equipoise.exposure.weighted import Weighted as Weighted
-    from equipoise.io.accelerations import read_accelerations as read_accelerations
-    from equipoise.io.models import dumps as dumps
-    from equipoise.io.models import examples as examples
-    from equipoise.io.models import json_schema as json_schema
-    from equipoise.io.models import load as load
-    from equipoise.io.models import loads as loads
-    from equipoise.io.models import save as save
-    from equipoise.io.records import read_record as read_record
-    from equipoise.io.stored import machine_of as machine_of
-    from equipoise.io.stored import resume as resume
-    from equipoise.io.studies import load_study as load_study
-    from equipoise.io.template import Template as Template
-    from equipoise.io.tools import dumps_tool as dumps_tool
-    from equipoise.io.tools import load_tool as load_tool
-    from equipoise.io.tools import loads_tool as loads_tool
-    from equipoise.io.tools import save_tool as save_tool
+    from equipoise.handheld.design import ToolDesign as ToolDesign
+    from equipoise.handheld.design import design_tool as design_tool
+    from equipoise.handheld.design_plan import DesignLimit as DesignLimit
+    from equipoise.handheld.design_plan import DesignPlan as DesignPlan
+    from equipoise.handheld.design_plan import DesignVariable as DesignVariable
+    from equipoise.handheld.exposed import ToolExposure as ToolExposure
+    from equipoise.handheld.exposed import expose_tool as expose_tool
+    from equipoise.handheld.exposed import tool_sensitivities as tool_sensitivities
+    from equipoise.handheld.model import Absorber as Absorber
+    from equipoise.handheld.model import Excitation as Excitation
+    from equipoise.handheld.model import Hand as Hand
+    from equipoise.handheld.model import Harness as Harness
+    from equipoise.handheld.model import Impedance as Impedance
+    from equipoise.handheld.model import Operation as Operation
+    from equipoise.handheld.model import Station as Station
+    from equipoise.handheld.model import Tool as Tool
+    from equipoise.handheld.model import Work as Work
+    from equipoise.handheld.modes import ToolModes as ToolModes
+    from equipoise.handheld.modes import vibrate_tool as vibrate_tool
+    from equipoise.handheld.response import ToolResponse as ToolResponse
+    from equipoise.handheld.response import respond_tool as respond_tool
+    from equipoise.handheld.shaft import Section as Section
+    from equipoise.handheld.shaft import Segment as Segment
+    from equipoise.handheld.shaft import Shaft as Shaft
+    from equipoise.handheld.shaft import Tube as Tube
+    from equipoise.handheld.studies import vary_tool as vary_tool
+    from equipoise.handheld.sweep import ToolSweep as ToolSweep
+    from equipoise.handheld.sweep import sweep_tool as sweep_tool
+    from equipoise.handheld.transmission import Transmissions as Transmissions
+    from equipoise.handheld.transmission import transmit as transmit
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
@@ -283,17 +297,25 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.schema.models import dumps as dumps
+    from equipoise.schema.models import examples as examples
+    from equipoise.schema.models import json_schema as json_schema
+    from equipoise.schema.models import load as load
+    from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import save as save
+    from equipoise.schema.records import read_accelerations as read_accelerations
+    from equipoise.schema.records import read_record as read_record
+    from equipoise.schema.studies import load_study as load_study
+    from equipoise.schema.study_units import machine_of as machine_of
+    from equipoise.schema.study_units import resume as resume
+    from equipoise.schema.template import Template as Template
+    from equipoise.schema.tools import dumps_tool as dumps_tool
+    from equipoise.schema.tools import load_tool as load_tool
+    from equipoise.schema.tools import loads_tool as loads_tool
+    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
-    from equipoise.structures.forced import respond as respond
-    from equipoise.structures.free import FreeVibration as FreeVibration
-    from equipoise.structures.free import vibrate_freely as vibrate_freely
-    from equipoise.structures.response import Response as Response
-    from equipoise.structures.sweep import Sweep as Sweep
-    from equipoise.structures.sweep import sweep_speed as sweep_speed
-    from equipoise.structures.transient import Transient as Transient
-    from equipoise.structures.transient import from_rest as from_rest
     from equipoise.studies.best import Best as Best
     from equipoise.studies.best import best as best
     from equipoise.studies.export import export as export
@@ -315,36 +337,14 @@ if TYPE_CHECKING:
     from equipoise.studies.study import Vary as Vary
     from equipoise.studies.tolerance import Tolerances as Tolerances
     from equipoise.studies.tolerance import tolerance as tolerance
-    from equipoise.tools.design import ToolDesign as ToolDesign
-    from equipoise.tools.design import design_tool as design_tool
-    from equipoise.tools.exposed import ToolExposure as ToolExposure
-    from equipoise.tools.exposed import expose_tool as expose_tool
-    from equipoise.tools.felt import tool_sensitivities as tool_sensitivities
-    from equipoise.tools.model import Absorber as Absorber
-    from equipoise.tools.model import Excitation as Excitation
-    from equipoise.tools.model import Hand as Hand
-    from equipoise.tools.model import Harness as Harness
-    from equipoise.tools.model import Impedance as Impedance
-    from equipoise.tools.model import Operation as Operation
-    from equipoise.tools.model import Station as Station
-    from equipoise.tools.model import Tool as Tool
-    from equipoise.tools.model import Work as Work
-    from equipoise.tools.modes import ToolModes as ToolModes
-    from equipoise.tools.modes import vibrate_tool as vibrate_tool
-    from equipoise.tools.response import ToolResponse as ToolResponse
-    from equipoise.tools.response import respond_tool as respond_tool
-    from equipoise.tools.sections import Section as Section
-    from equipoise.tools.sections import Segment as Segment
-    from equipoise.tools.sections import Shaft as Shaft
-    from equipoise.tools.sections import Tube as Tube
-    from equipoise.tools.studies import vary_tool as vary_tool
-    from equipoise.tools.sweep import ToolSweep as ToolSweep
-    from equipoise.tools.sweep import sweep_tool as sweep_tool
-    from equipoise.tools.transmission import Transmissions as Transmissions
-    from equipoise.tools.transmission import transmit as transmit
-    from equipoise.tools.wishes import DesignLimit as DesignLimit
-    from equipoise.tools.wishes import DesignPlan as DesignPlan
-    from equipoise.tools.wishes import DesignVariable as DesignVariable
+    from equipoise.vibration.forced import respond as respond
+    from equipoise.vibration.free import FreeVibration as FreeVibration
+    from equipoise.vibration.free import vibrate_freely as vibrate_freely
+    from equipoise.vibration.response import Response as Response
+    from equipoise.vibration.sweep import Sweep as Sweep
+    from equipoise.vibration.sweep import sweep_speed as sweep_speed
+    from equipoise.vibration.transient import Transient as Transient
+    from equipoise.vibration.transient import from_rest as from_rest
     from equipoise.web.widget import view as view
 
 

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from equipoise.structures.exact import solve_exact
-from equipoise.structures.forced import respond
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.forced import respond
 from support import rig_mujoco
 from support.rig_reference import Rig
 from support.rigs import RPM, in_package, on_feet, one_row, two_rows

@@ -19,7 +19,7 @@ from equipoise.balancing.phase_cost import Combine
 from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.rows_in_time import in_time, measured, side_by_side, value_of
-from unit.structures.build import Array
+from unit.vibration.build import Array
 
 TYPE_II = eq.load("yamashita-2")
 

@@ -15,11 +15,10 @@ from equipoise.balancing.phase_cost import Term, Tops
 from equipoise.balancing.phase_grid import Grid
 from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
-from equipoise.structures.choice import usual_step
-from equipoise.structures.forced import respond
+from equipoise.vibration.forced import respond, usual_step
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
-from unit.structures.build import cart, rig
+from unit.vibration.build import cart, rig
 
 TYPE_II = eq.load("yamashita-2")
 SCALARS = (

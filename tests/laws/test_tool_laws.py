@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.tools.fields import Line
-from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import Absorber, Excitation, Hand, Station, Tool
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import ToolResponse, respond_tool
-from equipoise.tools.sections import Section, Segment, Theory
-from unit.tools.samples import THEORIES, bare, both, pieces_of, random_tool, still
+from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import ToolResponse, respond_tool
+from equipoise.handheld.shaft import Section, Segment, Theory
+from equipoise.handheld.shapes import Line
+from unit.handheld.samples import THEORIES, bare, both, pieces_of, random_tool, still
 
 Array = np.ndarray[Any, Any]
 SPEEDS = np.array([170.0, 455.0, 820.0])

@@ -14,14 +14,14 @@ import equipoise as eq
 from equipoise.mechanism.motor import Motor
 from equipoise.mechanism.support import Gauge, Mount, Row, Support, unit_vector
 from equipoise.signals import Periodic
-from equipoise.structures.exact import solve_exact
-from equipoise.structures.forced import respond
-from equipoise.structures.linear import Linear
-from equipoise.structures.response import MODELS, Model, Response
-from equipoise.structures.transient import from_rest
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.forced import respond
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.response import MODELS, Model, Response
+from equipoise.vibration.transient import from_rest
 from laws.transforms import mirrored_in_x, shifted
 from support.machines import make
-from unit.structures.build import STIFFNESS, Array, cart, close, rig, springs
+from unit.vibration.build import STIFFNESS, Array, cart, close, rig, springs
 
 KINDS = ("crank_rocker", "slider_crank", "stephenson", "watt", "quick_return", "scotch_yoke")
 EXAMPLES = ("yamashita-1", "slider-crank-engine", "watt-six-bar", "stephenson-six-bar")

@@ -24,13 +24,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from equipoise.io.tools import load_tool
-from equipoise.tools.frequencies import natural_frequencies, scale_of
-from equipoise.tools.model import Excitation, Hand, Harness, Tool
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import respond_tool
-from equipoise.tools.studies import changed, determinant_chart, vary_tool
-from equipoise.tools.transmission import transmit
+from equipoise.handheld.frequencies import natural_frequencies, scale_of
+from equipoise.handheld.model import Excitation, Hand, Harness, Tool
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import changed, determinant_chart, vary_tool
+from equipoise.handheld.transmission import transmit
+from equipoise.schema.tools import load_tool
 
 KGF = 9.80665
 LENGTH, WEIGHT, STIFFNESS = 1.544, 3.56, 100 * KGF

@@ -37,12 +37,11 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
-from equipoise.structures.forced import respond
-from equipoise.structures.free import vibrate_freely
-from equipoise.structures.linear import Linear
-from equipoise.structures.resonance import resonances
-from equipoise.structures.response import Model
-from equipoise.structures.sweep import sweep_speed
+from equipoise.vibration.forced import respond
+from equipoise.vibration.free import resonances, vibrate_freely
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.response import Model
+from equipoise.vibration.sweep import sweep_speed
 
 KGF = 9.80665
 INERTIA = 2.152 * KGF

@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.tools.frequencies import natural_frequencies
-from equipoise.tools.model import Hand, Impedance, Tool
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import ToolResponse, respond_tool
-from equipoise.tools.sections import Theory
+from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.model import Hand, Impedance, Tool
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import ToolResponse, respond_tool
+from equipoise.handheld.shaft import Theory
 from support.beam_reference import Response
-from unit.tools.samples import THEORIES, attached_of, random_tool, reference, still
+from unit.handheld.samples import THEORIES, attached_of, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]
 SPEEDS = np.array([170.0, 455.0, 820.0])

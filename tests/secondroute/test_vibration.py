@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 
 import equipoise as eq
 from equipoise.mechanism.motor import Motor
-from equipoise.structures.exact import ExactSolution, solve_exact
-from equipoise.structures.forced import respond
-from equipoise.structures.response import Model
+from equipoise.vibration.exact import ExactSolution, solve_exact
+from equipoise.vibration.forced import respond
+from equipoise.vibration.response import Model
 from support import rig_reference
 from support.rig_reference import Rig
 from support.rigs import RPM, in_package, on_feet, one_row, rows_apart, tied, two_rows

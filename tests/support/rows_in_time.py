@@ -12,7 +12,7 @@ from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.phase_cost import Term
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
-from unit.structures.build import Array
+from unit.vibration.build import Array
 
 
 def side_by_side(machine: eq.Machine, phases: Sequence[float], spacing: float = 0.3) -> eq.Machine:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from surface.running import READY, equipoise, succeeded
-from unit.io.samples import FOUR_BAR, ROWS, SUPPORT
+from unit.schema.samples import FOUR_BAR, ROWS, SUPPORT
 
 MOTOR = '\n[drive.motor]\nno_load_speed = "3000 rpm"\nstall_torque = "2 N m"\nratio = 12.5\n'
 

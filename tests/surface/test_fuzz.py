@@ -20,7 +20,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from surface.running import EXAMPLES, Result, equipoise, example, example_text, refused
-from unit.io.samples import BALANCE, ROWS, SUPPORT
+from unit.schema.samples import BALANCE, ROWS, SUPPORT
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
 Draw = Callable[..., Any]

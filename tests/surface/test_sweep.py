@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.io.stored import study_of
+from equipoise.schema.study_units import study_of
 from surface.running import command, equipoise, process, refused, succeeded
 from surface.studies import LENGTHS, TOLERANCES, written
 

@@ -23,7 +23,7 @@ from surface.running import (
     succeeded,
 )
 from surface.test_fuzz import Document, Draw, checked, fuzz, mutate
-from unit.io.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
+from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 
 HAND = 'hand.stiffness = "8000 N/m"'
 

@@ -26,10 +26,9 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.mechanism.reactions import Pass, reactions
 from equipoise.signals import Periodic
-from equipoise.structures.choice import usual_step
-from equipoise.structures.excitation import Step
-from equipoise.structures.linear import Linear, gauges_of
-from equipoise.structures.linkages import rows_of
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear, Step, gauges_of
+from equipoise.vibration.linkages import rows_of
 
 Array = np.ndarray[Any, Any]
 

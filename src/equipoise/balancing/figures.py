@@ -91,8 +91,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
 def _of_support(machine: Machine) -> dict[str, float]:
     if machine.support is None:
         return {}
-    from equipoise.structures.choice import usual_step
-    from equipoise.structures.forced import respond
+    from equipoise.vibration.forced import respond, usual_step
 
     response = respond(machine, model=usual_step(machine))
     figures = {}

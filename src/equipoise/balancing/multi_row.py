@@ -26,10 +26,9 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import Row
 from equipoise.signals import Periodic
-from equipoise.structures.choice import chosen_model, steady_speed, usual_step
-from equipoise.structures.excitation import ANGLES
-from equipoise.structures.linear import Linear, gauges_of
-from equipoise.structures.linkages import rows_of
+from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
+from equipoise.vibration.linear import ANGLES, Linear, gauges_of
+from equipoise.vibration.linkages import rows_of
 
 Array = np.ndarray[Any, Any]
 

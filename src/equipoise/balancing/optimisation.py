@@ -27,7 +27,7 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.choice import check_moving
+from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]
 

@@ -91,7 +91,7 @@ def _drop_output() -> None:
 
 
 def _one_line(text: str) -> str:
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     text = " ".join(text.splitlines())
     text = text if len(text) <= 2000 else f"{text[:1000]} ... {text[-900:]}"

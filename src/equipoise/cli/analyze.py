@@ -57,8 +57,8 @@ def analyze(
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
     from equipoise import pipeline
-    from equipoise.io.models import load
     from equipoise.results.analysis import order_values
+    from equipoise.schema.models import load
 
     machine = load(file)
     check_belonging("--json", json or None, split=split or None)
@@ -80,12 +80,12 @@ def analyze(
         analysis = pipeline.analyze(machine, *arguments)
         told = {} if count is None else {"by_order": order_values(analysis, count, zero)}
     if csv is not None:
-        from equipoise.io.output import to_csv, write
+        from equipoise.schema.output import to_csv, write
 
         write(csv, to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(analysis.to_dict(split) | told))
     elif count is not None:

@@ -60,8 +60,8 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.animation.limits import check_seconds, check_width
-    from equipoise.io.models import load
-    from equipoise.io.output import write
+    from equipoise.schema.models import load
+    from equipoise.schema.output import write
 
     name = f"{os.path.basename(file).removesuffix('.toml')}.svg" if out is None else out
     kind = _kind(name)

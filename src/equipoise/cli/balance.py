@@ -129,7 +129,7 @@ def balance(
     """
     from equipoise.cli.questions import tell_arrangements, tell_conditions, tell_sensitivities
     from equipoise.cli.wishes import Freed, plan_of
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
 
     check_belonging("--front", front, points=points)
     check_belonging("--sensitivities", sensitivities, crank_zero=crank_zero)
@@ -224,8 +224,8 @@ def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
 
 def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
-    from equipoise.io.files import printable
-    from equipoise.io.models import files_of, save
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of, save
     from equipoise.terminal.changes import told
 
     machine = found.machine

@@ -12,10 +12,10 @@ from equipoise.cli.results import Kind, draw
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.best import Best
     from equipoise.studies.store import Store
-    from equipoise.tools.model import Tool
 
 MOST_TOLD = 100_000
 ENDINGS = (".csv", ".parquet")
@@ -62,7 +62,7 @@ def best(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.stored import machine_of
+    from equipoise.schema.study_units import machine_of
     from equipoise.studies import best as of_stores
     from equipoise.studies.store import open_store
 
@@ -93,7 +93,7 @@ def best(
 def _check_out(store: Store, out: str) -> None:
     """A design that is to be written must have a place to go, before it is looked for."""
     from equipoise.cli.designs import check_model_out
-    from equipoise.io.stored import study_of
+    from equipoise.schema.study_units import study_of
 
     check_model_out(study_of(store).model.base(), out)
 
@@ -114,8 +114,8 @@ def _write(found: Best, store: Store, path: str) -> None:
 
 def _draw(found: Best, store: Store, folder: str, kind: Kind) -> None:
     from equipoise.cli.designs import title_of
-    from equipoise.io.study_units import units_in
     from equipoise.plotting.studies import best_drawings
+    from equipoise.schema.study_units import units_in
 
     draw(best_drawings(found, title_of(store), units_in(store)), folder, kind)
 
@@ -124,11 +124,11 @@ def _show(found: Best, store: Store, json: bool) -> None:
     from equipoise.cli.designs import title_of
 
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text({"title": title_of(store), **found.to_dict()}))
     else:
-        from equipoise.io.study_units import units_in
+        from equipoise.schema.study_units import units_in
         from equipoise.studies.best import outputs_of
         from equipoise.terminal.best import print_best
 
@@ -154,7 +154,7 @@ def export(
     kept
         Only designs that keep every limit.
     """
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
     from equipoise.studies import export as of_stores
     from equipoise.studies.store import open_store
 

@@ -53,7 +53,7 @@ def decay(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.records import read_record
+    from equipoise.schema.records import read_record
 
     check_belonging("--plot", plot, format=format)
     check_belonging("--stiffness", stiffness, **{"spring-arm": spring_arm})
@@ -73,12 +73,12 @@ def decay(
         _check_stiffness(stiffness, torsional, angles, spring_at)
     found = _identified(csv, record, stiff, at, spring_at, confidence)
     if plot is not None:
-        from equipoise.io.files import printable
         from equipoise.plotting.decay import drawings
+        from equipoise.schema.files import printable
 
         draw(drawings(found, printable(os.path.basename(csv))), plot, format or "svg")
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(found.to_dict()))
     else:
@@ -95,8 +95,8 @@ def _identified(
     spring_arm: float | None,
     confidence: float,
 ) -> Decay:
-    from equipoise.io.files import printable
     from equipoise.measured.decay import identify_decay
+    from equipoise.schema.files import printable
 
     try:
         return identify_decay(

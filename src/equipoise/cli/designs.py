@@ -12,17 +12,17 @@ from equipoise.cli.options import check_new_files
 if TYPE_CHECKING:
     import numpy as np
 
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
-    from equipoise.tools.model import Tool
 
 
 def check_model_out(model: Machine | Tool, path: str) -> None:
     """A new model file must have a place to go, and so must all that is written beside it."""
-    from equipoise.io.models import files_of
-    from equipoise.io.tools import files_of_tool
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
+    from equipoise.schema.models import files_of
+    from equipoise.schema.tools import files_of_tool
 
     if isinstance(model, Tool):
         check_new_files(path, lambda name: files_of_tool(model, name))
@@ -35,10 +35,10 @@ def save_design(model: Machine | Tool, path: str, number: int, of: str) -> None:
 
     of : what it is a design of, such as ``the study "Lengths"``.
     """
-    from equipoise.io.files import printable
-    from equipoise.io.models import files_of, save
-    from equipoise.io.tools import files_of_tool, save_tool
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of, save
+    from equipoise.schema.tools import files_of_tool, save_tool
 
     title = f"{model.title}, design {number}"
     start = f"Design {number} of {of}. Started from: "
@@ -63,8 +63,8 @@ def write_designs(
     import csv
     import io
 
-    from equipoise.io.files import printable
-    from equipoise.io.output import write
+    from equipoise.schema.files import printable
+    from equipoise.schema.output import write
 
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

@@ -17,7 +17,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure, Task
     from equipoise.exposure.weighted import Weighted
-    from equipoise.io.accelerations import Accelerations
+    from equipoise.schema.records import Accelerations
 
 INPUT = Parameter(name="INPUT", negative="")
 DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
@@ -119,7 +119,7 @@ def _give(told: list[Told], json: bool, plot: str | None, kind: Kind) -> None:
 
         draw(drawings(measured, tools, day), plot, kind)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(_values(measured, tools, day)))
     else:
@@ -150,7 +150,7 @@ def _values(
 
 def _told(text: str, options: Options) -> list[Told]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
-    from equipoise.io.accelerations import Accelerations, read_accelerations
+    from equipoise.schema.records import Accelerations, read_accelerations
 
     match = None if os.path.lexists(text) else VALUE.fullmatch(text)
     if match is not None:
@@ -187,7 +187,7 @@ def _both_modes(idle: str, racing: str) -> Told:
 
 def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
     from equipoise.exposure.measured import weigh_signal, weigh_spectrum
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     single = options.single_axis and len(found.axes) < 3
     shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options.weighted}

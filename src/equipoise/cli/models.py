@@ -20,7 +20,7 @@ STARTS = {
 @app.command(name="examples")
 def examples_() -> None:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
-    from equipoise.io.models import examples
+    from equipoise.schema.models import examples
 
     found = examples()
     width = max(map(len, found))
@@ -37,9 +37,9 @@ def check(file: Annotated[str, FILE], /) -> None:
     file
         Path of a model file or a study file, or the name of a bundled example.
     """
-    from equipoise.io.tools import load_any
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
+    from equipoise.schema.tools import load_any
 
     found = load_any(file)
     if isinstance(found, Tool):
@@ -53,7 +53,7 @@ def check(file: Annotated[str, FILE], /) -> None:
 
             print_check(found)
         else:
-            from equipoise.io.study_units import units_of
+            from equipoise.schema.study_units import units_of
             from equipoise.terminal.check_study import print_check_of_study
 
             print_check_of_study(found, units_of(found), file)
@@ -72,9 +72,9 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     """
     import json
 
-    from equipoise.io.models import json_schema
-    from equipoise.io.studies import study_schema
-    from equipoise.io.tools import tool_schema
+    from equipoise.schema.models import json_schema
+    from equipoise.schema.studies import study_schema
+    from equipoise.schema.tools import tool_schema
 
     schemas = {"linkage": json_schema, "tool": tool_schema, "study": study_schema}
     print(json.dumps(schemas[_kind(tool, study)](), indent=2))
@@ -97,10 +97,10 @@ def new(
     """
     from importlib.resources import files
 
-    from equipoise.io.output import write
+    from equipoise.schema.output import write
 
     name, usual, command = STARTS[_kind(tool, study)]
-    start = files("equipoise").joinpath("io", name).read_text(encoding="utf-8")
+    start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
     path = usual if file is None else file
     write(path, start, replace=False)
     print(f"wrote {path}; next: {command.format(path)}", file=sys.stderr)

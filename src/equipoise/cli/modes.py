@@ -34,8 +34,8 @@ def modes(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.models import load
-    from equipoise.structures.free import vibrate_freely
+    from equipoise.schema.models import load
+    from equipoise.vibration.free import vibrate_freely
 
     machine = load(file)
     wanted = Wanted(json, None, plot, format)

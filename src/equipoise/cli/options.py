@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
-"""As in `structures.response`, which would bring NumPy into every start of the command line."""
+"""As in `vibration.response`, which would bring NumPy into every start of the command line."""
 
 
 @contextmanager
@@ -33,7 +33,7 @@ def naming(file: str) -> Iterator[None]:
     try:
         yield
     except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
-        from equipoise.io.files import printable
+        from equipoise.schema.files import printable
 
         raise EquipoiseError(f"{printable(file)}: {error}") from error
 
@@ -85,14 +85,14 @@ def check_folder(option: str, path: str) -> None:
 
 def check_new(machine: Machine, path: str) -> None:
     """A new model file must have a place to go, and take no other's."""
-    from equipoise.io.models import files_of
+    from equipoise.schema.models import files_of
 
     check_new_files(path, lambda name: files_of(machine, name))
 
 
 def check_new_files(path: str, files: Callable[[str], Iterable[Path]]) -> None:
     """New files, told by the name of the first, must have a place to go and take no other's."""
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     if not path:
         raise UsageError("--out: got an empty name; give the name of a file")
@@ -112,7 +112,7 @@ def check_target(
 
     others : further files that are read or written.
     """
-    from equipoise.io.models import tables_of
+    from equipoise.schema.models import tables_of
 
     tables = tables_of(machine).values()
     sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]

@@ -72,8 +72,8 @@ def plant(
     seed
         With --fit: seed of the random numbers instead of the target file's.
     """
-    from equipoise.io.models import load
     from equipoise.planting.summary import plant as read_off
+    from equipoise.schema.models import load
     from equipoise.terminal.units import Units
 
     check_belonging("--csv", csv, angles=angles)
@@ -102,7 +102,7 @@ def plant(
     if plot is not None:
         _draw(figures, plot, format or "svg")
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text((figures if fitted is None else fitted).to_dict()))
     elif fitted is not None:
@@ -145,11 +145,11 @@ def _new_file(machine: Machine, file: str, out: str | None) -> str:
 def _fit(machine: Machine, file: str, targets: str, new: str, seed: int | None) -> Fit:
     """Search, and write the design that was found as a new model file."""
     from equipoise.cli.progress import told
-    from equipoise.io.files import printable
-    from equipoise.io.models import files_of, save
-    from equipoise.io.targets import read_targets
     from equipoise.planting.judge import figure_names
     from equipoise.planting.search import fit_planting
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of, save
+    from equipoise.schema.targets import read_targets
 
     with naming(file):
         known = figure_names(machine)

@@ -112,9 +112,9 @@ def _pictures(
     folder: str,
     kind: Kind,
 ) -> None:
-    from equipoise.io.output import write_all
     from equipoise.plotting.style import render
     from equipoise.report.findings import ToolFindings, find
+    from equipoise.schema.output import write_all
 
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
@@ -168,8 +168,8 @@ def _map(
     from equipoise.cli.progress import counted
     from equipoise.cli.results import draw
     from equipoise.cli.wishes import read_objective
-    from equipoise.io.template import Template
     from equipoise.plotting.landscape import drawings, told
+    from equipoise.schema.template import Template
     from equipoise.studies.landscape import landscape
 
     if len(over) != 2:

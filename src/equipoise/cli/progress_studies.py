@@ -16,7 +16,7 @@ from equipoise.cli.progress import SECONDS
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.evaluate import Outcome
     from equipoise.studies.progress import Progress
     from equipoise.studies.study import Study

@@ -38,7 +38,7 @@ def tell_sensitivities(
 ) -> None:
     """What each link's mass, centre of mass and inertia does to an output."""
     from equipoise.balancing.sensitivity import sensitivities
-    from equipoise.structures.choice import check_moving
+    from equipoise.vibration.forced import check_moving
 
     zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     check_moving(machine)
@@ -58,7 +58,7 @@ def tell_sensitivities(
 def tell_arrangements(machine: Machine, rows: str, spacing: str | None, wanted: Wanted) -> None:
     """Arrangements of rows in fixed phases, and what is left of the machine's forces."""
     from equipoise.balancing.patterns import patterns_for
-    from equipoise.structures.choice import check_moving
+    from equipoise.vibration.forced import check_moving
 
     count = whole("--arrangements", rows, 2, MOST_ROWS)
     apart = quantity("--spacing", "300 mm" if spacing is None else spacing, "length")

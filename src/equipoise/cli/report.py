@@ -42,8 +42,8 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.io.files import printable
     from equipoise.report.writing import check, write_document
+    from equipoise.schema.files import printable
 
     check(paths, language)
     from equipoise.report.build import build

@@ -12,8 +12,8 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
-    from equipoise.structures.response import Response
     from equipoise.terminal.units import Units
+    from equipoise.vibration.response import Response
 
 
 @app.command
@@ -60,7 +60,7 @@ def respond(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.models import load
+    from equipoise.schema.models import load
     from equipoise.terminal.units import OF_VIBRATION, Units
 
     machine = load(file)
@@ -124,7 +124,7 @@ def _answer(
     wanted: Wanted,
 ) -> None:
     """The response at one speed."""
-    from equipoise.structures.forced import respond as solve
+    from equipoise.vibration.forced import respond as solve
 
     found = solve(machine, speed, model, drive)
 
@@ -143,9 +143,9 @@ QUICK = 40
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     """The response by every model that costs little, for comparison; None where there is none."""
     from equipoise.errors import EquipoiseError
-    from equipoise.structures.choice import models_of
-    from equipoise.structures.forced import respond as solve
-    from equipoise.structures.modes import swings_in_a_turn
+    from equipoise.vibration.forced import models_of
+    from equipoise.vibration.forced import respond as solve
+    from equipoise.vibration.modes import swings_in_a_turn
 
     swings = swings_in_a_turn(found.modes, found.speed)
     others: dict[str, Response | None] = {}
@@ -171,7 +171,7 @@ def _sweep(
 ) -> None:
     """The response over a range of speeds."""
     from equipoise.cli.progress import counted
-    from equipoise.structures.sweep import SPEEDS, sweep_speed
+    from equipoise.vibration.sweep import SPEEDS, sweep_speed
 
     count = SPEEDS if speeds is None else speeds
     with counted("speed") as progress:
@@ -194,7 +194,7 @@ def _follow(
     wanted: Wanted,
 ) -> None:
     """The machine from rest."""
-    from equipoise.structures.transient import from_rest
+    from equipoise.vibration.transient import from_rest
 
     found = from_rest(machine, duration, speed, drive)
 

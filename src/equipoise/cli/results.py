@@ -50,7 +50,7 @@ class Wanted:
         if self.plot is not None:
             draw(drawings(), self.plot, self.format or "svg")
         if self.json:
-            from equipoise.io.output import json_text
+            from equipoise.schema.output import json_text
 
             print(json_text(values()))
         else:
@@ -59,7 +59,7 @@ class Wanted:
 
 def write_csv(columns: Columns, path: str) -> None:
     """Write columns, as name, unit and values, and say so."""
-    from equipoise.io.output import csv_text, write
+    from equipoise.schema.output import csv_text, write
 
     write(path, csv_text(columns))
     print(f"wrote {path}", file=sys.stderr)
@@ -67,8 +67,8 @@ def write_csv(columns: Columns, path: str) -> None:
 
 def draw(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
-    from equipoise.io.output import write_all
     from equipoise.plotting.style import render
+    from equipoise.schema.output import write_all
 
     pictures = {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()}
     write_all(folder, pictures)

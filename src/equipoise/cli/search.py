@@ -18,7 +18,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.study import Study
 
@@ -66,8 +66,8 @@ def search(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
 
     check_belonging("--out", out, design=design)
     check_belonging("--plot", plot, format=format)
@@ -138,7 +138,7 @@ def _give(
         columns = columns_of(study.paths, found.values, study.names, found.figures)
         write_designs(csv, range(len(found.values)), columns, si_units(study))
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(found.to_dict()))
     else:

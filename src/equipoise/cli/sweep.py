@@ -13,7 +13,7 @@ from equipoise.cli.options import naming, whole
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.progress import Progress
     from equipoise.studies.store import Store
     from equipoise.terminal.swept import Summary
@@ -48,8 +48,8 @@ def sweep(
     json
         Print one JSON object in SI units, and nothing else.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
     from equipoise.studies import run
 
     asked = load_study(study)
@@ -87,8 +87,8 @@ def resume(
     json
         Print one JSON object in SI units, and nothing else.
     """
-    from equipoise.io import stored
-    from equipoise.io.study_units import units_in
+    from equipoise.schema import study_units
+    from equipoise.schema.study_units import units_in
     from equipoise.studies.store import open_store
 
     count = _workers(workers, cluster)
@@ -96,7 +96,7 @@ def resume(
     with _going_on(store):
         found, last = _told(
             units,
-            lambda told: stored.resume(store, workers=count, cluster=cluster, progress=told),
+            lambda told: study_units.resume(store, workers=count, cluster=cluster, progress=told),
         )
         _give(found, last, units, json)
 
@@ -142,7 +142,7 @@ def _told(
 def _give(store: Store, last: Progress, units: dict[str, Unit], json: bool) -> None:
     summary = _summary(store, last)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(_values(summary, last)))
     else:

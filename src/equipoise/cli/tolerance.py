@@ -11,7 +11,7 @@ from equipoise.cli.results import Kind, draw
 from equipoise.errors import ModelError, UsageError
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.study import Study
     from equipoise.studies.tolerance import Tolerances
 
@@ -43,8 +43,8 @@ def tolerance(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.io.studies import load_study
-    from equipoise.io.study_units import units_of
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
 
     check_belonging("--plot", plot, format=format)
     if plot is not None:
@@ -67,7 +67,7 @@ def tolerance(
 
         draw(tolerance_drawings(found, units), plot, format or "svg")
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         print(json_text(found.to_dict()))
     else:

@@ -17,16 +17,16 @@ from equipoise.cli.options import (
     whole,
 )
 from equipoise.errors import UsageError
-from equipoise.io.files import printable
+from equipoise.handheld.model import Tool
+from equipoise.handheld.sweep import MODES, default_answers, default_speeds
+from equipoise.schema.files import printable
 from equipoise.terminal.units import Units
-from equipoise.tools.model import Tool
-from equipoise.tools.usual import MODES, usual_answers, usual_speeds
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.tools.design import ToolDesign
-    from equipoise.tools.modes import ToolModes
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.modes import ToolModes
 
 RANGE = '"2000 rpm : 9000 rpm"'
 MOST_MODES, MOST_SPEEDS = 100, 5_000
@@ -50,11 +50,11 @@ class Asked:
         """Answers that are asked for; where none is, those that the file has what is needed for."""
         if self.number is not None and chosen and not {"modes", "vary"} & {*chosen}:
             raise UsageError("--number belongs to --modes or --vary; give one of them too")
-        return chosen or usual_answers(self.tool)
+        return chosen or default_answers(self.tool)
 
     def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
         """Results must have a place to go, before time is spent on them."""
-        from equipoise.io.tools import files_of_tool, parts_of
+        from equipoise.schema.tools import files_of_tool, parts_of
 
         if plot is not None:
             check_folder("--plot", plot)
@@ -75,7 +75,7 @@ class Asked:
         """Lowest and highest speed of the engine, rad/s."""
         if self.respond is not None:
             return _range("--respond", self.respond)
-        told = usual_speeds(self.tool)
+        told = default_speeds(self.tool)
         if told is None:
             raise UsageError(
                 f"{printable(self.file)}: operation: missing, so that no speeds are told; add the "
@@ -86,7 +86,7 @@ class Asked:
     @cached_property
     def range(self) -> np.ndarray[Any, Any]:
         """Speeds of the engine, rad/s."""
-        from equipoise.tools.sweep import SPEEDS, speeds_between
+        from equipoise.handheld.sweep import SPEEDS, speeds_between
 
         many = SPEEDS if self.speeds is None else whole("--speeds", self.speeds, 2, MOST_SPEEDS)
         return speeds_between(self.tool, *self.ends, many)
@@ -101,7 +101,7 @@ class Asked:
     @cached_property
     def modes(self) -> ToolModes:
         """Free vibration, which several pictures show too."""
-        from equipoise.tools.modes import vibrate_tool
+        from equipoise.handheld.modes import vibrate_tool
 
         return vibrate_tool(self.tool, self.count)
 
@@ -109,7 +109,7 @@ class Asked:
     def better(self) -> ToolDesign:
         """The design."""
         from equipoise.cli.progress import counted
-        from equipoise.tools.design import design_tool
+        from equipoise.handheld.design import design_tool
 
         with counted("search") as told:
             return design_tool(self.tool, told)

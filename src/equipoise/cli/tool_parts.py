@@ -58,7 +58,7 @@ def _of_modes(asked: Asked) -> Part:
         print_modes(found, asked.units)
 
     def drawings() -> Mapping[str, Figure]:
-        from equipoise.tools.studies import determinant_chart
+        from equipoise.handheld.studies import determinant_chart
 
         highest = 1.1 * float(found.planes[0].parameter[-1])
         chart = determinant_chart(asked.tool, highest)
@@ -70,7 +70,7 @@ def _of_modes(asked: Asked) -> Part:
 
 
 def _of_speeds(asked: Asked) -> Part:
-    from equipoise.tools.sweep import sweep_tool
+    from equipoise.handheld.sweep import sweep_tool
 
     length = asked.tool.shaft.length
     for place in asked.places:
@@ -97,7 +97,7 @@ def _of_speeds(asked: Asked) -> Part:
 
 
 def _of_hands(asked: Asked) -> Part:
-    from equipoise.tools.exposed import expose_tool
+    from equipoise.handheld.exposed import expose_tool
 
     duration = None
     if asked.duration is not None:
@@ -119,8 +119,8 @@ def _of_hands(asked: Asked) -> Part:
 def _of_variation(asked: Asked) -> Part:
     import numpy as np
 
-    from equipoise.tools.studies import check_key, vary_tool
-    from equipoise.tools.wishes import KEYS
+    from equipoise.handheld.design_plan import KEYS
+    from equipoise.handheld.studies import check_key, vary_tool
 
     text = asked.vary or ""
     match = VARY.fullmatch(text.strip())
@@ -159,7 +159,7 @@ def _of_variation(asked: Asked) -> Part:
 def _of_sensitivities(asked: Asked) -> Part:
     import numpy as np
 
-    from equipoise.tools.felt import tool_sensitivities
+    from equipoise.handheld.exposed import tool_sensitivities
 
     design = asked.tool.design
     given = asked.respond is None and design is not None
@@ -228,7 +228,7 @@ def give(
             raise UsageError("--plot: sensitivities have no picture; leave it out")
         draw(drawn, plot, kind)
     if json:
-        from equipoise.io.output import json_text
+        from equipoise.schema.output import json_text
 
         values: dict[str, Any] = {"title": asked.tool.title}
         for part in parts:
@@ -243,7 +243,7 @@ def give(
 
 
 def _save(asked: Asked, out: str) -> None:
-    from equipoise.io.tools import save_tool
+    from equipoise.schema.tools import save_tool
 
     save_tool(asked.better.better, out)
     print(f"wrote {out}; next: equipoise tool {out}", file=sys.stderr)

@@ -249,9 +249,9 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
 
 
 def _limit(machine: Machine, head: str, tail: str) -> Limit:
-    from equipoise.io.shares import parse_share
     from equipoise.mechanism.balance import Limit
     from equipoise.mechanism.balance_outputs import quantity_of
+    from equipoise.schema.numbers import parse_share
 
     asked = read_objective("--limit", head)
     try:

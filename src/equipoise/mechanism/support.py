@@ -1,6 +1,6 @@
 """What carries the linkages: a rigid body on mounts, the gauges on it, and the rows of linkages.
 
-They are part of the model; `equipoise.structures` computes with them.  Places are in the frame's
+They are part of the model; `equipoise.vibration` computes with them.  Places are in the frame's
 axes while the machine stands still: x forward, y up, z to the right of who looks forward.
 """
 
@@ -25,7 +25,7 @@ Direction = float | tuple[float, float, float]
 
 PLANAR = ("surge", "heave", "pitch")
 FREEDOMS = ("surge", "heave", "sway", "roll", "yaw", "pitch")
-"""Along x, y, z and about x, y, z: the order of coordinates in `equipoise.structures`."""
+"""Along x, y, z and about x, y, z: the order of coordinates in `equipoise.vibration`."""
 HELD = ("surge", "heave", "sway")
 """What a pivot takes away."""
 AXES = ("roll", "yaw", "pitch")

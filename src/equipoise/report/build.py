@@ -52,7 +52,7 @@ MODELS = {
     ),
     "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
 }
-"""What each model of the support stands for; as `structures.response.EQUATIONS`."""
+"""What each model of the support stands for; as `vibration.response.EQUATIONS`."""
 
 MOST_TRACED = 3
 """Points whose paths are drawn beside the moving linkage, where no finger plants."""

@@ -17,8 +17,8 @@ from equipoise.report.findings import Findings
 from equipoise.report.helps import nothing_told
 from equipoise.report.notes import noted
 from equipoise.report.numbers import PER_RPM, about, angle, change, number
-from equipoise.structures.response import Response
-from equipoise.structures.sweep import Sweep
+from equipoise.vibration.response import Response
+from equipoise.vibration.sweep import Sweep
 
 MOST_RESONANCES = 8
 

@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.balancing.balanced import Balanced
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.handheld.transmission import Transmissions
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
-    from equipoise.structures.free import FreeVibration
-    from equipoise.structures.response import Response
-    from equipoise.structures.sweep import Sweep
-    from equipoise.tools.design import ToolDesign
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.sweep import ToolSweep
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
 
 Value = TypeVar("Value")
 
@@ -90,7 +90,7 @@ class Findings(_Found):
         """Vibration at the speed of the machine; None where it has no support."""
         if self.machine.support is None:
             return None
-        from equipoise.structures.forced import respond
+        from equipoise.vibration.forced import respond
 
         return self._tried("vibration", lambda: respond(self.machine))
 
@@ -99,7 +99,7 @@ class Findings(_Found):
         """Vibration over speeds around that of the machine."""
         if self.response is None:
             return None
-        from equipoise.structures.sweep import sweep_speed
+        from equipoise.vibration.sweep import sweep_speed
 
         slow, fast = (share * self.response.speed for share in AROUND)
         return self._tried(
@@ -112,7 +112,7 @@ class Findings(_Found):
         """Free vibration on the support."""
         if self.machine.support is None:
             return None
-        from equipoise.structures.free import vibrate_freely
+        from equipoise.vibration.free import vibrate_freely
 
         return self._tried("natural frequencies", lambda: vibrate_freely(self.machine))
 
@@ -171,18 +171,17 @@ class ToolFindings(_Found):
     @cached_property
     def modes(self) -> ToolModes | None:
         """Free vibration."""
-        from equipoise.tools.modes import vibrate_tool
-        from equipoise.tools.usual import MODES
+        from equipoise.handheld.modes import vibrate_tool
+        from equipoise.handheld.sweep import MODES
 
         return self._tried("natural frequencies", lambda: vibrate_tool(self.tool, MODES))
 
     @cached_property
     def speeds(self) -> np.ndarray[Any, Any] | None:
         """Speeds of the engine, rad/s, closer about resonances; None where the tool tells none."""
-        from equipoise.tools.sweep import SPEEDS, speeds_between
-        from equipoise.tools.usual import usual_speeds
+        from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
 
-        ends = usual_speeds(self.tool)
+        ends = default_speeds(self.tool)
         if ends is None:
             return None
         return self._tried("speeds", lambda: speeds_between(self.tool, *ends, SPEEDS))
@@ -193,7 +192,7 @@ class ToolFindings(_Found):
         speeds = self.speeds
         if speeds is None or not self.tool.stations:
             return None
-        from equipoise.tools.sweep import sweep_tool
+        from equipoise.handheld.sweep import sweep_tool
 
         return self._tried("vibration over speed", lambda: sweep_tool(self.tool, speeds))
 
@@ -208,7 +207,7 @@ class ToolFindings(_Found):
         speeds = self.speeds
         if speeds is None or not self.tool.excitations or not self.tool.grips:
             return None
-        from equipoise.tools.exposed import expose_tool
+        from equipoise.handheld.exposed import expose_tool
 
         return self._tried("exposure", lambda: expose_tool(self.tool, speeds))
 
@@ -217,7 +216,7 @@ class ToolFindings(_Found):
         """What to change, where the file asks for it."""
         if self.tool.design is None:
             return None
-        from equipoise.tools.design import design_tool
+        from equipoise.handheld.design import design_tool
 
         return self._tried("design", lambda: design_tool(self.tool))
 
@@ -242,9 +241,9 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.io.models import loads
-    from equipoise.io.opening import kind_of_text, opened
-    from equipoise.io.tools import loads_tool
+    from equipoise.schema.models import loads
+    from equipoise.schema.opening import kind_of_text, opened
+    from equipoise.schema.tools import loads_tool
 
     file = opened(path_or_name)
     name = os.path.basename(os.fspath(path_or_name))

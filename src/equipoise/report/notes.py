@@ -12,7 +12,7 @@ from functools import cache
 from equipoise.i18n import say, spoken, to_say
 
 SENTENCES = (
-    # structures
+    # vibration
     to_say("{name} does not touch at rest, and is left out"),
     to_say("{name} would have to pull, which it cannot; the model exact lets it go"),
     to_say("the support falls over by itself: it does not stand in the drawn position"),

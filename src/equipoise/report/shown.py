@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
     from equipoise.balancing.balanced import Balanced
     from equipoise.planting.summary import PlantingFigures
-    from equipoise.structures.response import Response
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
 
 Entry = tuple[str, str, Callable[[], "Figure"]]
 """Name, caption, and what draws it inside `plotting.style.styled`."""

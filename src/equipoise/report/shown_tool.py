@@ -11,9 +11,9 @@ from equipoise.report.findings import ToolFindings
 from equipoise.report.shown import Entry, Part, pages
 
 if TYPE_CHECKING:
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.transmission import Transmissions
 
 
 def of_tool(found: ToolFindings) -> Iterator[Part]:

@@ -9,19 +9,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.handheld.exposed import WORKING, grips
+from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import ToolFindings
 from equipoise.report.numbers import PER_RPM, brief, capital, change, percent
 from equipoise.report.tool_tables import in_units, varied_named
-from equipoise.tools.exposed import WORKING, grips
-from equipoise.tools.response import respond_tool
 
 if TYPE_CHECKING:
-    from equipoise.tools.design import ToolDesign
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import ToolModes
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
 
 VERDICTS = {
     "below the action value": to_say("below the action value of 2.5 m/s² (2002/44/EC)"),

@@ -5,17 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.i18n import say, to_say
 from equipoise.plotting.tool.design import figure_named
 from equipoise.report.document import Block, Paragraph, Row, Table
 from equipoise.report.numbers import change, number, percent
-from equipoise.tools.exposed import IDLING, RACING, WORKING
 
 if TYPE_CHECKING:
-    from equipoise.tools.design import Before, ToolDesign
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.model import Station, Tool
-    from equipoise.tools.modes import ToolModes
+    from equipoise.handheld.design import Before, ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Station, Tool
+    from equipoise.handheld.modes import ToolModes
 
 NAMED = {WORKING: to_say("working"), IDLING: to_say("idling"), RACING: to_say("racing")}
 EDGES = {
@@ -36,7 +36,7 @@ VARIED = {
     "absorber.stiffness": to_say("stiffness of the absorber at {station}"),
     "absorber.damping": to_say("damping of the absorber at {station}"),
 }
-"""Key of a number that a design may change, as `tools.wishes.KEYS` -> what it is."""
+"""Key of a number that a design may change, as `handheld.design_plan.KEYS` -> what it is."""
 SCALES = {
     "length": (1e3, "mm"),
     "mass": (1e3, "g"),
@@ -159,7 +159,7 @@ def design_table(design: ToolDesign) -> Table:
 
 
 def varied_named(name: str) -> str:
-    """A number that a design may change, as `tools.design` calls it, in words."""
+    """A number that a design may change, as `handheld.design` calls it, in words."""
     station, _, key = name.rpartition(" ")
     return say(VARIED[key], station=station)
 

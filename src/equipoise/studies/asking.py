@@ -15,9 +15,9 @@ from equipoise.studies.commands import COMMANDS, analyzed
 from equipoise.studies.figures import PLACES, Of, Step, resolve
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.study import Output, Study
-    from equipoise.tools.model import Tool
 
 ANGLES = 360
 """Crank angles in a turn to begin with."""

@@ -13,8 +13,8 @@ import numpy as np
 from equipoise.errors import ModelError
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Values = Mapping[str, Any]
 Wanted = Collection[str] | None
@@ -47,7 +47,7 @@ def _planted(model: Machine | Tool, wanted: Wanted) -> Values:
 
 
 def _responded(model: Machine | Tool, wanted: Wanted) -> Values:
-    from equipoise.structures.forced import respond
+    from equipoise.vibration.forced import respond
 
     return respond(cast("Machine", model)).to_dict()
 
@@ -60,11 +60,11 @@ def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
 
 def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
     """`equipoise tool` without further options; only those of its answers that have the keys."""
-    from equipoise.tools.usual import usual_answers
+    from equipoise.handheld.sweep import default_answers
 
     tool = cast("Tool", model)
     values: dict[str, Any] = {"title": tool.title}
-    for name in usual_answers(tool):
+    for name in default_answers(tool):
         if wanted is None or not ANSWERS[name].isdisjoint(wanted):
             values |= _answer(tool, name, wanted)
     return values
@@ -87,10 +87,9 @@ ANSWERS = {
 
 
 def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
-    from equipoise.tools.exposed import expose_tool
-    from equipoise.tools.modes import vibrate_tool
-    from equipoise.tools.sweep import sweep_tool
-    from equipoise.tools.usual import MODES
+    from equipoise.handheld.exposed import expose_tool
+    from equipoise.handheld.modes import vibrate_tool
+    from equipoise.handheld.sweep import MODES, sweep_tool
 
     if name == "modes":
         return vibrate_tool(tool, MODES).to_dict()
@@ -104,10 +103,9 @@ def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
 
 def _speeds(tool: Tool) -> np.ndarray[Any, Any]:
     """Speeds of the engine at which `equipoise tool` looks, rad/s."""
-    from equipoise.tools.sweep import SPEEDS, speeds_between
-    from equipoise.tools.usual import usual_speeds
+    from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
 
-    ends = usual_speeds(tool)
+    ends = default_speeds(tool)
     assert ends is not None  # else nothing over speeds is among the usual answers
     return speeds_between(tool, *ends, SPEEDS)
 

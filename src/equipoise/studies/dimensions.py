@@ -10,9 +10,9 @@ from equipoise.results.analysis import unit_of
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Support
-    from equipoise.tools.model import Tool
 
 OF_UNITS = {
     "rad": "angle",

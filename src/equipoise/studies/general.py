@@ -37,9 +37,9 @@ from equipoise.studies.evaluate import Evaluator, Outcome
 from equipoise.studies.figures import Step, read, scale
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.studies.study import Model, Output, Study
-    from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, Any]

@@ -76,7 +76,7 @@ def resume(
 
     Parameters
     ----------
-    restore : makes the study of its texts; `equipoise.io.studies.restore`.
+    restore : makes the study of its texts; `equipoise.schema.studies.restore`.
     workers, cluster, progress : as in `sweep`.
 
     Raises

@@ -25,8 +25,8 @@ from equipoise.studies.spread import Choices, Range
 from equipoise.studies.study import Make, Study
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Array = np.ndarray[Any, Any]
 

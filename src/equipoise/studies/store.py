@@ -55,7 +55,7 @@ class Store(Result):
     size : number of designs.  chunk : of those that are stored together; the last may be fewer.
     numbers : paths of the varied numbers.  outputs : names of the outputs.
     units : of numbers and outputs, by name, where they are known.
-    texts : of the study, from which `equipoise.io.studies.restore` makes it again.
+    texts : of the study, from which `equipoise.schema.studies.restore` makes it again.
     engine : what computes the designs.  versions : that it was computed with, by name.
     arrays : of numbers, of outputs, and of reasons, in this order, by name.
     """

@@ -12,8 +12,8 @@ from equipoise.studies.checks import check_numbers, problems
 from equipoise.studies.spread import SPREADS, Range, Spread
 
 if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.tools.model import Tool
 
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
 Command = Literal["analyze", "plant", "respond", "balance", "tool"]
@@ -23,7 +23,7 @@ CHUNK, SLOW_CHUNK = 65_536, 256
 
 
 class Model(Protocol):
-    """A model file in which numbers can be replaced; `equipoise.io.template.Template`."""
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
 
     @property
     def kind(self) -> Literal["linkage", "tool"]: ...
@@ -173,7 +173,7 @@ class Study:
 
     @property
     def texts(self) -> dict[str, str]:
-        """All of it as texts by name, from which `equipoise.io.studies.restore` makes it again."""
+        """All of it as texts by name; `equipoise.schema.studies.restore` makes it again of them."""
         return {
             "study": json.dumps(to_plain(self), ensure_ascii=False, indent=1, default=int),
             **({"file": self.file} if self.file else {}),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from equipoise.terminal.designs import columns_of, designs_table, limits, wanted
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.best import Best
     from equipoise.studies.study import Output
 

@@ -11,9 +11,9 @@ from equipoise.mechanism.advice import remarks
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
-from equipoise.structures.body import Body, at_rest
-from equipoise.structures.excitation import Excitation
 from equipoise.terminal.tables import PER_RPM, number
+from equipoise.vibration.body import Body, at_rest
+from equipoise.vibration.linear import Excitation
 
 if TYPE_CHECKING:
     from equipoise.mechanism.linkage import Linkage

@@ -13,7 +13,7 @@ from equipoise.studies.spread import Choices, Normal, Range
 from equipoise.terminal.tables import Row, number, table
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.spread import Spread
     from equipoise.studies.study import Study
 

@@ -6,13 +6,13 @@ from collections.abc import Iterator
 from math import degrees
 from typing import TYPE_CHECKING
 
-from equipoise.io.files import printable
+from equipoise.schema.files import printable
 from equipoise.terminal.tables import PER_RPM, number
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Both, Excitation, Hand, Operation, Station, Tool
-    from equipoise.tools.sections import Shaft
-    from equipoise.tools.wishes import DesignPlan
+    from equipoise.handheld.design_plan import DesignPlan
+    from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
+    from equipoise.handheld.shaft import Shaft
 
 RATES = (
     ("inertia", "kg m^2"),

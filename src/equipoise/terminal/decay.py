@@ -36,7 +36,7 @@ MOST_DIGITS = 7
 
 def print_decay(decay: Decay, title: str) -> None:
     """Both methods side by side, and what deserves a second look."""
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     print(printable(title))
     for line in _heading(decay):

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.terminal.tables import number, table
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.study import Make, Output
 
 Array = np.ndarray[Any, Any]

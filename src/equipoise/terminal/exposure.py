@@ -54,7 +54,7 @@ def print_exposure(
 
 def shown(name: str) -> str:
     """A name that any terminal can print, and that leaves room for numbers."""
-    from equipoise.io.files import printable
+    from equipoise.schema.files import printable
 
     name = printable(name)
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..."

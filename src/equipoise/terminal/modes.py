@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.structures.response import EQUATIONS
 from equipoise.terminal.tables import PER_RPM, number, table
 from equipoise.terminal.vibration import modes_table
+from equipoise.vibration.response import EQUATIONS
 
 if TYPE_CHECKING:
-    from equipoise.structures.free import FreeVibration
+    from equipoise.vibration.free import FreeVibration
 
 ORDERS = (1, 2, 3, 4)
 

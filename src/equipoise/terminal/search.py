@@ -11,7 +11,7 @@ from equipoise.studies.front import spread
 from equipoise.terminal.designs import columns_of, designs_table, limits, wanted
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
 
 Array = np.ndarray[Any, Any]

@@ -6,13 +6,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.structures.response import EQUATIONS
 from equipoise.terminal.tables import number, table
 from equipoise.terminal.units import Units
 from equipoise.terminal.vibration import modes_table
+from equipoise.vibration.response import EQUATIONS
 
 if TYPE_CHECKING:
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 MOST_PEAKS = 6
 """Peaks that are told of each gauge."""

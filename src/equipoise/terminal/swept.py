@@ -7,12 +7,12 @@ from dataclasses import dataclass
 from shlex import quote
 from typing import TYPE_CHECKING
 
-from equipoise.io.files import printable
+from equipoise.schema.files import printable
 from equipoise.terminal.best import best_table
 from equipoise.terminal.tables import Row, table
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.best import Best
     from equipoise.studies.store import Store
     from equipoise.studies.study import Output

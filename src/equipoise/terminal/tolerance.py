@@ -11,7 +11,7 @@ from equipoise.terminal.designs import labelled
 from equipoise.terminal.tables import Row, number, percent, table
 
 if TYPE_CHECKING:
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.scatter import Scatter
     from equipoise.studies.tolerance import Cause, Tolerances
     from equipoise.studies.variance import Estimate

@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.model import PLANES
 from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.units import Units
-from equipoise.tools.model import PLANES
-from equipoise.tools.wishes import KEYS
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import PlaneModes, ToolModes
-    from equipoise.tools.studies import Variation
-    from equipoise.tools.sweep import ToolSweep
-    from equipoise.tools.transmission import Transmission
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import PlaneModes, ToolModes
+    from equipoise.handheld.studies import Variation
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.handheld.transmission import Transmission
 
 Array = np.ndarray[Any, Any]
 

@@ -7,16 +7,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.handheld.design_plan import KEYS
 from equipoise.terminal.exposure import print_exposure
 from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.tool import in_units, unbounded
 from equipoise.terminal.units import Units
-from equipoise.tools.wishes import KEYS
 
 if TYPE_CHECKING:
-    from equipoise.tools.design import Before, ToolDesign
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.design import Before, ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
 
 
 def print_tool_exposure(found: ToolExposure, units: Units) -> None:
@@ -105,7 +105,7 @@ def print_sensitivities(
     found: Mapping[tuple[str, str], float], tool: Tool, ends: tuple[float, float], units: Units
 ) -> None:
     """What each number of the tool does to the hands over a band of speeds, the strongest first."""
-    from equipoise.tools.studies import number_of
+    from equipoise.handheld.studies import number_of
 
     rows = []
     for (station, key), slope in found.items():

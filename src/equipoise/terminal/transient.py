@@ -11,7 +11,7 @@ from equipoise.terminal.units import Units
 
 if TYPE_CHECKING:
     from equipoise.quantities.units import Dimension
-    from equipoise.structures.transient import Transient
+    from equipoise.vibration.transient import Transient
 
 PARTS = 5
 """Equal stretches of the time, of which the first and the last show whether it has settled."""

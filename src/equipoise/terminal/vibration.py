@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.structures.response import EQUATIONS
 from equipoise.terminal.tables import PER_RPM, Row, number, table
 from equipoise.terminal.units import Units
+from equipoise.vibration.response import EQUATIONS
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.structures.modes import Mode
-    from equipoise.structures.response import GaugeSignals, Response
+    from equipoise.vibration.modes import Mode
+    from equipoise.vibration.response import GaugeSignals, Response
 
 NOTHING = 1e-12
 """m, rad and their rates."""

@@ -9,9 +9,9 @@ from math import isfinite
 from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
-from equipoise.io.files import LARGEST
 from equipoise.quantities.problems import described
 from equipoise.quantities.units import HUGE
+from equipoise.schema.files import LARGEST
 
 KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "download")
 SLOW = ("balance", "download")

@@ -12,7 +12,7 @@ from secrets import token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
-from equipoise.io.files import reason
+from equipoise.schema.files import reason
 from equipoise.web.assets import TYPES, assets
 from equipoise.web.guard import Guard
 from equipoise.web.messages import LARGEST_MESSAGE

@@ -11,9 +11,9 @@ from typing import Any
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.io.files import LARGEST, printable
-from equipoise.io.models import examples, load, loads
-from equipoise.io.opening import kind_of_text, opened
+from equipoise.schema.files import LARGEST, printable
+from equipoise.schema.models import examples, load, loads
+from equipoise.schema.opening import kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design
 from equipoise.web.downloads import downloaded

@@ -10,9 +10,9 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.structures.forced import respond
-from equipoise.structures.response import Response
-from equipoise.structures.sweep import sweep_speed
+from equipoise.vibration.forced import respond
+from equipoise.vibration.response import Response
+from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.state import Block
 
 Values = dict[str, Any]

@@ -24,8 +24,8 @@ from equipoise.mechanism.balance import (
     Objective,
     Weight,
 )
-from equipoise.structures.choice import usual_step
-from equipoise.structures.linear import Linear
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear
 
 RIG, ROWS = eq.load("yamashita-rig"), eq.load("riding-transplanter")
 POINT = AddedMass("crank", "A", Weight("point", 0.07, at_most=0.8))

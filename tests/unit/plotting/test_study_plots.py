@@ -11,9 +11,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 import equipoise as eq
-from equipoise.io.study_units import units_of
 from equipoise.plotting.studies import best_drawings, searched_drawings, tolerance_drawings
 from equipoise.plotting.style import FAINT, render
+from equipoise.schema.study_units import units_of
 from equipoise.studies.best import Best
 from equipoise.studies.search import Searched
 from equipoise.studies.tolerance import Tolerances

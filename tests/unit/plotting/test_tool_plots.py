@@ -17,7 +17,14 @@ from matplotlib.axes import Axes
 
 from equipoise.exposure.iso_5349 import partial_exposure
 from equipoise.exposure.weighting import factor
-from equipoise.io.tools import load_tool
+from equipoise.handheld.design import Before, ToolDesign
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.exposed import expose_tool, grips
+from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import changed, determinant_chart, vary_tool
+from equipoise.handheld.transmission import transmit
 from equipoise.plotting.style import FAINT, INK, MAIN, STRESS, render
 from equipoise.plotting.tool import (
     design_drawings,
@@ -33,14 +40,7 @@ from equipoise.plotting.tool.response import speed_shown
 from equipoise.plotting.tool.shaft import MOST
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.tool.studies import UNITS, zeros_of
-from equipoise.tools.design import Before, ToolDesign
-from equipoise.tools.exposed import expose_tool, grips
-from equipoise.tools.frequencies import scale_of
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import respond_tool
-from equipoise.tools.studies import changed, determinant_chart, vary_tool
-from equipoise.tools.transmission import transmit
-from equipoise.tools.wishes import KEYS
+from equipoise.schema.tools import load_tool
 from unit.plotting.samples import words
 from unit.plotting.tool_samples import MACHINES, SPEEDS, drawn_anew, hashed, machine, pictures
 from unit.plotting.vibration_samples import check_texts

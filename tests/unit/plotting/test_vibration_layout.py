@@ -19,10 +19,10 @@ from equipoise.plotting.vibration import (
     transient_drawings,
 )
 from equipoise.plotting.vibration.panels import Unit
-from equipoise.structures.forced import respond
-from equipoise.structures.free import vibrate_freely
-from equipoise.structures.sweep import sweep_speed
-from equipoise.structures.transient import from_rest
+from equipoise.vibration.forced import respond
+from equipoise.vibration.free import vibrate_freely
+from equipoise.vibration.sweep import sweep_speed
+from equipoise.vibration.transient import from_rest
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     KINDS,

@@ -13,10 +13,10 @@ from equipoise.plotting.vibration import mode_drawings, response_drawings, trans
 from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
 from equipoise.scene import Scene
-from equipoise.structures.forced import respond
-from equipoise.structures.free import vibrate_freely
-from equipoise.structures.modes import Mode
-from equipoise.structures.transient import from_rest
+from equipoise.vibration.forced import respond
+from equipoise.vibration.free import vibrate_freely
+from equipoise.vibration.modes import Mode
+from equipoise.vibration.transient import from_rest
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     RPM,

@@ -19,8 +19,8 @@ from equipoise.plotting.vibration.curves import (
     ordered,
 )
 from equipoise.plotting.vibration.map import marker_size
-from equipoise.structures.resonance import Resonance
-from equipoise.structures.sweep import Sweep, sweep_speed
+from equipoise.vibration.free import Resonance
+from equipoise.vibration.sweep import Sweep, sweep_speed
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import RPM, dashed_and_lost, pictures, plane, rig
 

@@ -9,15 +9,15 @@ from hashlib import sha256
 import numpy as np
 from matplotlib.figure import Figure
 
-from equipoise.io.tools import load_tool
+from equipoise.handheld.exposed import expose_tool
+from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import determinant_chart, vary_tool
+from equipoise.handheld.transmission import transmit
 from equipoise.plotting import tool as plotting
 from equipoise.plotting.style import render
-from equipoise.tools.exposed import expose_tool
-from equipoise.tools.model import Absorber, Excitation, Hand, Station, Tool, Work
-from equipoise.tools.modes import vibrate_tool
-from equipoise.tools.response import respond_tool
-from equipoise.tools.studies import determinant_chart, vary_tool
-from equipoise.tools.transmission import transmit
+from equipoise.schema.tools import load_tool
 
 Drawn = dict[str, Figure]
 SPEEDS = np.linspace(105.0, 942.0, 60)

@@ -18,10 +18,10 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.plotting import vibration
 from equipoise.plotting.style import render, styled
-from equipoise.structures.forced import respond
-from equipoise.structures.free import vibrate_freely
-from equipoise.structures.sweep import Sweep, sweep_speed
-from equipoise.structures.transient import from_rest
+from equipoise.vibration.forced import respond
+from equipoise.vibration.free import vibrate_freely
+from equipoise.vibration.sweep import Sweep, sweep_speed
+from equipoise.vibration.transient import from_rest
 
 RPM = 30 / pi
 G = 9.80665

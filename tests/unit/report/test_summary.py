@@ -20,7 +20,7 @@ from equipoise.report.numbers import brief, change, kept_together, number
 from equipoise.report.pictures import pictures
 from equipoise.report.shaking import Shaking, shares
 from equipoise.report.summary import answers, tiles
-from equipoise.structures.response import EQUATIONS
+from equipoise.vibration.response import EQUATIONS
 
 
 def text_of(found) -> str:
@@ -133,7 +133,7 @@ def test_rounding_has_no_crank_angle():
 def test_notes_of_other_rooms_are_found_by_their_patterns():
     source = "".join(
         text
-        for room in ("balancing", "planting", "structures")
+        for room in ("balancing", "planting", "vibration")
         for path in sorted((Path(eq.__file__).parent / room).glob("*.py"))
         for text in strings(path.read_text(encoding="utf-8"))
     )

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from equipoise.io.template import Template
+from equipoise.schema.template import Template
 from equipoise.studies.spread import Normal, Range, Spread, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
 

@@ -13,8 +13,8 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.io.template import Template
 from equipoise.results.analysis import columns, unit_of
+from equipoise.schema.template import Template
 from equipoise.studies.asking import check_outputs
 from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.evaluate import Outcome

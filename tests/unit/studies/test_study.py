@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.io.studies import restore
-from equipoise.io.template import Template
+from equipoise.schema.studies import restore
+from equipoise.schema.template import Template
 from equipoise.studies.spread import Choices, Normal, Range, Uniform
 from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template

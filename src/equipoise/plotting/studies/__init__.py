@@ -19,7 +19,7 @@ from equipoise.plotting.vibration import numbered
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.best import Best
     from equipoise.studies.search import Searched
     from equipoise.studies.tolerance import Tolerances

@@ -30,7 +30,7 @@ from equipoise.plotting.vibration.panels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.study import Make
 

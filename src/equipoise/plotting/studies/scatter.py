@@ -24,7 +24,7 @@ from equipoise.plotting.vibration.panels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.io.study_units import Unit
+    from equipoise.schema.study_units import Unit
     from equipoise.studies.scatter import Scatter
     from equipoise.studies.tolerance import Tolerances
 

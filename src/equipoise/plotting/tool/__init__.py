@@ -16,12 +16,12 @@ from equipoise.plotting.vibration import numbered
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    from equipoise.tools.design import ToolDesign
-    from equipoise.tools.exposed import ToolExposure
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.response import ToolResponse
-    from equipoise.tools.studies import DeterminantChart, Variation
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.response import ToolResponse
+    from equipoise.handheld.studies import DeterminantChart, Variation
+    from equipoise.handheld.transmission import Transmissions
 
 
 def mode_drawings(modes: ToolModes) -> dict[str, Figure]:

@@ -11,6 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.handheld.design_plan import MEASURES
+from equipoise.handheld.exposed import grips
+from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, INK, blank, fit, heading, inches, short, shown
@@ -27,13 +30,10 @@ from equipoise.plotting.tool.speeds import (
 from equipoise.plotting.tool.studies import UNITS
 from equipoise.plotting.vibration.curves import KINDS, LINE, Curve, draw_curves, legend_at, rows_of
 from equipoise.plotting.vibration.panels import FOOT, LEFT, RIGHT, RPM, WIDTH, name_x, name_y, place
-from equipoise.tools.exposed import grips
-from equipoise.tools.response import respond_tool
-from equipoise.tools.wishes import MEASURES
 
 if TYPE_CHECKING:
-    from equipoise.tools.design import ToolDesign
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.model import Tool
 
 TOP, TALL, STEP = 0.58, 2.9, 0.18
 """Inches: heading; the panel; a line of words."""
@@ -81,7 +81,7 @@ def design_figure(found: ToolDesign) -> Figure:
 
 
 def figure_named(name: str) -> str:
-    """A figure of a design, as `tools.design` calls it, in words."""
+    """A figure of a design, as `handheld.design` calls it, in words."""
     at = AT.fullmatch(name)
     if at is None:
         return say(name) if name in FIGURES else name

@@ -47,7 +47,7 @@ from equipoise.plotting.vibration.panels import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.tools.exposed import ToolExposure
+    from equipoise.handheld.exposed import ToolExposure
 
 Array = np.ndarray[Any, Any]
 

@@ -29,7 +29,7 @@ from equipoise.plotting.vibration.curves import LINE, legend_at, rows_of
 from equipoise.plotting.vibration.panels import FOOT, WIDTH, place
 
 if TYPE_CHECKING:
-    from equipoise.tools.modes import PlaneModes, ToolModes
+    from equipoise.handheld.modes import PlaneModes, ToolModes
 
 Array = np.ndarray[Any, Any]
 

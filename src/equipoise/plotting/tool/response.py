@@ -9,6 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.handheld.exposed import grips
+from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, blank, heading, shown
@@ -32,12 +34,10 @@ from equipoise.plotting.vibration.panels import (
     place,
     zero_line,
 )
-from equipoise.tools.exposed import grips
-from equipoise.tools.response import respond_tool
 
 if TYPE_CHECKING:
-    from equipoise.tools.fields import Line
-    from equipoise.tools.response import ToolResponse
+    from equipoise.handheld.response import ToolResponse
+    from equipoise.handheld.shapes import Line
 
 Array = np.ndarray[Any, Any]
 

@@ -16,7 +16,7 @@ from equipoise.plotting.style import FAINT, INK, LINES, SMALL, blank, inches, sh
 from equipoise.plotting.vibration.panels import WIDTH
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Station, Tool
+    from equipoise.handheld.model import Station, Tool
 
 Array = np.ndarray[Any, Any]
 

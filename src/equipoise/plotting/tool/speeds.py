@@ -23,7 +23,7 @@ from equipoise.plotting.vibration.map import names_above
 from equipoise.plotting.vibration.panels import RPM
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
+    from equipoise.handheld.model import Tool
 
 Array = np.ndarray[Any, Any]
 

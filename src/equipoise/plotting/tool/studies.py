@@ -12,6 +12,9 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.studies import number_of
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, fit, heading, short, shown
 from equipoise.plotting.tool.speeds import WORK, turns
@@ -28,14 +31,11 @@ from equipoise.plotting.vibration.panels import (
     stack,
     zero_line,
 )
-from equipoise.tools.frequencies import scale_of
-from equipoise.tools.studies import number_of
-from equipoise.tools.wishes import KEYS
 
 if TYPE_CHECKING:
-    from equipoise.tools.model import Tool
-    from equipoise.tools.modes import PlaneModes, ToolModes
-    from equipoise.tools.studies import DeterminantChart, Variation
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import PlaneModes, ToolModes
+    from equipoise.handheld.studies import DeterminantChart, Variation
 
 Array = np.ndarray[Any, Any]
 

@@ -46,8 +46,8 @@ from equipoise.plotting.vibration.panels import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.tools.modes import ToolModes
-    from equipoise.tools.transmission import Transmissions
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.transmission import Transmissions
 
 Array = np.ndarray[Any, Any]
 

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from equipoise.structures.free import FreeVibration
-    from equipoise.structures.response import Response
-    from equipoise.structures.sweep import Sweep
-    from equipoise.structures.transient import Transient
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
+    from equipoise.vibration.transient import Transient
 
 
 def response_drawings(response: Response) -> dict[str, Figure]:

@@ -10,13 +10,13 @@ import numpy as np
 
 from equipoise.mechanism.motion import move
 from equipoise.scene import Scene, hull
-from equipoise.structures.linkages import rows_of
+from equipoise.vibration.linkages import rows_of
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount, Support
-    from equipoise.structures.free import FreeVibration
-    from equipoise.structures.modes import Mode
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.modes import Mode
 
 Array = np.ndarray[Any, Any]
 View = Literal["side", "rear", "top"]

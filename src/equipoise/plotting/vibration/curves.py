@@ -19,8 +19,8 @@ from equipoise.plotting.style import FAINT, INK, LINES, MAIN, NORMAL, SMALL, STR
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, RPM, WIDTH, log_scale
 
 if TYPE_CHECKING:
-    from equipoise.structures.resonance import Resonance
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.free import Resonance
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

@@ -25,7 +25,7 @@ from equipoise.plotting.vibration.curves import (
 from equipoise.plotting.vibration.panels import LEFT, RPM, WIDTH, name_x, name_y, place
 
 if TYPE_CHECKING:
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

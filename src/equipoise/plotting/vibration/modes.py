@@ -17,8 +17,8 @@ from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, place
 from equipoise.plotting.vibration.view import draw_view, keys_of, settle, write_keys
 
 if TYPE_CHECKING:
-    from equipoise.structures.free import FreeVibration
-    from equipoise.structures.modes import Mode
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.modes import Mode
 
 VIEWS: dict[View, str] = {
     "side": to_say("from the side"),

@@ -35,11 +35,11 @@ from equipoise.plotting.vibration.signals import (
     phase_label,
     sampled,
 )
-from equipoise.structures.choice import usual_step
-from equipoise.structures.linear import Linear
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear
 
 if TYPE_CHECKING:
-    from equipoise.structures.response import GaugeSignals, MountForce, Response
+    from equipoise.vibration.response import GaugeSignals, MountForce, Response
 
 Array = np.ndarray[Any, Any]
 

@@ -23,7 +23,7 @@ from equipoise.plotting.vibration.panels import (
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.structures.response import Response
+    from equipoise.vibration.response import Response
 
 Array = np.ndarray[Any, Any]
 

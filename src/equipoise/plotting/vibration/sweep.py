@@ -46,7 +46,7 @@ from equipoise.plotting.vibration.panels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.structures.sweep import Sweep
+    from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
 

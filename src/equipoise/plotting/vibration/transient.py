@@ -24,7 +24,7 @@ from equipoise.plotting.vibration.panels import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.structures.transient import Transient
+    from equipoise.vibration.transient import Transient
 
 Array = np.ndarray[Any, Any]
 

@@ -1,0 +1,331 @@
+"""Where to put handle, harness, mass and absorber so that the hands feel least: a search."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError, ResponseError
+from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
+from equipoise.handheld.duals import Dual
+from equipoise.handheld.exposed import Band, Number, grips, mean_over_band, values_of
+from equipoise.handheld.model import Tool
+from equipoise.handheld.response import respond_tool, rms_over_time
+from equipoise.handheld.studies import changed
+from equipoise.handheld.sweep import speeds_between
+from equipoise.results.result import Result
+
+Array = np.ndarray[Any, Any]
+
+Told = Callable[[int, int], None]
+"""Is called with how many searches are done, and how many there are."""
+TRIED, FOLLOWED = 256, 8
+"""Designs spread over the room, and how many of the best are followed downhill."""
+STEPS, TOLERANCE = 200, 1e-9
+LEAST = 1e-3
+"""Share of the largest force below which an order does not count in the search."""
+SAME = 1e-4
+"""Share of the best within which a search has arrived at it too."""
+
+
+class Search:
+    """The measure of a design's numbers, each from 0 to 1 of its range, and the limits.
+
+    The measure is a square, (m/s2)^2: mean or largest a_hv^2 over the band, of the worst hand.
+    """
+
+    def __init__(self, tool: Tool, design: DesignPlan, speed: Array) -> None:
+        self.tool, self.design, self.band = tool, design, Band(tool, speed, LEAST)
+        self.numbers: list[Number] = [(one.station, one.key) for one in design.variables]
+        self.low = np.array([one.low for one in design.variables])
+        self.wide = np.array([one.high for one in design.variables]) - self.low
+        self.hands = design.hands or tuple(one.name for one in tool.grips)
+        self.held = tuple({one.station: 0 for one in design.limits if one.output == "force"})
+        self.start = values_of(tool, self.numbers)
+        self._seen: tuple[bytes, Any] = (b"", None)
+
+    def at(self, place: Array, slopes: bool = True) -> tuple[Dual, Dual]:
+        """Measures (M,), of which the largest counts, and limits (C,), each at most 1."""
+        key = np.ascontiguousarray(place).tobytes()
+        if self._seen[0] != key:
+            found = self._at(self.low + self.wide * place, slopes)
+            if not slopes:
+                return found
+            self._seen = (key, found)
+        kept: tuple[Dual, Dual] = self._seen[1]
+        return kept
+
+    def _at(self, values: Array, slopes: bool) -> tuple[Dual, Dual]:
+        held = [name for name in self.held if name]
+        felt = self.band.felt(self.numbers, values, held, slopes)
+        squares = [felt.hands[name] for name in self.hands]
+        if self.design.measure == "rms":
+            squares = [mean_over_band(one) for one in squares]
+        limits = [self._limit(one, felt.hands, felt.forces, values) for one in self.design.limits]
+        return self._joined(squares), self._joined(limits)
+
+    def _limit(
+        self, limit: DesignLimit, hands: dict[str, Dual], forces: dict[str, Dual], values: Array
+    ) -> Dual:
+        """What is limited, over its limit."""
+        if limit.output == "added_mass":
+            mine = np.array([key in ("mass", "absorber.mass") for _, key in self.numbers])
+            added = float(np.sum((values - self.start)[mine]))
+            slopes = mine.astype(float)[: len(next(iter(hands.values())).slopes), None]
+            return Dual(np.array([added]), slopes) / max(limit.at_most, 1e-12)
+        source = hands if limit.output == "acceleration" else forces
+        return source[str(limit.station)] / limit.at_most**2
+
+    def _joined(self, parts: list[Dual]) -> Dual:
+        """All values in a row, with slopes by place."""
+        if not parts:
+            return Dual(np.empty(0), np.empty((len(self.wide), 0)))
+        slopes = np.concatenate([part.slopes for part in parts], axis=1)
+        wide = self.wide[: len(slopes), None]
+        return Dual(np.concatenate([part.value for part in parts]), slopes * wide)
+
+    def measure(self, place: Array) -> float:
+        """The measure, (m/s2)^2."""
+        return float(np.max(self.at(place, slopes=False)[0].value))
+
+    def best(self, told: Told, starts: Array | None = None) -> tuple[Array, int, int]:
+        """Best place, how many searches arrived there, and how many there were."""
+        places = self._promising() if starts is None else starts
+        found = []
+        for done, place in enumerate(places):
+            told(done, len(places))
+            found.append(self._downhill(place))
+        within = [place for place in found if self._within(place)]
+        if not within:
+            raise ResponseError(
+                "no design within the limits was found; raise a limit, or widen the range of a "
+                "variable"
+            )
+        values = np.array([self.measure(place) for place in within])
+        best = int(np.argmin(values))
+        arrived = int(np.sum(values <= values[best] * (1 + SAME)))
+        return within[best], arrived, len(places)
+
+    def _within(self, place: Array) -> bool:
+        return bool(np.all(self.at(place, slopes=False)[1].value <= 1 + 1e-6))
+
+    def _promising(self) -> Array:
+        """The best of designs spread over the room; the tool's own is among them."""
+        from scipy.stats import qmc
+
+        spread = qmc.Sobol(len(self.wide), seed=1).random(TRIED)
+        own = np.clip((self.start - self.low) / self.wide, 0, 1)
+        places = np.vstack([own, spread])
+        worth = [self._worth(place) for place in places]
+        order = np.argsort(worth, kind="stable")[:FOLLOWED]
+        return places[order if 0 in order else np.append(order[:-1], 0)]
+
+    def _worth(self, place: Array) -> float:
+        measures, limits = self.at(place, slopes=False)
+        beyond = float(np.sum(np.maximum(limits.value - 1, 0)))
+        return float(np.nan_to_num(np.max(measures.value), nan=np.inf)) * (1 + 10 * beyond)
+
+    def _downhill(self, place: Array) -> Array:
+        """The least bound on all measures, by sequential quadratic programs."""
+        from scipy.optimize import Bounds, minimize
+
+        unit = self.measure(place)
+        count = len(place)
+
+        def room(x: Array) -> Array:
+            measures, limits = self.at(x[:-1])
+            return np.concatenate([x[-1] - measures.value / unit, 1 - limits.value])
+
+        def slopes(x: Array) -> Array:
+            measures, limits = self.at(x[:-1])
+            one = np.ones((measures.value.size, 1))
+            upper = np.hstack([-measures.slopes.T / unit, one])
+            lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
+            return np.vstack([upper, lower])
+
+        ahead = np.append(np.zeros(count), 1.0)
+        done = minimize(
+            lambda x: x[-1],
+            np.append(place, 1.0),
+            jac=lambda x: ahead,
+            bounds=Bounds(np.zeros(count + 1), np.append(np.ones(count), np.inf)),
+            constraints={"type": "ineq", "fun": room, "jac": slopes},
+            method="SLSQP",
+            options={"maxiter": STEPS, "ftol": TOLERANCE},
+        )
+        end = np.clip(done.x[:-1], 0, 1)
+        better = self._worth(end) <= self._worth(place)
+        return np.asarray(end if better else place)
+
+
+SPEEDS = 81
+"""Speeds in the band, at first."""
+FINER, STILL = 4, 0.002
+"""On so many times as many speeds the measure must be the same to this share; else they double."""
+DOUBLINGS = 3
+DIGITS = 6
+"""Significant digits of the numbers of a better tool, for people to set."""
+EDGE = 1e-6
+"""Share of its range within which a variable is at an end of it."""
+ACCELERATION = "acceleration"
+WORDS = {"rms": "RMS over the band", "peak": "largest"}
+NO_DESIGN = (
+    "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
+    "may be changed"
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Before:
+    """A figure before and after, in SI units."""
+
+    name: str
+    dimension: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolDesign(Result):
+    """The best design found.
+
+    tool, better : before and after.
+    variables : what was changed.
+    figures : measure, worst accelerations and forces before and after.
+    edges : ``lowest`` or ``highest`` where a variable ends at an end of its range, else empty.
+    searches, arrived : followed downhill, and how many of them came to the best.
+    speed : (S,), rad/s; a_hv : of the worst hand, before and after, (2, S), m/s2.
+    """
+
+    tool: Tool
+    better: Tool
+    variables: tuple[Before, ...]
+    figures: tuple[Before, ...]
+    edges: tuple[str, ...]
+    searches: int
+    arrived: int
+    speed: Array
+    a_hv: Array
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units."""
+
+        def told(rows: Iterable[Before]) -> dict[str, Any]:
+            return {row.name: {"before": row.before, "after": row.after} for row in rows}
+
+        names = [row.name for row in self.variables]
+        return {
+            "variables": told(self.variables),
+            "figures": told(self.figures),
+            "edges": dict(zip(names, self.edges, strict=True)),
+            "searches": self.searches,
+            "arrived": self.arrived,
+            "speed": self.speed,
+            "a_hv_before": self.a_hv[0],
+            "a_hv_after": self.a_hv[1],
+        }
+
+
+def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
+    """Change what the tool's [design] allows so that the hands feel least over its band.
+
+    Designs spread over the whole room are tried, and the best of them followed downhill with exact
+    derivatives; `arrived` of `searches` tells how sure one may be that nothing better is there.
+
+    told : is called with how many searches are done, and how many there are.
+
+    Raises
+    ------
+    ModelError : it tells no design, or as `felt.Band`.
+    ResponseError : nothing within the limits was found.
+    """
+    design = tool.design
+    if design is None:
+        raise ModelError("design", NO_DESIGN)
+    count, starts = SPEEDS, None
+    first: tuple[int, int] | None = None
+    for _ in range(DOUBLINGS + 1):
+        search = Search(tool, design, np.linspace(*design.speeds, count))
+        best, arrived, searches = search.best(told or _silent, starts)
+        first = first or (arrived, searches)
+        fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
+        coarse, exact = search.measure(best), fine.measure(best)
+        if abs(exact - coarse) <= STILL * exact:
+            break
+        count, starts = 2 * count - 1, best[None]
+    return _found(fine, best, *(first or (0, 0)))
+
+
+def _silent(done: int, total: int) -> None:
+    """For those who do not want to be told."""
+
+
+def _found(search: Search, best: Array, arrived: int, searches: int) -> ToolDesign:
+    """The result, from the tool that the best numbers make."""
+    tool, design = search.tool, search.design
+    values = search.low + search.wide * best
+    better = tool
+    for one, value in zip(design.variables, values, strict=True):
+        handy = min(max(float(f"{value:.{DIGITS}g}"), one.low), one.high)
+        better = changed(better, one.station, one.key, handy)
+    after = values_of(better, search.numbers)
+    rows = tuple(
+        Before(one.name, KEYS[one.key], float(start), float(end))
+        for one, start, end in zip(design.variables, search.start, after, strict=True)
+    )
+    speed = search.band.speed
+    edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
+    a_hv = np.array([np.max(_curves(one, speed, search.hands), axis=0) for one in (tool, better)])
+    return ToolDesign(
+        tool,
+        better,
+        rows,
+        tuple(_figures(search, better)),
+        tuple(edges),
+        searches,
+        arrived,
+        speed,
+        a_hv,
+    )
+
+
+def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> list[Array]:
+    """a_hv of each hand (S,), m/s2."""
+    found = grips(respond_tool(tool, speed))
+    return [found[name].a_hv for name in hands]
+
+
+def _figures(search: Search, better: Tool) -> Iterable[Before]:
+    """Figures of the tools themselves, not of the search, the measure first.
+
+    Each tool at speeds of its own, that are dense about its resonances.
+    """
+    low, high = search.design.speeds
+    means, tops = [], []
+    for tool in (search.tool, better):
+        speed = speeds_between(tool, low, high, len(search.band.speed))
+        curves = dict(zip(search.hands, _curves(tool, speed, search.hands), strict=True))
+        squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
+        means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
+        tops.append({name: float(np.max(one)) for name, one in curves.items()})
+    yield Before(f"a_hv of the worst hand, {WORDS['rms']}", ACCELERATION, *map(_worst, means))
+    yield Before(f"a_hv of the worst hand, {WORDS['peak']}", ACCELERATION, *map(_worst, tops))
+    for name in search.hands if len(search.hands) > 1 else ():
+        yield Before(f"a_hv at {name}, {WORDS['rms']}", ACCELERATION, *(one[name] for one in means))
+        yield Before(f"a_hv at {name}, {WORDS['peak']}", ACCELERATION, *(one[name] for one in tops))
+    for name in filter(None, search.held):
+        forces = [_largest_force(one, search.band.speed, name) for one in (search.tool, better)]
+        yield Before(f"force at {name}, largest", "force", *forces)
+    yield Before("mass", "mass", search.tool.mass, better.mass)
+
+
+def _worst(values: dict[str, float]) -> float:
+    return max(values.values())
+
+
+def _largest_force(tool: Tool, speed: Array, station: str) -> float:
+    """RMS over time of the force on all that holds a station, at the worst speed, N."""
+    return float(np.max(rms_over_time(respond_tool(tool, speed).whole_force(station))))

@@ -1,0 +1,324 @@
+"""What the hands on a tool get: weighted acceleration over a day, and over a band of speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.exposure.daily import Exposure, Task, daily_exposure
+from equipoise.exposure.iso_22867 import equivalent
+from equipoise.exposure.weighting import squared_factor
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.duals import Dual, variables
+from equipoise.handheld.layout import Layout, check_coverage
+from equipoise.handheld.model import Tool, Work
+from equipoise.handheld.response import (
+    NOTHING,
+    ToolResponse,
+    loud,
+    orders_of,
+    respond_tool,
+    shaken,
+    shakes,
+)
+from equipoise.handheld.studies import has, number_of
+from equipoise.results.result import Result
+
+Array = np.ndarray[Any, Any]
+
+WORKING, IDLING, RACING = "working", "idling", "racing"
+NO_HANDS = "no hand holds the tool; give a station a hand with its stiffness, or its impedance"
+NO_OPERATION = (
+    'missing; add the table [operation] with the speed of the engine, such as speed = "7000 rpm"'
+)
+
+
+def weighted_squares(frequency: Any, displacement: Any) -> Any:
+    """Mean square of the weighted acceleration (m/s2)^2 of harmonic displacements, m.
+
+    frequency : rad/s.
+    displacement : complex amplitudes of the same shape, with or without derivatives.
+    """
+    square = frequency * frequency
+    moved = displacement * displacement.conj()
+    return moved * (square * square * squared_factor(square / (4 * pi**2)) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Grip:
+    """Vibration where a hand holds, against the speed of the engine (S,), m/s2.
+
+    acceleration : RMS in the vertical and the lateral plane, (2, S).
+    a_hw : the same, weighted by Wh.
+    """
+
+    acceleration: Array
+    a_hw: Array
+
+    @property
+    def a_hv(self) -> Array:
+        """Total value (S,); along the shaft nothing moves in bending."""
+        return np.asarray(np.sqrt(np.sum(self.a_hw**2, axis=0)))
+
+
+def grips(response: ToolResponse) -> dict[str, Grip]:
+    """Vibration of every station that a hand holds."""
+    if not response.tool.grips:
+        raise ModelError("shaft.stations", NO_HANDS)
+    frequency = response.frequency
+    found = {}
+    for station in response.tool.grips:
+        moved = response.displacement(station.name)
+        weighted = np.sum(np.real(weighted_squares(frequency, moved)), axis=1)
+        plain = np.sum(np.abs(frequency**2 * moved) ** 2, axis=1) / 2
+        found[station.name] = Grip(np.sqrt(plain), np.sqrt(weighted))
+    return found
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolExposure(Result):
+    """What the hands on a tool get, over a range of speeds and in a day.
+
+    response : over the range of speeds.
+    grips : by station.
+    named : what a speed that the tool names is called, with its grips there.
+    days : the day's exposure of each hand; empty where no work is told.
+    equivalents : idling and racing as one value by ISO 22867, m/s2, of each hand; empty where the
+        file does not tell both speeds.
+    """
+
+    response: ToolResponse
+    grips: Mapping[str, Grip]
+    named: Mapping[str, Mapping[str, Grip]]
+    days: Mapping[str, Exposure]
+    equivalents: Mapping[str, float]
+
+    @property
+    def speed(self) -> Array:
+        """rad/s, (S,)."""
+        return self.response.speed
+
+    @cached_property
+    def a_hv(self) -> Array:
+        """Total value (S,) of the hand that gets most, m/s2."""
+        return np.asarray(np.max([grip.a_hv for grip in self.grips.values()], axis=0))
+
+    @property
+    def worst(self) -> str | None:
+        """The hand that gets most in a day."""
+        return max(self.days, key=lambda name: self.days[name].a8) if self.days else None
+
+    @property
+    def a8(self) -> float | None:
+        """Daily exposure A(8) of that hand, m/s2; None where no work is told."""
+        return None if self.worst is None else self.days[self.worst].a8
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units."""
+        return {
+            "speed": self.speed,
+            "a_hv": self.a_hv,
+            "a8": self.a8,
+            "hands": {
+                name: {
+                    "acceleration_vertical": grip.acceleration[0],
+                    "acceleration_lateral": grip.acceleration[1],
+                    "a_hw_vertical": grip.a_hw[0],
+                    "a_hw_lateral": grip.a_hw[1],
+                    "a_hv": grip.a_hv,
+                }
+                for name, grip in self.grips.items()
+            },
+            "named": {
+                what: {name: float(grip.a_hv[0]) for name, grip in part.items()}
+                for what, part in self.named.items()
+            },
+            "days": {name: day.to_dict() for name, day in self.days.items()},
+            "equivalents": dict(self.equivalents),
+        }
+
+
+def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> ToolExposure:
+    """What the hands get over a range of speeds, rad/s, and in a day.
+
+    duration : time a day, s, at the working speed, in the place of the work that the tool tells.
+
+    Raises
+    ------
+    ModelError : no hand holds the tool, or nothing shakes it; as `respond_tool`.
+    """
+    response = respond_tool(tool, speeds)
+    work = tool.work if duration is None else (Work("work", working_speed(tool), duration),)
+    named = {what: grips(respond_tool(tool, speed)) for what, speed in _named(tool)}
+    return ToolExposure(response, grips(response), named, _days(tool, work), _equivalents(named))
+
+
+def _named(tool: Tool) -> Iterable[tuple[str, float]]:
+    """The speeds that the tool names, rad/s."""
+    if tool.operation is None:
+        return
+    yield WORKING, tool.operation.speed
+    if tool.operation.idling is not None:
+        yield IDLING, tool.operation.idling
+    if tool.operation.racing is not None:
+        yield RACING, tool.operation.racing
+
+
+def working_speed(tool: Tool) -> float:
+    """Speed of the engine at work, rad/s; a `ModelError` where it is not told."""
+    if tool.operation is None:
+        raise ModelError("operation", NO_OPERATION)
+    return tool.operation.speed
+
+
+def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
+    if not work:
+        return {}
+    at = grips(respond_tool(tool, np.array([part.speed for part in work])))
+    return {
+        name: daily_exposure(
+            Task(part.name, float(a_hv), part.duration)
+            for part, a_hv in zip(work, grip.a_hv, strict=True)
+        )
+        for name, grip in at.items()
+    }
+
+
+def _equivalents(named: Mapping[str, Mapping[str, Grip]]) -> dict[str, float]:
+    """Idling and racing as one value of each hand, where the tool names both."""
+    if IDLING not in named or RACING not in named:
+        return {}
+    idling, racing = named[IDLING], named[RACING]
+    return {
+        name: equivalent(float(idling[name].a_hv[0]), float(racing[name].a_hv[0]))
+        for name in idling
+    }
+
+
+TOGETHER = 24
+"""Numbers of whose derivatives memory has to hold at once."""
+Number = tuple[str, str]
+"""Station and key of a number of the tool."""
+
+
+@dataclass(frozen=True, eq=False)
+class BandFigures:
+    """Squares over a band of speeds (S,), with their derivatives by the numbers (P,) asked for.
+
+    hands : a_hv^2 of each hand, (m/s2)^2: value (S,) and slopes (P, S).
+    forces : mean square over time of the force on the body at each station that is held, N2.
+    """
+
+    hands: dict[str, Dual]
+    forces: dict[str, Dual]
+
+
+class Band:
+    """A tool over a band of speeds (S,), rad/s; what does not depend on a design is done once.
+
+    least : share of the largest force below which an order is left out.
+
+    Raises
+    ------
+    ModelError : no hand holds it, nothing shakes it, or a hand's table does not reach that far.
+    """
+
+    def __init__(self, tool: Tool, speed: Array, least: float = 0.0) -> None:
+        if not tool.grips:
+            raise ModelError("shaft.stations", NO_HANDS)
+        if not tool.excitations:
+            raise ModelError("excitations", NOTHING)
+        self.tool, self.speed = tool, speed
+        self.shakes = loud(shakes(tool), float(np.max(speed)), least)
+        self.orders = orders_of(self.shakes)
+        self.highest = float(self.orders[-1] * np.max(speed))
+        check_coverage(tool, float(self.orders[0] * np.min(speed)), self.highest)
+        self.frequency = np.multiply.outer(self.orders, speed).reshape(1, -1)
+
+    def felt(
+        self,
+        numbers: Sequence[Number],
+        values: Array | None = None,
+        held: Sequence[str] = (),
+        slopes: bool = True,
+    ) -> BandFigures:
+        """What the hands get with some numbers (P,) of the tool changed.
+
+        values : of the numbers, both of a pair alike; the tool's own, each of a pair, if None.
+        held : stations at which the force on the body is asked for too.
+        slopes : whether the derivatives are asked for.
+        """
+        own = values is None
+        start = values_of(self.tool, numbers) if values is None else values
+        changed = dict(zip(numbers, variables(start, 2, slopes), strict=True))
+        for (station, key), variable in changed.items() if own else ():
+            variable.value = self._own(station, key)
+        layout = Layout(self.tool, self.highest, changed)
+        field = shaken(layout, self.shakes, self.orders, self.speed)
+        motion = {
+            name: field.states.motion[layout.node_of[name]].across
+            for name in {*held, *(one.name for one in self.tool.grips)}
+        }
+        return BandFigures(
+            {
+                one.name: self._over_orders(weighted_squares(self.frequency, motion[one.name]))
+                for one in self.tool.grips
+            },
+            {name: self._force(layout, field.s, name, motion[name]) for name in held},
+        )
+
+    def _own(self, station: str, key: str) -> Array:
+        """A number of the tool as (1, 1), a pair as (2, 1)."""
+        return np.atleast_1d(np.array(self.tool.station(station).number(key)))[:, None]
+
+    def _force(self, layout: Layout, s: Array, name: str, moved: Any) -> Dual:
+        """Mean square of the force on all that holds a station."""
+        stiffness: Any = sum(layout.on_body(self.tool.station(name), s).values())
+        force = stiffness * moved
+        return self._over_orders(force * force.conj() * 0.5)
+
+    def _over_orders(self, squares: Dual) -> Dual:
+        """Sum over planes and orders: from (2, K S) to (S,)."""
+        shape = (2, len(self.orders), len(self.speed))
+        value = squares.value.real.reshape(shape).sum(axis=(0, 1))
+        count = len(squares.slopes)
+        full = np.broadcast_to(squares.slopes.real, (count, *squares.value.shape))
+        return Dual(value, full.reshape(count, *shape).sum(axis=(1, 2)))
+
+
+def values_of(tool: Tool, numbers: Sequence[Number]) -> Array:
+    """What these numbers are in the tool, (P,)."""
+    return np.array([number_of(tool, station, key) for station, key in numbers])
+
+
+def band_weights(count: int) -> Array:
+    """Weights (S,) of equally spaced speeds for a mean, by trapezia."""
+    weights = np.ones(count)
+    weights[[0, -1]] = 0.5
+    return np.asarray(weights / weights.sum())
+
+
+def mean_over_band(square: Dual) -> Dual:
+    """Mean (1,) over the speeds of a band (S,)."""
+    weights = band_weights(square.value.size)
+    return Dual((square.value @ weights)[None], (square.slopes @ weights)[:, None])
+
+
+def tool_sensitivities(tool: Tool, speed: Array) -> dict[Number, float]:
+    """Derivative of the RMS over speeds (S,) of the worst hand's a_hv by every number of the tool.
+
+    In m/s2 for each SI unit; of a pair of numbers, by both together.
+    """
+    numbers = [(one.name, key) for one in tool.stations for key in KEYS if has(one, key)]
+    band = Band(tool, speed)
+    parts = [band.felt(numbers[k : k + TOGETHER]) for k in range(0, len(numbers), TOGETHER)]
+    means = {name: mean_over_band(one).value[0] for name, one in parts[0].hands.items()}
+    worst = max(means, key=lambda name: float(means[name]))
+    slopes = np.concatenate([mean_over_band(part.hands[worst]).slopes[:, 0] for part in parts])
+    return dict(zip(numbers, (slopes / (2 * np.sqrt(means[worst]))).tolist(), strict=True))

@@ -1,0 +1,258 @@
+"""From a tool to its chain: nodes, hands, and what sits there at a complex frequency."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import ceil, pi
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.handheld.chain import Chain, Pair
+from equipoise.handheld.duals import Dual, stacked, value_of
+from equipoise.handheld.model import Impedance, Station, Tool
+from equipoise.handheld.segment import Transfer, longest, shear_transfer, transfer
+from equipoise.handheld.shaft import Section
+
+Array = np.ndarray[Any, Any]
+TOUCHING = 1e-9
+"""Share by which a frequency may pass the end of a table for rounding."""
+
+
+def impedance(tables: Sequence[Impedance], s: Any) -> Array:
+    """Force over velocity (2, F), N s/m, of both planes at s = i omega, 1/s."""
+    frequency = np.abs(np.imag(value_of(s))) / (2 * pi)
+    rows = np.broadcast_to(frequency, (2, frequency.shape[-1]))
+    both = tables if len(tables) == 2 else (tables[0], tables[0])
+    return np.array([_between(table, row) for table, row in zip(both, rows, strict=True)])
+
+
+def _between(table: Impedance, frequency: Array) -> Array:
+    real = np.interp(frequency, table.frequency, table.resistance)
+    return np.asarray(real + 1j * np.interp(frequency, table.frequency, table.reactance))
+
+
+def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
+    """Every table of a hand must reach from the lowest to the highest frequency, rad/s.
+
+    Raises
+    ------
+    ModelError : says where a table begins or ends.
+    """
+    low, high = lowest / (2 * pi), highest / (2 * pi)
+    for number, station in enumerate(tool.stations, 1):
+        for table in station.hand.impedance if station.hand is not None else ():
+            first, last = table.frequency[0], table.frequency[-1]
+            if first <= low * (1 + TOUCHING) and last >= high * (1 - TOUCHING):
+                continue
+            raise ModelError(
+                f"shaft.stations[{number}].hand.impedance",
+                f"the table{f' {table.file}' if table.file else ''} reaches from {first:.4g} Hz to "
+                f"{last:.4g} Hz, but {low:.4g} Hz to {high:.4g} Hz are asked for; measure the rest "
+                "too, or ask for speeds whose orders lie within the table",
+            )
+
+
+Kind = Literal["undamped", "free", "forced"]
+"""What counts: masses and springs; all that is known at any complex frequency; tables of hands too,
+which are known at real frequencies alone."""
+MOST_CELLS = 1000
+"""Between two stations; far beyond any tool."""
+TUNED, NEARLY_NOTHING = 1e-15, 1e-200
+"""Share of its stiffness by which an undamped absorber misses its own frequency, and what one
+without mass and spring is divided by."""
+
+
+class Cell(NamedTuple):
+    """A segment between two nodes."""
+
+    start: float
+    length: Any
+    section: Section
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The nodes of a tool, fine enough for all frequencies up to `highest`, rad/s.
+
+    changed : numbers of stations that stand in the place of the tool's, by name and key, with or
+        without derivatives.
+    """
+
+    tool: Tool
+    highest: float
+    changed: Mapping[tuple[str, str], Any] = field(default_factory=dict)
+
+    def of(self, station: Station, key: str) -> Any:
+        """A number of a station; of a pair, both planes as (2, 1)."""
+        if (station.name, key) in self.changed:
+            return self.changed[station.name, key]
+        value = station.number(key)
+        return np.array(value)[:, None] if isinstance(value, tuple) else value
+
+    @cached_property
+    def _laid(self) -> tuple[list[list[Station]], list[Cell]]:
+        """Stations of each node, and the cells between the nodes."""
+        shaft = self.tool.shaft
+        points: list[tuple[Any, Station | None]] = [(0.0, None)]
+        points += [(stop, None) for _, stop, _ in shaft.pieces]
+        points += [(self.of(station, "position"), station) for station in self.tool.stations]
+        points.sort(key=_order)
+        nodes: list[list[Station]] = [[]]
+        cells: list[Cell] = []
+        before: Any = 0.0
+        for at, station in points:
+            gap = at - before
+            if isinstance(gap, Dual) or gap > 0:
+                new = self._cells(before, gap)
+                cells += new
+                nodes += [[] for _ in new]
+            if station is not None:
+                nodes[-1].append(station)
+            before = at
+        return nodes, cells
+
+    def _cells(self, start: Any, gap: Any) -> list[Cell]:
+        """Segments of one section, none of which is too long."""
+        left, length = (float(np.squeeze(value_of(number))) for number in (start, gap))
+        section = self._section(left + length / 2)
+        flexibility, shear = 1 / section.bending_stiffness, 1 / section.shear_stiffness
+        most = longest(
+            self.highest, flexibility, shear, section.mass_per_length, section.rotary_inertia
+        )
+        parts = max(1, ceil(min(length / most, MOST_CELLS + 1)))
+        if parts > MOST_CELLS:
+            raise ModelError(
+                "shaft",
+                f"at {self.highest / (2 * pi):.4g} Hz its waves are some {4 * most:.2g} m long, "
+                f"too short for {self.tool.shaft.length:.4g} m; check its length, stiffness and "
+                "mass, and the speeds",
+            )
+        return [Cell(left + k * length / parts, gap / parts, section) for k in range(parts)]
+
+    def _section(self, place: float) -> Section:
+        pieces = self.tool.shaft.pieces
+        return next((section for _, stop, section in pieces if place <= stop), pieces[-1][2])
+
+    @property
+    def nodes(self) -> list[list[Station]]:
+        """Stations of each node (N)."""
+        return self._laid[0]
+
+    @property
+    def cells(self) -> list[Cell]:
+        """Segments (N - 1)."""
+        return self._laid[1]
+
+    @cached_property
+    def node_of(self) -> dict[str, int]:
+        """Number of the node at which each station sits."""
+        return {one.name: k for k, stations in enumerate(self.nodes) for one in stations}
+
+    def chain(self, s: Any, kind: Kind = "forced") -> Chain:
+        """The chain at complex frequencies s (1 or 2, F), 1/s; a row for each plane.
+
+        Without damping s^2 is negative, and all is real.
+        """
+        square = np.real(s * s) if kind == "undamped" else s * s
+        stations = [self._station(stations, s, square, kind) for stations in self.nodes]
+        whole = self._transfers(square, kind)
+        return Chain([whole.part(k) for k in range(len(self.cells))], stations)
+
+    def part(self, which: Array, length: Array, s: Array, kind: Kind) -> Transfer:
+        """Transfer matrices (X, 1 or 2, F) from the left end of some cells (X) over a length, m."""
+        square = np.real(s * s) if kind == "undamped" else s * s
+        sections = [self.cells[k].section for k in which]
+        return self._over(length.reshape(-1, 1, 1), sections, square, self._loss(kind))
+
+    def _loss(self, kind: Kind) -> complex:
+        loss = self.tool.shaft.loss_factor
+        return 1 + 1j * loss if loss and kind != "undamped" else 1.0
+
+    def _transfers(self, square: Any, kind: Kind) -> Transfer:
+        """Transfer matrices of all cells, (N - 1, 1 or 2, F)."""
+        if isinstance(square, Dual):  # the cells come before the planes
+            square = Dual(square.value[None], square.slopes[:, None])
+        length = stacked([cell.length for cell in self.cells])
+        return self._over(length, [cell.section for cell in self.cells], square, self._loss(kind))
+
+    def _over(self, length: Any, sections: list[Section], square: Any, loss: complex) -> Transfer:
+        flexibility = _column([1 / one.bending_stiffness for one in sections]) / loss
+        mass = _column([one.mass_per_length for one in sections]) * square
+        if self.tool.shaft.theory != "timoshenko":
+            return transfer(length, flexibility, mass)
+        shear = _column([1 / one.shear_stiffness for one in sections]) / loss
+        rotary = _column([one.rotary_inertia for one in sections]) * square
+        return shear_transfer(length, flexibility, shear, mass, rotary)
+
+    def _station(self, stations: Sequence[Station], s: Any, square: Any, kind: Kind) -> Pair:
+        across: Any = np.zeros((2, 1))
+        turning: Any = np.zeros((2, 1))
+        for one in stations:
+            across = across + sum(self.holding(one, s, kind).values(), start=np.zeros((2, 1)))
+            across = across + self.mass_at(one) * square
+            turning = turning + self._spring(one, "rotational_", s, kind)
+            turning = turning + self.of(one, "inertia") * square
+            if one.absorber is not None:
+                across = across + self.absorber(one, s, square, kind)
+        return Pair(across, turning)
+
+    def mass_at(self, station: Station) -> Any:
+        """Mass that moves with a station, kg: its own, and that of the hands on it."""
+        hand = station.hand
+        return self.of(station, "mass") + (0.0 if hand is None else hand.hands * hand.mass)
+
+    def holding(self, station: Station, s: Any, kind: Kind = "forced") -> dict[str, Any]:
+        """Dynamic stiffness (N/m) of what holds a station: ``ground``, ``harness``, ``hand``."""
+        found = {"ground": self._spring(station, "", s, kind)}
+        if station.harness is not None:
+            found["harness"] = self._spring(station, "harness.", s, kind)
+        hand = station.hand
+        if hand is not None and not hand.impedance:
+            found["hand"] = hand.hands * self._spring(station, "hand.", s, kind)
+        elif hand is not None and kind == "forced":
+            found["hand"] = hand.hands * impedance(hand.impedance, s) * s
+        return found
+
+    def on_body(self, station: Station, s: Any) -> dict[str, Any]:
+        """Force over displacement (N/m) on what holds a station; on a hand with its own mass."""
+        found = self.holding(station, s)
+        if station.hand is not None:
+            found["hand"] = found["hand"] + station.hand.hands * station.hand.mass * s * s
+        return found
+
+    def _spring(self, station: Station, owner: str, s: Any, kind: Kind) -> Any:
+        stiffness = self.of(station, f"{owner}stiffness")
+        return (
+            stiffness if kind == "undamped" else stiffness + self.of(station, f"{owner}damping") * s
+        )
+
+    def absorber(self, station: Station, s: Any, square: Any, kind: Kind) -> Any:
+        """A mass behind a spring: m s^2 k / (k + m s^2)."""
+        spring = self._spring(station, "absorber.", s, kind)
+        inertia = self.of(station, "absorber.mass") * square
+        below = spring + inertia
+        if np.any(value_of(below) == 0):
+            below = below + (TUNED * np.abs(value_of(spring)) + NEARLY_NOTHING)
+        return spring * inertia / below
+
+    def absorbers(self, s: Any, kind: Kind) -> list[Any]:
+        """What the dynamic stiffness of each absorber is divided by, k + m s^2, (2, F), N/m."""
+        return [
+            self._spring(one, "absorber.", s, kind) + self.of(one, "absorber.mass") * (s * s)
+            for one in self.tool.stations
+            if one.absorber is not None
+        ]
+
+
+def _order(point: tuple[Any, Station | None]) -> tuple[float, bool]:
+    """By place; a station at the right end stands before it, so that it can move inward."""
+    place = float(np.squeeze(value_of(point[0])))
+    return place, point[1] is None and place > 0
+
+
+def _column(numbers: list[float]) -> Array:
+    return np.array(numbers)[:, None, None]

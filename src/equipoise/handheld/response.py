@@ -1,0 +1,326 @@
+"""How a tool vibrates under what shakes it, against the speed of its engine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.handheld.chain import Pair, carry, solve
+from equipoise.handheld.layout import Layout, check_coverage
+from equipoise.handheld.model import Excitation, Station, Tool
+from equipoise.handheld.shapes import Field, Line
+from equipoise.mechanism.dynamics import forces, massless
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.results.result import Result
+from equipoise.signals import Periodic
+
+Array = np.ndarray[Any, Any]
+
+ANGLES = 720
+"""Crank angles in a turn from which a linkage's orders are taken."""
+LEAST, MOST_ORDERS = 1e-6, 60
+"""Share of the largest order below which one is left out, and how many are kept at most."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shake:
+    """One order of an excitation: the force Re (force * speed^power * exp(i order speed t)).
+
+    order : events in a turn of the engine.
+    force : complex (2,), vertical and lateral, N or N s2.
+    power : 0 for a force that is the same at all speeds, 2 where it grows with their square.
+    """
+
+    name: str
+    station: str
+    order: float
+    force: Array
+    power: int
+
+    def at(self, speed: Array) -> Array:
+        """Complex amplitudes (2, S), N, at speeds (S,) of the engine, rad/s."""
+        return np.asarray(self.force[:, None] * speed**self.power)
+
+
+def shakes(tool: Tool) -> tuple[Shake, ...]:
+    """All orders of all excitations.
+
+    Raises
+    ------
+    MassError, MotionError : of a linkage that cannot turn or has no masses.
+    """
+    return tuple(shake for one in tool.excitations for shake in _shakes(one))
+
+
+def _shakes(one: Excitation) -> Iterable[Shake]:
+    if one.linkage is not None:
+        yield from _of_linkage(one, one.linkage)
+        return
+    if one.unbalance is not None:
+        force, power = one.unbalance * one.ratio**2 * _turning(one), 2
+    else:
+        assert one.force is not None
+        ahead = np.exp(1j * one.phase)
+        along = {"vertical": np.array([ahead, 0]), "lateral": np.array([0, ahead])}
+        force, power = one.force * along.get(one.direction, _turning(one)), 0
+    yield Shake(one.name, one.station, _order(abs(one.ratio)), force, power)
+
+
+def _turning(one: Excitation) -> Array:
+    """A force of 1 that turns with a shaft: lateral at its angle 0, vertical at a quarter turn."""
+    forward = np.array([-1j, 1]) * np.exp(1j * one.phase)
+    return np.asarray(forward if one.ratio > 0 else np.conj(forward))
+
+
+def _order(order: float) -> float:
+    """The order without the rounding by which a product of ratios may miss it."""
+    return float(f"{order:.12g}")
+
+
+def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
+    """The shaking force by orders: minus the rate of change of momentum, of any speed squared."""
+    force = unit_shaking_force(machine)
+    backward = (one.ratio > 0) != (machine.drive.speed > 0)
+    sizes = np.max(force.sizes, axis=0)
+    largest = float(np.max(sizes[1:], initial=0.0))
+    kept = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
+    for k in sorted(kept, key=lambda k: -sizes[k])[:MOST_ORDERS]:
+        order = float(force.orders[k])
+        amplitudes = force.amplitudes[:, k] * np.exp(1j * order * one.phase)
+        both = np.conj(amplitudes) if backward else amplitudes
+        size = one.ratio**2 * both
+        yield Shake(one.name, one.station, _order(order * abs(one.ratio)), size, 2)
+
+
+def unit_shaking_force(machine: Machine) -> Periodic:
+    """Shaking force over speed squared (vertical, lateral), N s2, of a linkage at steady speed."""
+    if lacking := massless(machine):
+        raise MassError(lacking)
+    from equipoise.mechanism.linkage import assemble
+
+    turns = assemble(machine).cycle.turns
+    motion = move(machine, ANGLES, 1.0, 0.0)
+    force = forces(motion).shaking_force
+    return Periodic.of(np.array([force.y, force.x]), turns)
+
+
+def orders_of(all_shakes: Iterable[Shake]) -> Array:
+    """Orders (K,) of what shakes, each once, rising."""
+    return np.array(sorted({shake.order for shake in all_shakes}))
+
+
+def loud(all_shakes: Sequence[Shake], speed: float, least: float) -> tuple[Shake, ...]:
+    """Orders whose force at a speed, rad/s, is at least a share of the largest."""
+    if not all_shakes:
+        return ()
+    sizes = [float(np.max(np.abs(shake.at(np.array([speed]))))) for shake in all_shakes]
+    limit = least * max(sizes)
+    return tuple(one for one, size in zip(all_shakes, sizes, strict=True) if size >= limit)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolResponse(Result):
+    """Steady vibration at speeds (S,) of the engine, by orders (K,): complex amplitudes.
+
+    A signal of a speed is the sum over the orders of Re (amplitude * exp(i order speed t)); arrays
+    (2, K, S) have the vertical plane first.
+
+    speed : rad/s.
+    orders : events in a turn of the engine.
+    shakes : what shakes.
+    """
+
+    tool: Tool
+    speed: Array
+    orders: Array
+    shakes: tuple[Shake, ...]
+    field: Field
+
+    @property
+    def frequency(self) -> Array:
+        """Angular frequency (K, S), rad/s."""
+        return np.asarray(np.multiply.outer(self.orders, self.speed))
+
+    @cached_property
+    def _s(self) -> Array:
+        return np.asarray(1j * self.frequency)
+
+    def displacement(self, station: str) -> Array:
+        """Displacement (2, K, S) of a station, m."""
+        return self._shaped(self._node(station).across)
+
+    def velocity(self, station: str) -> Array:
+        """Velocity (2, K, S) of a station, m/s."""
+        return np.asarray(self.displacement(station) * self._s)
+
+    def acceleration(self, station: str) -> Array:
+        """Acceleration (2, K, S) of a station, m/s2."""
+        return np.asarray(self.displacement(station) * self._s**2)
+
+    def line(self, places: Sequence[float] | Array) -> Line:
+        """Displacement, slope, bending moment and shear at places (X), m: arrays (X, 2, K, S)."""
+        found = self.field.at(np.asarray(places, dtype=float))
+        return Line(*(part.reshape(*part.shape[:2], *self.frequency.shape) for part in found))
+
+    def forces(self, station: str) -> dict[str, Array]:
+        """Forces (2, K, S), N, of a station on the ``hand``, the ``harness`` and the ``ground``.
+
+        That on a hand is what a gauge in the handle would read: of its spring and damper, as in
+        (26) of Nagamine and Irie, and of its mass.
+        """
+        one, moved = self.tool.station(station), self._node(station).across
+        held = self.field.layout.on_body(one, self.field.s)
+        if not (any(one.stiffness) or any(one.damping)):
+            held.pop("ground")
+        return {part: self._shaped(stiffness * moved) for part, stiffness in held.items()}
+
+    def whole_force(self, station: str) -> Array:
+        """Force (2, K, S), N, of a station on all that holds it."""
+        total = np.zeros((2, *self.frequency.shape), complex)
+        for force in self.forces(station).values():
+            total += force
+        return total
+
+    def power(self, station: str) -> dict[str, Array]:
+        """Mean power (K, S), W, that goes into the hand, harness, ground and absorber there."""
+        one = self.tool.station(station)
+        velocity = self.velocity(station)
+        found = {part: _power(force, velocity) for part, force in self.forces(station).items()}
+        if one.absorber is not None:
+            found["absorber"] = _power(self._absorbed(one), velocity)
+        if any(one.rotational_damping):
+            turning = self._shaped(self._node(station).turning) * self._s
+            damping = np.array(one.rotational_damping)[:, None, None]
+            rotation = np.sum(damping * np.abs(turning) ** 2, axis=0) / 2
+            found["ground"] = found.get("ground", 0.0) + rotation
+        return found
+
+    def _absorbed(self, station: Station) -> Array:
+        layout, s = self.field.layout, self.field.s
+        force = layout.absorber(station, s, s * s, "forced") * self._node(station.name).across
+        return self._shaped(force)
+
+    @cached_property
+    def fed_in(self) -> Array:
+        """Mean power (K, S), W, of all that shakes."""
+        total = np.zeros(self.frequency.shape)
+        for shake in self.shakes:
+            k = _index(self.orders, shake.order)
+            velocity = self.velocity(shake.station)[:, k]
+            total[k] += _power(shake.at(self.speed), velocity)
+        return total
+
+    @cached_property
+    def lost_in_shaft(self) -> Array:
+        """Mean power (K, S), W, that the material of the shaft takes: what enters each segment."""
+        total = np.zeros(self.field.s.shape[-1])
+        states = self.field.states
+        lengths = [cell.length for cell in self.field.layout.cells]
+        for k, length in enumerate(lengths):
+            over = self.field.layout.part(
+                np.array([k]), np.array([length]), self.field.s, "forced"
+            ).part(0)
+            q, f, after = states.motion[k], states.force[k], states.motion[k + 1]
+            _, _, v, m = over.carried(*q, *f)
+            entered = (
+                v * np.conj(after.across)
+                + m * np.conj(after.turning)
+                - f.across * np.conj(q.across)
+                - f.turning * np.conj(q.turning)
+            )
+            total = total + np.sum(np.imag(entered), axis=0) * np.abs(self.field.s[0]) / 2
+        return np.asarray(total.reshape(self.frequency.shape))
+
+    def _node(self, station: str) -> Pair:
+        self.tool.station(station)
+        return self.field.states.motion[self.field.layout.node_of[station]]
+
+    def _shaped(self, values: Array) -> Array:
+        """From (2, K S) to (2, K, S)."""
+        both = np.broadcast_to(values, (2, self.frequency.size))
+        return np.asarray(both.reshape(2, *self.frequency.shape))
+
+
+def rms_over_time(amplitudes: Array) -> Array:
+    """Root of the mean square (..., S) of amplitudes (..., 2, K, S), planes and orders together."""
+    return np.asarray(np.sqrt(np.sum(np.abs(amplitudes) ** 2, axis=(-3, -2)) / 2))
+
+
+def _power(force: Array, velocity: Array) -> Array:
+    """Mean power over both planes, of complex amplitudes (2, ...)."""
+    return np.asarray(np.sum(np.real(force * np.conj(velocity)), axis=0) / 2)
+
+
+def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResponse:
+    """Steady vibration of a tool at some speeds of its engine, rad/s.
+
+    Raises
+    ------
+    ModelError : nothing shakes it, or a hand's table does not reach that far.
+    MassError, MotionError : of a linkage that shakes it.
+    ResponseError : a speed is that of a resonance without damping.
+    UsageError : a speed is not above 0.
+    """
+    speeds = checked_speeds(speed)
+    if not tool.excitations:
+        raise ModelError("excitations", NOTHING)
+    all_shakes = shakes(tool)
+    orders = orders_of(all_shakes)
+    ends = float(orders[0] * np.min(speeds)), float(orders[-1] * np.max(speeds))
+    check_coverage(tool, *ends)
+    layout = Layout(tool, ends[1])
+    field = shaken(layout, all_shakes, orders, speeds)
+    _check_finite(field, orders, speeds)
+    return ToolResponse(tool, speeds, orders, all_shakes, field)
+
+
+def _check_finite(field: Field, orders: Array, speeds: Array) -> None:
+    """No resonance is met exactly, without damping."""
+    finite = np.ones(field.s.shape[-1], dtype=bool)
+    for pair in field.states.motion:
+        finite &= np.all(np.isfinite(pair.across) & np.isfinite(pair.turning), axis=0)
+    if np.all(finite):
+        return
+    order, speed = np.unravel_index(int(np.argmin(finite)), (len(orders), len(speeds)))
+    raise ResponseError(
+        f"at {speeds[speed] * 30 / np.pi:.6g} rpm order {orders[order]:.4g} meets a resonance "
+        "without damping, and the vibration has no bound; give dampers, a loss_factor, or another "
+        "speed"
+    )
+
+
+NOTHING = (
+    "nothing shakes the tool; add a table [[excitations]] with a station and a force, an unbalance "
+    "or a linkage"
+)
+
+
+def checked_speeds(speed: float | Iterable[float] | Array) -> Array:
+    """Speeds (S,), rad/s, all above 0."""
+    speeds = np.atleast_1d(np.asarray(speed, dtype=float))
+    if speeds.ndim != 1 or not speeds.size or not np.all((speeds > 0) & np.isfinite(speeds)):
+        raise UsageError("the speeds of the engine must be more than 0")
+    return speeds
+
+
+def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: Array) -> Field:
+    """The field of a layout under what shakes, at all orders and speeds."""
+    s = 1j * np.multiply.outer(orders, speeds).reshape(1, -1)
+    loads: list[Any] = [None] * len(layout.nodes)
+    for shake in all_shakes:
+        force = np.zeros((2, len(orders), len(speeds)), complex)
+        force[:, _index(orders, shake.order)] = shake.at(speeds)
+        node = layout.node_of[shake.station]
+        load = Pair(force.reshape(2, -1), 0.0)
+        loads[node] = load if loads[node] is None else Pair(loads[node].across + load.across, 0.0)
+    return Field(layout, s, solve(carry(layout.chain(s)), loads))
+
+
+def _index(orders: Array, order: float) -> int:
+    return int(np.searchsorted(orders, order))

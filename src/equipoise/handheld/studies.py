@@ -1,0 +1,153 @@
+"""Natural frequencies against a number of the tool, and the determinant whose zeros they are."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.frequencies import characteristic, natural_frequencies, scale_of
+from equipoise.handheld.layout import Layout
+from equipoise.handheld.model import Station, Tool
+from equipoise.mechanism.checks import unknown
+from equipoise.results.result import Result
+
+Array = np.ndarray[Any, Any]
+
+
+def changed(tool: Tool, station: str, key: str, value: float) -> Tool:
+    """The tool with one number of a station changed, of a pair both.
+
+    station, key : as in `wishes.DesignVariable`.
+
+    Raises
+    ------
+    ModelError, UsageError : there is no such station or number, or it cannot have that value.
+    """
+    one = tool.station(station)
+    check_key(one, key)
+    *path, last = key.split(".")
+    owner: Any = getattr(one, path[0]) if path else one
+    number = (value, value) if isinstance(getattr(owner, last), tuple) else value
+    owner = replace(owner, **{last: number})
+    return tool.with_station(station, **({path[0]: owner} if path else {last: number}))
+
+
+def check_key(station: Station, key: str) -> None:
+    """A station must have the number that a key names."""
+    known = [name for name in KEYS if has(station, name)]
+    if key not in KEYS:
+        raise UsageError(unknown(key, known, f"number of {station.name!r}"))
+    if key not in known:
+        raise UsageError(f"{station.name!r} has no {key.partition('.')[0]}; give it one first")
+
+
+def has(station: Station, key: str) -> bool:
+    """Whether a station has what a key's number belongs to."""
+    owner, dot, _ = key.partition(".")
+    return not dot or getattr(station, owner) is not None
+
+
+def number_of(tool: Tool, station: str, key: str) -> float:
+    """A number of a station; of a pair the vertical one."""
+    value = tool.station(station).number(key)
+    return value[0] if isinstance(value, tuple) else value
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Variation(Result):
+    """Natural frequencies while a number of a station changes.
+
+    values : (V,), SI units.
+    frequency : (2, V, K), rad/s.
+    parameter : lambda of each, as in `modes.PlaneModes`.
+    """
+
+    tool: Tool
+    station: str
+    key: str
+    values: Array
+    frequency: Array
+    parameter: Array
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values; natural frequencies in Hz."""
+        return {
+            "station": self.station,
+            "key": self.key,
+            "values": self.values,
+            "natural_frequencies": self.frequency[0] / (2 * np.pi),
+            "eigenvalues": self.parameter[0],
+            "natural_frequencies_lateral": self.frequency[1] / (2 * np.pi),
+            "eigenvalues_lateral": self.parameter[1],
+        }
+
+
+def vary_tool(tool: Tool, station: str, key: str, values: Array, number: int = 5) -> Variation:
+    """Natural frequencies against a number of a station: Figs. 3 and 4 of Nagamine and Irie.
+
+    Raises
+    ------
+    ModelError, UsageError : as `changed`.
+    """
+    machines = [changed(tool, station, key, float(value)) for value in values]
+    frequency = np.array([natural_frequencies(one, number) for one in machines])
+    frequency = np.moveaxis(frequency, 0, 1)
+    return Variation(
+        tool, station, key, np.asarray(values), frequency, np.sqrt(frequency / scale_of(tool))
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class DeterminantChart:
+    """The characteristic function without damping, against lambda: Fig. 2 of Nagamine and Irie.
+
+    parameter : lambda, (N,).
+    value : (2, N), sign times the decimal logarithm of 1 + its size over its smallest peak: the
+        function itself runs over many powers of ten.
+    """
+
+    parameter: Array
+    value: Array
+
+
+def determinant_chart(tool: Tool, highest: float, count: int = 800) -> DeterminantChart:
+    """The chart from 0 to a highest lambda."""
+    if not highest > 0:
+        raise UsageError(f"got a highest lambda of {highest:g}; give more than 0")
+    parameter = np.linspace(highest / count, highest, count)
+    frequency = scale_of(tool) * parameter**2
+    undamped = Layout(without_damping(tool), float(frequency[-1]))
+    s = np.array([1j * frequency, 1j * frequency])
+    logarithm, _ = characteristic(undamped, s)
+    sign = np.sign(np.cos(logarithm.imag))
+    size = logarithm.real
+    turning = (size[:, 1:-1] > size[:, :-2]) & (size[:, 1:-1] > size[:, 2:])
+    peaks = [row[1:-1][up] for row, up in zip(size, turning, strict=True)]
+    least = np.array([np.min(row, initial=np.median(size)) for row in peaks])[:, None]
+    return DeterminantChart(parameter, sign * np.log10(1 + np.exp(size - least)))
+
+
+def without_damping(tool: Tool) -> Tool:
+    """The tool without any loss or damper; a hand known by a table is left out."""
+    nothing = (0.0, 0.0)
+
+    def still(part: Any) -> Any:
+        return None if part is None else replace(part, damping=nothing)
+
+    stations = tuple(
+        replace(
+            one,
+            damping=nothing,
+            rotational_damping=nothing,
+            absorber=still(one.absorber),
+            harness=still(one.harness),
+            hand=None if one.hand is None or one.hand.impedance else still(one.hand),
+        )
+        for one in tool.stations
+    )
+    shaft = replace(tool.shaft, loss_factor=0.0)
+    return replace(tool, shaft=shaft, stations=stations, design=None)

@@ -1,0 +1,570 @@
+"""Keys of files, declared once: a frozen dataclass says of each field what it is in its file.
+
+::
+
+    @declared
+    class Spring(Frozen):
+        stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
+        free_length: float = key("length", "at which it exerts nothing", default=0.0)
+
+From this follow the checks of values made in Python (here), and reading, writing, the JSON Schema,
+the tables of the documentation and access by path (`equipoise.schema`).  Rules between keys are
+plain functions beside the class.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from functools import cache
+from importlib import import_module
+from math import inf, isfinite
+from numbers import Integral, Real
+from types import MappingProxyType
+from typing import Any, ClassVar, TypeVar, dataclass_transform
+
+from equipoise.errors import ModelError
+from equipoise.quantities.units import KINDS, Dimension
+
+Class = TypeVar("Class", bound=type)
+MOST_WHOLE = 1_000_000
+HUGE, TINY = 1e30, 1e-30
+"""Limits of what is taken for a quantity in SI units."""
+
+# -- kinds -----------------------------------------------------------------------------------------
+
+
+class Kind:
+    """What a value is: `check` takes one that Python gives, `wanted` says what it has to be."""
+
+    wanted: str
+
+    def check(self, value: Any) -> Any:
+        """The value as it is kept.
+
+        Raises
+        ------
+        TypeError, ValueError, OverflowError : it is something else.
+        """
+        return value
+
+
+def choice(names: Iterable[Any]) -> str:
+    """Say which there are: ``'a', 'b' or 'c'``."""
+    *most, last = map(repr, names)
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """Text; `names` are the only ones, if there are any.
+
+    suggested : those that editors offer; what else is wrong with it is said elsewhere.
+    """
+
+    names: tuple[str, ...] = ()
+    suggested: tuple[str, ...] = ()
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return choice(self.names) if self.names else "text"
+
+    def check(self, value: Any) -> str:
+        if not isinstance(value, str):
+            raise TypeError
+        if self.names and value not in self.names:
+            raise ValueError
+        return value
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A plain number."""
+
+    wanted = "a number"
+
+    def check(self, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise TypeError
+        return float(value)
+
+
+@dataclass(frozen=True)
+class Quantity(Number):
+    """A number with a unit in the file, in SI units in Python."""
+
+    dimension: Dimension = "length"
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number; `choices` are the only ones, if there are any."""
+
+    least: int | None = None
+    most: int = MOST_WHOLE
+    choices: tuple[int, ...] = ()
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return choice(self.choices) if self.choices else f"a whole number of at most {MOST_WHOLE}"
+
+    def check(self, value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            raise TypeError
+        count = int(value)
+        if abs(count) > max(self.most, MOST_WHOLE) or (self.choices and count not in self.choices):
+            raise ValueError
+        return count
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """True or false."""
+
+    wanted = "true or false"
+
+    def check(self, value: Any) -> bool:
+        if not isinstance(value, bool):
+            raise TypeError
+        return value
+
+
+@dataclass(frozen=True)
+class Anything(Kind):
+    """What cannot be told before something else is known; it comes through as it is.
+
+    schema : what the JSON Schema says of it.
+    """
+
+    schema: Any = None
+    text: str = ""
+    """What to say where it is no text; nothing where it need not be one."""
+
+
+def items_of(value: Any) -> tuple[Any, ...]:
+    """A list as a tuple; texts and mappings are none."""
+    if isinstance(value, str | Mapping):
+        raise TypeError
+    return tuple(value)
+
+
+@dataclass(frozen=True)
+class Listing(Kind):
+    """Some of a kind in a list.
+
+    sizes : how many there can be; none for one or more.
+    right : what to give instead of a list of another length, or of none.
+    """
+
+    item: Kind
+    sizes: tuple[int, ...] = ()
+    right: str = ""
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        if isinstance(self.item, Text):
+            return "a list of texts"
+        if isinstance(self.item, Listing | Point):
+            return "two points of two numbers each" if self.sizes else "rows of numbers"
+        if self.sizes == (2,):
+            whole = f"two whole numbers of at most {MOST_WHOLE}"
+            return whole if isinstance(self.item, Whole) else "two numbers"
+        return "numbers"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if self.sizes == (2,) and len(items) != 2:
+            raise ValueError
+        return items
+
+
+@dataclass(frozen=True)
+class Point(Kind):
+    """Two lengths along x and y, in a file by distance and direction too.
+
+    space : with a third length along z, which may be left out.
+    """
+
+    space: bool = False
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two or three numbers" if self.space else "two numbers"
+
+    def check(self, value: Any) -> tuple[float, ...]:
+        row = tuple(map(Number().check, items_of(value)))
+        row = (*row, 0.0) if self.space and len(row) == 2 else row
+        if len(row) != (3 if self.space else 2):
+            raise ValueError
+        return row
+
+
+@dataclass(frozen=True)
+class Direction(Kind):
+    """An angle in the plane of the drawing, or a vector of three plain numbers."""
+
+    wanted = "an angle, or three numbers"
+
+    def check(self, value: Any) -> float | tuple[float, ...]:
+        return Number().check(value) if isinstance(value, Real) else Point(True).check(value)
+
+
+@dataclass(frozen=True)
+class OneOr(Kind):
+    """One of a kind, or several in a list; always a tuple in Python.
+
+    repeat : one stands for as many equal ones.
+    right : what to give instead of anything else.
+    """
+
+    item: Kind
+    size: int
+    repeat: bool = False
+    right: str = ""
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two numbers" if self.repeat else "numbers"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if self.repeat and len(items) != self.size:
+            raise ValueError
+        return items
+
+
+@dataclass(frozen=True)
+class Planes(Kind):
+    """Of the vertical and the lateral plane: one for both, or a table of two."""
+
+    item: Kind
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two numbers" if isinstance(self.item, Quantity) else "a list of such objects"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if isinstance(self.item, Quantity) and len(items) != 2:
+            raise ValueError
+        return items
+
+
+@dataclass(frozen=True)
+class Named(Kind):
+    """Some of a kind by names that the user chooses."""
+
+    item: Kind
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        of = {Point: "two numbers", Text: "text", Table: "such objects"}
+        return f"a mapping of names to {of.get(type(self.item), 'numbers')}"
+
+    def check(self, value: Any) -> Mapping[str, Any]:
+        if not isinstance(value, Mapping):
+            raise TypeError
+        name, item = Text().check, self.item.check
+        return MappingProxyType({name(key): item(one) for key, one in value.items()})
+
+
+@dataclass(frozen=True)
+class Table(Kind):
+    """A table with keys of its own, those of a class.
+
+    of : the class, or ``module:name`` of one that takes time to import.
+    flat : its keys stand among those of the table that has it.
+    headed : inside of another table it is written below a header of its own.
+    """
+
+    of: Any
+    flat: bool = False
+    headed: bool = False
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return self.type.wanted
+
+    @property
+    def type(self) -> type[Frozen]:
+        """The class."""
+        if isinstance(self.of, str):
+            module, _, name = self.of.partition(":")
+            found: type[Frozen] = getattr(import_module(module), name)
+            return found
+        kept: type[Frozen] = self.of
+        return kept
+
+    def check(self, value: Any) -> Any:
+        return self.type.checked(value)
+
+
+@dataclass(frozen=True)
+class Tables(Kind):
+    """Any number of such tables."""
+
+    item: Table
+    wanted = "a list of such objects"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        return tuple(map(self.item.check, value))
+
+
+@dataclass(frozen=True)
+class File(Kind):
+    """What lies in a file of its own, which the key names.
+
+    sort : what it is, such as ``load``.  named : field that keeps the file's name.
+    """
+
+    sort: str
+    named: str = ""
+    wanted = "such an object"
+
+    def check(self, value: Any) -> Any:
+        return Frozen.checked(value)
+
+
+# -- declaring -------------------------------------------------------------------------------------
+
+REQUIRED = object()
+"""Default of a key that has to be given."""
+_KEY = "equipoise key"
+
+
+@dataclass(frozen=True, eq=False)
+class Key:
+    """A key of a file.
+
+    name : in the file.  field : of the class, the same where nothing else is said.
+    text : what it means, in words that go on after its name.
+    example : as it would stand in the file.  default : in Python; `shown` if the file's reader is
+        better told otherwise.
+    at_least, above, below : limits in SI units; `why` is said instead of the limit.
+    endless : it may be infinite, for no limit.  inside : no file has it.
+    """
+
+    name: str
+    kind: Kind
+    text: str = ""
+    field: str = ""
+    example: Any = None
+    default: Any = REQUIRED
+    shown: Any = None
+    at_least: float | None = None
+    above: float | None = None
+    below: float | None = None
+    why: str = ""
+    endless: bool = False
+    inside: bool = False
+
+    @property
+    def required(self) -> bool:
+        return self.default is REQUIRED
+
+    def allows(self, value: Any) -> Any:
+        """Whether a number, or each of an array, is within the limits."""
+        right: Any = True
+        if self.at_least is not None:
+            right = right & (value >= self.at_least)
+        if self.above is not None:
+            right = right & (value > self.above)
+        if self.below is not None:
+            right = right & (value < self.below)
+        return right
+
+    @property
+    def unit(self) -> str:
+        """SI unit of its quantity behind a space; nothing of a plain number."""
+        return f" {KINDS[self.kind.dimension].units[0]}" if isinstance(self.kind, Quantity) else ""
+
+    @property
+    def limits(self) -> str:
+        """What to give, in words."""
+        if self.why:
+            return self.why
+        if self.above is not None:
+            return f"give more than {self.above:g}"
+        return f"give {self.at_least:g} or more"
+
+
+def key(
+    kind: Kind | str,
+    text: str = "",
+    *,
+    name: str = "",
+    default: Any = REQUIRED,
+    factory: Callable[[], Any] | None = None,
+    compare: bool = True,
+    **more: Any,
+) -> Any:
+    """Declare a field that is a key of the file; `kind` may be the dimension of a quantity.
+
+    The other parameters are those of `Key`, and `factory` and `compare` as of a dataclass.
+    """
+    kind = Quantity(kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
+    standing = factory() if factory is not None else default
+    declaration = Key(name, kind, text, default=standing, **more)
+    given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
+    if factory is not None:
+        given = {"default_factory": factory}
+    return field(metadata={_KEY: declaration}, compare=compare, **given)
+
+
+def inside(kind: Kind, *, default: Any = REQUIRED, compare: bool = True) -> Any:
+    """Declare a field that no file has a key for; its kind is checked all the same."""
+    given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
+    return field(
+        metadata={_KEY: Key("", kind, default=default, inside=True)}, compare=compare, **given
+    )
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
+def declared(cls: Class) -> Class:
+    """Make a frozen dataclass of a class with keys."""
+    return dataclass(frozen=True)(cls)
+
+
+class Frozen:
+    """Base of the frozen dataclasses of a model: numbers as floats, lists as tuples, mappings
+    read-only, each checked by its kind when the object is made.
+
+    beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
+    order : names of keys in the order of the file, where it is not that of the fields.
+    conditions : what the JSON Schema says of keys that go together.
+    """
+
+    beside: ClassVar[Mapping[str, Key]] = {}
+    order: ClassVar[tuple[str, ...]] = ()
+    conditions: ClassVar[Mapping[str, Any]] = {}
+    wanted: ClassVar[str] = "such an object"
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    def __post_init__(self) -> None:
+        for name, kind, optional in _checked(type(self)):
+            value = getattr(self, name)
+            if value is None and optional:
+                continue
+            try:
+                object.__setattr__(self, name, kind.check(value))
+            except (TypeError, ValueError, OverflowError):
+                raise ModelError(name, f"got {_shown(value)}; give {kind.wanted}") from None
+
+    @classmethod
+    def checked(cls, value: Any) -> Any:
+        """The value of a field that holds such an object; a `TypeError` where it is none."""
+        if not isinstance(value, Frozen):
+            raise TypeError
+        return value
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Any:
+        """The object of the keys that a file has given, in SI units.
+
+        Raises
+        ------
+        ModelError : they do not go together; `where` is the key inside of this table.
+        """
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: Any) -> dict[str, Any]:
+        """What the file says of an object, by key, in SI units; defaults are left out."""
+        given = ((one, getattr(value, one.field)) for one in keys_of(cls).values() if one.field)
+        return {one.name: item for one, item in given if one.required or item != one.default}
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            key: dict(value) if isinstance(value, MappingProxyType) else value
+            for key, value in self.__dict__.items()
+            if not key.startswith("_")
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        for key, value in state.items():
+            self.__dict__[key] = MappingProxyType(value) if isinstance(value, dict) else value
+
+
+def _shown(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+# -- what a class declares -------------------------------------------------------------------------
+
+
+@cache
+def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
+    """Keys of a class in the order of the file, by name; a flat table is one of them."""
+    found = {name: replace(one, name=name) for name, one in cls.beside.items()}
+    for one in _declarations(cls):
+        if one.name:
+            found[one.name] = one
+    own = [name for name in found if name not in cls.beside]
+    return {name: found[name] for name in dict.fromkeys((*cls.order, *own, *cls.beside))}
+
+
+@cache
+def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
+    """Keys that stand in the table of a class, by name, with those of flat ones in their places."""
+    found: dict[str, Key] = {}
+    for one in keys_of(cls).values():
+        kind = one.kind
+        found |= all_keys(kind.type) if isinstance(kind, Table) and kind.flat else {one.name: one}
+    return found
+
+
+@cache
+def _declarations(cls: type[Frozen]) -> tuple[Key, ...]:
+    """What is declared of the fields of a class; without a name where no file has it."""
+    found: list[Key] = []
+    for one in fields(cls):
+        declared: Key | None = one.metadata.get(_KEY)
+        if declared is not None:
+            name = declared.name if declared.inside else declared.name or one.name
+            found.append(replace(declared, name=name, field=one.name))
+    return tuple(found)
+
+
+@cache
+def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, bool], ...]:
+    """Fields of a class with what they have to be, and whether they may be None."""
+    return tuple((one.field, one.kind, one.default is None) for one in _declarations(cls))
+
+
+# -- numbers of an object --------------------------------------------------------------------------
+
+
+def wrong_numbers(where: str, value: Any) -> Iterator[ModelError]:
+    """Complain of every number below a value that is not finite, of no usual size, or beyond its
+    limits.
+    """
+    numbers = list(_numbers(where, value, None))
+    for place, size, _ in numbers:
+        if not isfinite(size):
+            yield ModelError(place, f"got {size}; give a finite number")
+        elif abs(size) > HUGE or 0 < abs(size) < TINY:
+            yield ModelError(place, f"got {size:g} in SI units, which no machine can have")
+    for place, size, one in numbers:
+        if one is not None and not one.allows(size):
+            yield ModelError(place, f"got {size:g}{one.unit}; {one.limits}")
+
+
+def _numbers(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, float, Key | None]]:
+    """Numbers below a value, each with its place and its declaration."""
+    if isinstance(value, bool | str) or value is None:
+        return
+    if isinstance(value, int | float):
+        if not (of is not None and of.endless and value == inf):
+            yield where, value, of
+    elif isinstance(value, Mapping):
+        for name, item in value.items():
+            yield from _numbers(f"{where}.{name}".lstrip("."), item, of)
+    elif isinstance(value, tuple | list):
+        for number, item in enumerate(value, 1):
+            yield from _numbers(f"{where}[{number}]", item, of)
+    else:
+        for one in _declarations(type(value)):
+            flat = isinstance(one.kind, Table) and one.kind.flat
+            place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
+            yield from _numbers(place, getattr(value, one.field), one)

@@ -1,0 +1,220 @@
+"""Finding a number in the content of a model file by its path, such as ``links.crank.points.B.x``.
+
+Keys stand between points, in quotes where they have odd signs; entries of a list are counted
+from 1 in brackets: ``loads[1].force.x``, ``gears[2].teeth[1]``.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from numbers import Real
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.handheld.model import PLANES
+from equipoise.mechanism.checks import unknown
+from equipoise.quantities.problems import described
+from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
+from equipoise.schema.opening import Kind
+from equipoise.schema.problems import written_key
+from equipoise.schema.schema_keys import Place, default_at, is_known, is_whole
+
+Content = Mapping[str, Any]
+_STEP = re.compile(r'(?:(?:^|\.)(?:"((?:[^"\\]|\\.)*)"|([^."\[\]]+))|\[([0-9]{1,9})\])')
+
+
+@dataclass(frozen=True)
+class Found:
+    """Where a number stands.
+
+    place : of the number itself, or of the vector or pair of planes whose `part` it is.
+    rest : path inside of the linkage whose file is named there; then `number` is not known here.
+    """
+
+    place: Place
+    number: Number | None = None
+    whole: Vector | Planes | None = None
+    part: str = ""
+    rest: str = ""
+
+
+def find(content: Content, kind: Kind, path: str) -> Found:
+    """Where the number of a path stands.
+
+    Raises
+    ------
+    ModelError : there is none; `where` is the path.
+    """
+    steps = _steps(path)
+    place: Place = ()
+    here: Any = content
+    for count, step in enumerate(steps):
+        group = _group(here, step, kind) if count == len(steps) - 1 else None
+        if group is not None:
+            part = XYZ[step] if isinstance(step, int) else step
+            return Found(place, group.numbers[part], group, part)
+        if kind == "tool" and place[-1:] == ("linkage",) and isinstance(here, str):
+            return Found(place, rest=written_place(steps[count:]))
+        here = _below(content, kind, path, (*place, step), here)
+        place = (*place, step)
+    number = read_number(here, isinstance(here, int) and is_whole(kind, place))
+    if number is None:
+        raise ModelError(path, _no_number(path, here))
+    return Found(place, number)
+
+
+def all_numbers(content: Content) -> dict[str, Number]:
+    """Every number that is written in a model file, by its path."""
+    return dict(_walk(content, ()))
+
+
+def _walk(here: Any, place: Place) -> Iterator[tuple[str, Number]]:
+    vector, number = vector_of(here), read_number(here)
+    if vector is not None:
+        for part, component in vector.numbers.items():
+            yield f"{written_place(place)}.{part}", component
+    elif number is not None and place != ("schema",):
+        yield written_place(place), number
+    elif isinstance(here, dict | list):
+        for key, below in here.items() if isinstance(here, dict) else enumerate(here):
+            yield from _walk(below, (*place, key))
+
+
+def _group(here: Any, step: str | int, kind: Kind) -> Vector | Planes | None:
+    """The vector or pair of planes that has a number of that name, or None."""
+    if kind == "tool" and step in PLANES and isinstance(here, str):
+        number = read_number(here)
+        return None if number is None else Planes(here, number)
+    vector = vector_of(here)
+    if vector is None:
+        return None
+    if isinstance(step, int):
+        return vector if step < len(vector.components) else None
+    return vector if step in vector.numbers else None
+
+
+# -- paths -----------------------------------------------------------------------------------------
+
+
+def _steps(path: str) -> tuple[str | int, ...]:
+    """Keys, and numbers in lists from 0."""
+    steps: list[str | int] = []
+    end = 0
+    while match := _STEP.match(path, end):
+        quoted, bare, number = match.groups()
+        if number is not None:
+            steps.append(int(number) - 1)
+        else:
+            steps.append(_unquoted(quoted) if bare is None else bare.strip())
+        end = match.end()
+    if not path or end < len(path) or -1 in steps:
+        shown = path if len(path) <= 60 else f"{path[:57]}..."
+        raise ModelError(
+            path,
+            f"got {shown!r}; give keys with points between, and numbers in lists from 1 in "
+            "brackets, such as links.crank.points.B.x or gears[1].ratio",
+        )
+    return tuple(steps)
+
+
+def _unquoted(text: str) -> str:
+    try:
+        return str(json.loads(f'"{text}"'))
+    except ValueError:
+        return text
+
+
+def written_place(steps: Place) -> str:
+    """The path of a place."""
+    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in steps)
+    return text.removeprefix(".")
+
+
+# -- one step --------------------------------------------------------------------------------------
+
+
+def _below(content: Content, kind: Kind, path: str, place: Place, here: Any) -> Any:
+    """What stands at a place, of which `here` stands above; what is left out is its default."""
+    step = place[-1]
+    if isinstance(step, int) and isinstance(here, list) and step < len(here):
+        return here[step]
+    if isinstance(here, dict):
+        if step in here:
+            return here[step]
+        default = default_at(kind, place)
+        if default is not None:
+            return default
+        if is_known(kind, place):
+            missing = written_place(place)
+            raise ModelError(
+                path, f"{missing} is not written in the model; add it there to vary it"
+            )
+    raise ModelError(path, unknown(path, all_numbers(content), "number of the model"))
+
+
+def _no_number(path: str, here: Any) -> str:
+    vector = vector_of(here)
+    if vector is not None:
+        parts = [f"{path}.{part}" for part in vector.numbers]
+        return f"{path} is more than one number; give {', '.join(parts[:-1])} or {parts[-1]}"
+    what = described(here)
+    return f"{path} is {what}; give the path of one number"
+
+
+Given = tuple[str, Found, float]
+"""Path of a number, where it stands, and what is to stand there."""
+
+
+def replaced(content: Content, given: Iterable[Given]) -> dict[str, Any]:
+    """The content with other numbers.
+
+    Raises
+    ------
+    ModelError : a value is none, or two paths mean the same number; `where` is the path.
+    """
+    changes: dict[Place, Any] = {}
+    parts: dict[Place, dict[str, float]] = {}
+    wholes: dict[Place, Vector | Planes] = {}
+    for path, found, value in given:
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise ModelError(path, f"got {value!r}; give a number")
+        beside = parts.setdefault(found.place, {})
+        _check_company(path, found, beside, found.place in changes)
+        if found.whole is not None:
+            beside[found.part] = value
+            wholes[found.place] = found.whole
+        elif found.number is not None:
+            changes[found.place] = found.number.written(value)
+    changes |= {place: whole.changed(parts[place]) for place, whole in wholes.items()}
+    return with_changes(content, changes)
+
+
+def _check_company(path: str, found: Found, beside: Mapping[str, float], taken: bool) -> None:
+    """Refuse a number that others have changed already."""
+    if taken or found.part in beside or (beside and not found.part):
+        raise ModelError(path, f"{path} is a number that varies already; leave one of them out")
+    forms = {key in POLAR for key in (found.part, *beside)}
+    if isinstance(found.whole, Vector) and len(forms) == 2:
+        above = path.rpartition(".")[0]
+        raise ModelError(
+            path,
+            f"{path} cannot vary beside {above}.{next(iter(beside))}; let either "
+            f"{' and '.join(XYZ[:2])} or {' and '.join(POLAR)} of a point vary",
+        )
+
+
+def with_changes(content: Content, changes: Mapping[Place, Any]) -> dict[str, Any]:
+    """The content with other values at some places; what is not changed is shared, not copied."""
+    root = dict(content)
+    copied: dict[Place, Any] = {(): root}
+    for place, value in changes.items():
+        here: Any = root
+        for length, key in enumerate(place[:-1], 1):
+            if place[:length] not in copied:
+                here[key] = copied[place[:length]] = here[key].copy()
+            here = here[key]
+        here[place[-1]] = value
+    return root

@@ -1,0 +1,203 @@
+"""Shares of a value before, such as ``"80 %"``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal, localcontext
+from functools import cached_property
+from math import atan2, hypot
+from typing import Any
+
+from equipoise.errors import UsageError
+from equipoise.handheld.model import PLANES
+from equipoise.quantities import parse
+from equipoise.quantities.problems import too_far
+from equipoise.quantities.units import HUGE, KINDS, NUMBER, TINY, Dimension, plain_unit
+from equipoise.schema.points import from_polar
+
+SHARE = rf"({NUMBER}) +%"
+_DIGITS = 60
+
+
+def parse_share(text: str) -> float | None:
+    """Read a share such as ``"80 %"`` as the float nearest to 0.8; None for what is no share.
+
+    Raises
+    ------
+    UsageError : it ends as a share does, but is none.
+    """
+    if not text.rstrip().endswith("%"):
+        return None
+    match = re.fullmatch(SHARE, text)
+    if match is None:
+        shown = text if len(text) <= 60 else f"{text[:57]}..."
+        raise UsageError(f'got {shown!r}; give a number, a space and %, such as "80 %"')
+    with localcontext() as context:
+        context.prec = _DIGITS
+        share = float(Decimal(match[1]) / 100)
+    if abs(share) > HUGE or 0 < abs(share) < TINY:
+        raise UsageError(too_far(text))
+    return share
+
+
+def format_share(share: float) -> str:
+    """Write a share such that `parse_share` gives back exactly the same float."""
+    with localcontext() as context:
+        context.prec = _DIGITS
+        percent = (Decimal(repr(share)) * 100).normalize()
+    return f"{percent:f} %" if -5 <= percent.adjusted() < 9 else f"{percent} %".lower()
+
+
+OF_UNIT: dict[str, Dimension] = {
+    unit: dimension for dimension, kind in KINDS.items() for unit in kind.units
+}
+"""No unit belongs to two dimensions; a test looks after that."""
+XYZ, POLAR = ("x", "y", "z"), ("distance", "direction")
+VECTORS = ("length", "force", "acceleration")
+"""Dimensions of pairs that are x and y."""
+_QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number of a model file.
+
+    value : in SI units; an `int` where only whole numbers will do.
+    dimension : None of a plain number.
+    share : whether it is written as a share such as ``"80 %"``.
+    """
+
+    value: float
+    dimension: Dimension | None = None
+    share: bool = False
+
+    def written(self, value: float) -> str | float:
+        """Another value in the form of this one; a whole number stays one if it can."""
+        if self.share:
+            return format_share(float(value))
+        if self.dimension is not None:
+            return quantity(value, self.dimension)
+        whole = isinstance(self.value, int) and float(value).is_integer()
+        return int(value) if whole else float(value)
+
+
+def quantity(value: float, dimension: Dimension) -> str:
+    """A value in SI units with all its digits."""
+    return f"{float(value)!r} {KINDS[dimension].si}"
+
+
+def read_number(given: Any, whole: bool = False) -> Number | None:
+    """What a value of a model file is as a number; None where it is none.
+
+    whole : whether only whole numbers will do there.
+    """
+    if isinstance(given, bool):
+        return None
+    if isinstance(given, int | float):
+        return Number(given if whole else float(given))
+    if not isinstance(given, str):
+        return None
+    try:
+        match = _QUANTITY.fullmatch(given)
+        dimension = OF_UNIT.get(plain_unit(match[1])) if match else None
+        if dimension is not None:
+            return Number(parse(given, dimension), dimension)
+        share = parse_share(given)
+    except UsageError:
+        return None
+    return None if share is None else Number(share, share=True)
+
+
+@dataclass(frozen=True)
+class Vector:
+    """Two or three components in a list, or a point by distance and direction.
+
+    given : as it stands in the file.
+    components : in SI units.
+    """
+
+    given: Any
+    components: tuple[float, ...]
+    dimension: Dimension
+
+    @cached_property
+    def numbers(self) -> dict[str, Number]:
+        """Everything of it that can be varied, by its last key."""
+        found = {
+            key: Number(value, self.dimension)
+            for key, value in zip(XYZ, self.components, strict=False)
+        }
+        if self.dimension == "length":
+            distance, direction = self._polar
+            found["distance"] = Number(distance, "length")
+            found["direction"] = Number(direction, "angle")
+        return found
+
+    @property
+    def _polar(self) -> tuple[float, float]:
+        if isinstance(self.given, dict):
+            return parse(self.given["distance"], "length"), parse(self.given["direction"], "angle")
+        x, y = self.components[:2]
+        return hypot(x, y), atan2(y, x)
+
+    def changed(self, values: Mapping[str, float]) -> Any:
+        """With other numbers, of either form but not of both, as it would stand in the file."""
+        if all(self.numbers[key].value == value for key, value in values.items()):
+            return self.given
+        if set(values) <= set(POLAR):
+            distance, direction = (values.get(key, self.numbers[key].value) for key in POLAR)
+            if isinstance(self.given, dict):
+                return {
+                    "distance": quantity(distance, "length"),
+                    "direction": quantity(direction, "angle"),
+                }
+            components = (*from_polar(distance, direction), *self.components[2:])
+        else:
+            own = zip(XYZ, self.components, strict=False)
+            components = tuple(values.get(key, value) for key, value in own)
+        return [quantity(component, self.dimension) for component in components]
+
+
+@dataclass(frozen=True)
+class Planes:
+    """One value of a tool for both planes of bending, which can be taken apart."""
+
+    given: str
+    number: Number
+
+    @property
+    def numbers(self) -> dict[str, Number]:
+        return dict.fromkeys(PLANES, self.number)
+
+    def changed(self, values: Mapping[str, float]) -> Any:
+        """As `Vector.changed`."""
+        if all(value == self.number.value for value in values.values()):
+            return self.given
+        return {
+            plane: self.number.written(values.get(plane, self.number.value)) for plane in PLANES
+        }
+
+
+def vector_of(given: Any) -> Vector | None:
+    """A list of two or three quantities, or a point by distance and direction; else None."""
+    if isinstance(given, dict) and set(given) == set(POLAR):
+        distance, direction = (read_number(given[key]) for key in POLAR)
+        if (
+            distance
+            and direction
+            and (distance.dimension, direction.dimension)
+            == (
+                "length",
+                "angle",
+            )
+        ):
+            return Vector(given, from_polar(distance.value, direction.value), "length")
+    if isinstance(given, list) and len(given) in (2, 3):
+        numbers = [read_number(one) for one in given]
+        kinds = {None if one is None else one.dimension for one in numbers}
+        dimension = kinds.pop()
+        if not kinds and dimension in VECTORS:
+            return Vector(given, tuple(one.value for one in numbers if one), dimension)
+    return None

@@ -1,0 +1,278 @@
+"""Finding a file, of a linkage, a tool or a study, and reading its TOML as far as the version."""
+
+from __future__ import annotations
+
+import os
+import re
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
+
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.handheld.model import PLANES
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.model import LoadTable, Machine
+from equipoise.mechanism.motor import MotorTable
+from equipoise.schema import SCHEMA_VERSION
+from equipoise.schema.files import LARGEST, FileError, printable, read_text
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Impedance
+
+Kind = Literal["linkage", "tool"]
+FileKind = Literal["linkage", "tool", "study"]
+TABLES: dict[FileKind, set[str]] = {
+    "linkage": {"drive", "frame", "links"},
+    "tool": {"shaft"},
+    "study": {"model", "outputs", "sampling"},
+}
+"""Tables and keys that tell what a file is of."""
+OTHERS: dict[FileKind, str] = {
+    "linkage": "the file of a linkage, without a table [shaft]; use `equipoise analyze FILE`",
+    "tool": "the file of a tool, with a table [shaft]; use `equipoise tool FILE`",
+    "study": "a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`",
+}
+"""What is said of a file where one of another kind is wanted."""
+
+# tomllib takes a time that grows with the square of the number of parts of a dotted key: half a
+# minute for forty thousand.  No key of a model file has more than five.
+_ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
+
+
+@dataclass(frozen=True)
+class Opened:
+    """The text of a file, its name for errors, and the folder where what it names is."""
+
+    text: str
+    source: str
+    folder: Path | None
+
+
+def opened(path_or_name: str | os.PathLike[str]) -> Opened:
+    """Open a file, or a bundled example by its name.
+
+    Raises
+    ------
+    ModelError : there is no such file, or it cannot be read.
+    """
+    try:
+        name = os.fspath(path_or_name)
+    except TypeError:
+        raise UsageError(f"got {path_or_name!r}; give a path, or the name of an example") from None
+    if not os.path.isfile(name) and name in bundled():
+        return opened_example(name)
+    source = printable(name) or "''"
+    try:
+        text = read_text(name)
+    except FileError as problem:
+        what = str(problem)
+        if not os.path.lexists(name) and isinstance(problem.__cause__, FileNotFoundError):
+            what = f"{what}; {_known_examples(name)}"
+        raise ModelError("", what, source) from problem
+    return Opened(text, source, Path(name).parent)
+
+
+def opened_example(name: str) -> Opened:
+    """Open a bundled example."""
+    example = bundled()[name]
+    folder = example.parent if isinstance(example, Path) else None
+    return Opened(example.read_text(encoding="utf-8"), example.name, folder)
+
+
+def bundled() -> dict[str, Traversable]:
+    """Files of the bundled examples by name."""
+    folder = files("equipoise").joinpath("examples")
+    if not folder.is_dir():
+        return {}
+    found = [file for file in folder.iterdir() if file.name.endswith(".toml")]
+    return {file.name.removesuffix(".toml"): file for file in sorted(found, key=lambda f: f.name)}
+
+
+def _known_examples(name: str) -> str:
+    bare = os.path.basename(name).removesuffix(".toml")
+    hint = unknown(printable(bare), bundled(), "example").split("; ")[-1]
+    near = f"{hint} or " if hint.startswith("did") else ""
+    return f"{near}give a path, or the name of an example: run `equipoise examples`"
+
+
+# -- what is in it ---------------------------------------------------------------------------------
+
+
+def kind_of(content: Mapping[str, Any]) -> FileKind | None:
+    """What a file is of, by its tables; None where they do not tell."""
+    kinds = [kind for kind, tables in TABLES.items() if tables & content.keys()]
+    return kinds[0] if len(kinds) == 1 else None
+
+
+def kind_of_text(text: str) -> FileKind | None:
+    """The same of the text of a file; None where it is no TOML."""
+    try:
+        return kind_of(_toml(text))
+    except ModelError:
+        return None
+
+
+def content_of(text: str, wanted: Kind) -> dict[str, Any]:
+    """Content of a model file that has to be of one kind.
+
+    Raises
+    ------
+    ModelError : as `toml_content`, or it is of another kind.
+    """
+    content = toml_content(text)
+    found = kind_of(content)
+    if found not in {None, wanted}:
+        raise ModelError("", f"this is {OTHERS[found]}")
+    return content
+
+
+def model_content(text: str) -> dict[str, Any]:
+    """Content of a model file of either kind; errors as `content_of`."""
+    content = toml_content(text)
+    if kind_of(content) == "study":
+        raise ModelError("", "this is a study; name the file of a linkage or a tool")
+    return content
+
+
+def toml_content(text: str) -> dict[str, Any]:
+    """Content of a file that begins with the version of its schema.
+
+    Raises
+    ------
+    ModelError : it is no TOML, or of another version.
+    """
+    content = _toml(text)
+    _check_version(content)
+    return content
+
+
+def _toml(text: str) -> dict[str, Any]:
+    if len(text) > LARGEST:
+        raise ModelError("", f"the text is longer than {LARGEST / 1e6:.0f} MB; give a model file")
+    if endless := _ENDLESS_KEY.search(text):
+        line = text.count("\n", 0, endless.start()) + 1
+        raise ModelError("", f"line {line}: a key has more than 50 parts; model files need five")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise ModelError("", _syntax(str(error))) from error
+    except RecursionError as error:
+        raise ModelError("", "lists or tables are nested too deeply for a model file") from error
+    except ValueError as error:  # an integer of thousands of digits
+        raise ModelError("", "a number has thousands of digits; give a usual one") from error
+
+
+def _syntax(message: str) -> str:
+    """Put the place in front of tomllib's message."""
+    found = re.fullmatch(r"(.*) \(at (.*)\)", message, re.DOTALL)
+    what, where = found.groups() if found else (message, "")
+    what = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in what)
+    what = what if len(what) <= 200 else f"{what[:197]}..."
+    if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
+        what += ", a key or table is given twice"
+    return f"{where}: {what[:1].lower()}{what[1:]}; give valid TOML".removeprefix(": ")
+
+
+def _check_version(content: dict[str, Any]) -> None:
+    if "schema" not in content:
+        raise ModelError(
+            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
+        )
+    given = content["schema"]
+    if type(given) is not int or given != SCHEMA_VERSION:
+        from equipoise.quantities.problems import described
+
+        raise ModelError(
+            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
+        )
+
+
+Value = TypeVar("Value")
+
+
+class Beside:
+    """Reads tables by the names of their files, which are relative to the model file's folder.
+
+    folder : None where the model did not come from a file; then every table is refused.
+    """
+
+    def __init__(self, folder: Path | None) -> None:
+        self.folder = folder
+
+    def load(self, file: str) -> LoadTable:
+        from equipoise.schema.tables import read_load
+
+        return read_load(file, self._folder(file))
+
+    def soil(self, file: str) -> SoilTable:
+        from equipoise.schema.tables import read_soil
+
+        return read_soil(file, self._folder(file))
+
+    def motor(self, file: str) -> MotorTable:
+        from equipoise.schema.tables import read_motor
+
+        return read_motor(file, self._folder(file))
+
+    def impedance(self, file: str) -> Impedance:
+        from equipoise.schema.tables import read_impedance
+
+        return read_impedance(file, self._folder(file))
+
+    def linkage(self, file: str) -> Machine:
+        """The linkage of another model file, or a bundled one; it has masses and turns fully."""
+        from equipoise.mechanism.dynamics import massless
+        from equipoise.mechanism.linkage import assemble
+        from equipoise.schema.models import loads
+
+        found = self._opened(file)
+        try:
+            machine = loads(found.text, folder=found.folder)
+            _ = assemble(machine).cycle
+        except EquipoiseError as error:
+            where = f"{error.where}: " if isinstance(error, ModelError) and error.where else ""
+            what = error.what if isinstance(error, ModelError) else str(error)
+            raise ModelError("", f"{printable(file)}: {where}{what}") from error
+        if lacking := massless(machine):
+            raise ModelError("", f"{printable(file)}: {lacking}")
+        return machine
+
+    def _opened(self, file: str) -> Opened:
+        """The model file of a linkage, of which one beside goes before a bundled one."""
+        beside = self.folder is not None and os.path.isfile(self.folder / file)
+        if not beside and file in bundled():
+            return opened_example(file)
+        if self.folder is None:
+            raise ModelError(
+                "",
+                f"got {printable(file)!r}; without a file beside which to look, give the name of "
+                "an example",
+            )
+        try:
+            return opened(self.folder / file)
+        except ModelError as error:
+            raise ModelError("", f"{printable(file)}: {error.what}") from error
+
+    def _folder(self, file: str) -> Path:
+        if self.folder is None:
+            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
+        return self.folder
+
+
+def table_at(where: str, file: str | None, read: Callable[[str], Value]) -> Value | None:
+    """Read the table that the key `where` names, if it names one; errors tell the key."""
+    try:
+        return None if file is None else read(file)
+    except ModelError as error:
+        raise ModelError(where, error.what) from error
+
+
+def impedance_keys(where: str, count: int) -> list[str]:
+    """Keys that name the tables of impedance of a hand: one for both planes, or one for each."""
+    key = f"{where}.impedance"
+    return [f"{key}.{plane}" for plane in PLANES] if count == len(PLANES) else [key] * count

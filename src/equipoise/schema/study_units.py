@@ -1,0 +1,163 @@
+"""Stores and the studies in them: what takes a store and gives a machine, or goes on with it."""
+
+from __future__ import annotations
+
+import os
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.errors import UsageError
+from equipoise.quantities.units import FACTORS, KINDS
+from equipoise.schema.files import printable
+from equipoise.schema.given_units import SHARE, handy, unit_of
+from equipoise.schema.studies import restore
+from equipoise.schema.template import Template
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.model import Machine
+    from equipoise.studies.run import Told
+    from equipoise.studies.store import Store
+    from equipoise.studies.study import Output, Study, Vary
+
+
+def resume(
+    path: str | os.PathLike[str],
+    *,
+    workers: int | None = None,
+    cluster: str | None = None,
+    progress: Told | None = None,
+) -> Store:
+    """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
+
+    Where nothing is missing, nothing is done but telling the progress.
+
+    Parameters
+    ----------
+    path : of the store.
+    workers, cluster, progress : as in `equipoise.sweep`.
+
+    Raises
+    ------
+    UsageError : there is no store, or other versions made it; or as in `equipoise.sweep`.
+    """
+    from equipoise.studies import run
+
+    def restored(texts: Mapping[str, str]) -> Study:
+        return _restored(texts, path)
+
+    return run.resume(path, restored, workers=workers, cluster=cluster, progress=progress)
+
+
+def study_of(store: Store) -> Study:
+    """The study whose designs are in a store.
+
+    Raises
+    ------
+    UsageError : it cannot be read any more.
+    """
+    return _restored(store.texts, store.path)
+
+
+def machine_of(store: Store, design: int) -> Machine | Tool:
+    """One design of a store as a machine or tool, exactly as it was computed.
+
+    design : its number, from 0.
+
+    Raises
+    ------
+    UsageError : there is no such design, or it failed; or the study cannot be read any more.
+    """
+    if not 0 <= design < store.size:
+        raise UsageError(
+            f"got design {design}; {printable(store.path)} has {store.size} designs, from 0"
+        )
+    block = store.read(range(design, design + 1))
+    reason = int(block.outcome.reason[0])
+    if reason != COMPUTED:
+        why = REASONS.get(reason, "not computed yet")
+        raise UsageError(f"design {design} has no figures ({why}); choose another")
+    study = study_of(store)
+    return study.model.machine(dict(zip(store.numbers, block.values[0].tolist(), strict=True)))
+
+
+def _restored(texts: Mapping[str, str], path: str | os.PathLike[str]) -> Study:
+    try:
+        return restore(texts)
+    except UsageError as error:
+        raise UsageError(f"{printable(path)}: {error}") from error
+
+
+LIMITS = ("at_most", "at_least")
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit.
+
+    name : nothing of a plain number.
+    factor : of it, in SI units.
+    """
+
+    name: str = ""
+    factor: float = 1.0
+
+    @classmethod
+    def of(cls, name: str) -> Unit:
+        """A unit by its name."""
+        if name == SHARE:
+            return cls(name, 0.01)
+        return cls(name, float(FACTORS[name])) if name else cls()
+
+    def of_si(self, value: float) -> float:
+        """A value in SI units, in this one."""
+        return value / self.factor
+
+
+def units_of(study: Study) -> dict[str, Unit]:
+    """Unit of each number and output, by its name.
+
+    Numbers are told in the unit in which the model file gives them, figures in the one in which the
+    study limits them, and else in one that is usual.
+    """
+    given = _given(study.file)
+    numbers = {one.path: Unit.of(_of_number(study, one)) for one in study.vary}
+    figures = {
+        output.name: Unit.of(_of_output(output, given.get(output.name, {})))
+        for output in study.outputs
+    }
+    return numbers | figures
+
+
+def units_in(store: Store) -> dict[str, Unit]:
+    """The same of a store; SI units where its study cannot be read any more."""
+    try:
+        return units_of(study_of(store))
+    except UsageError:
+        names = (*store.numbers, *store.outputs)
+        return {name: Unit(store.units.get(name, "")) for name in names}
+
+
+def _of_number(study: Study, one: Vary) -> str:
+    if isinstance(study.model, Template):
+        return study.model.unit(one.path)
+    return handy(one.dimension) if one.dimension in KINDS else ""
+
+
+def _of_output(output: Output, given: Mapping[str, Any]) -> str:
+    dimension = output.dimension
+    if dimension not in KINDS:
+        return ""
+    for key in LIMITS:
+        if isinstance(given.get(key), str):
+            return unit_of(given[key])
+    return handy(dimension)
+
+
+def _given(text: str) -> dict[str, Mapping[str, Any]]:
+    """Outputs in the text of a study file, by name; none of a study that was made in Python."""
+    outputs = tomllib.loads(text).get("outputs", [])
+    return {given.get("name", given["value"]): given for given in outputs}

@@ -1,0 +1,272 @@
+"""From values to the text of their file, as the classes' keys declare it; defaults are left out."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.keys import (
+    Anything,
+    Direction,
+    File,
+    Flag,
+    Frozen,
+    Key,
+    Kind,
+    Listing,
+    Named,
+    Number,
+    OneOr,
+    Planes,
+    Point,
+    Quantity,
+    Table,
+    Tables,
+    Text,
+    Whole,
+    all_keys,
+    keys_of,
+)
+from equipoise.quantities import format_exact
+from equipoise.schema.reading import PLANES, Place, written_place, written_point
+
+Namer = Callable[[str, str, Any], str]
+"""Name of the file for the key at a place: takes the place, its sort and what lies in it."""
+
+
+@dataclass(frozen=True)
+class Writer:
+    """How the parts of an object are written.
+
+    names : name of the file of what lies in one of its own, by the key that names it.
+    makers : tables of some classes, otherwise than by `Frozen.to_table`.
+    """
+
+    names: Mapping[str, str]
+    makers: Mapping[type[Frozen], Callable[[Any], dict[str, Any]]] = field(default_factory=dict)
+
+    def content(self, of: type[Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
+        """Content of the table of an object as plain values."""
+        try:
+            given = self.makers.get(of, of.to_table)(value)
+        except ModelError as error:
+            raise ModelError(f"{written_place(place)}{error.where}", error.what) from error
+        table: dict[str, Any] = {}
+        for name, one in keys_of(of).items():
+            if name not in given:
+                continue
+            if isinstance(one.kind, Table) and one.kind.flat:
+                table |= self.content(one.kind.type, given[name], place)
+            else:
+                table[name] = self.plain(one.kind, given[name], (*place, name))
+        return table
+
+    def plain(self, kind: Kind, value: Any, place: Place) -> Any:
+        """A value as it stands in the file."""
+        return WRITERS[type(kind)](kind, value, place, self)
+
+
+def plain_default(one: Key) -> Any:
+    """What a key that is left out stands for, as it would be written; None for nothing."""
+    if one.shown is not None or one.required or one.default is None:
+        return one.shown
+    if isinstance(one.kind, Table | Tables | File):
+        return None
+    return Writer({}).plain(one.kind, one.default, ())
+
+
+def beside(of: type[Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
+    """What lies in files of their own: the key that names each, its sort, itself, and its name."""
+    yield from _beside(Table(of), value, ())
+
+
+def _beside(kind: Kind, value: Any, place: Place) -> Iterator[tuple[str, str, Any, str]]:
+    if isinstance(kind, File):
+        yield written_place(place), kind.sort, value, getattr(value, "file", "")
+    elif isinstance(kind, Planes):
+        for part, item in _in_planes(value, place):
+            yield from _beside(kind.item, item, part)
+    elif isinstance(kind, Tables):
+        for number, item in enumerate(value):
+            yield from _beside(kind.item, item, (*place, number))
+    elif isinstance(kind, Named):
+        for name, item in value.items():
+            yield from _beside(kind.item, item, (*place, name))
+    elif isinstance(kind, Table):
+        for name, item in kind.type.to_table(value).items():
+            one = keys_of(kind.type)[name]
+            inner = place if isinstance(one.kind, Table) and one.kind.flat else (*place, name)
+            for where, sort, found, file in _beside(one.kind, item, inner):
+                named = isinstance(one.kind, File) and one.kind.named
+                yield where, sort, found, getattr(value, named) if named else file
+
+
+def _in_planes(value: tuple[Any, ...], place: Place) -> Iterator[tuple[Place, Any]]:
+    """The parts of what is of both planes, each with its place in the file."""
+    if len(value) == len(PLANES):
+        yield from (((*place, plane), one) for plane, one in zip(PLANES, value, strict=True))
+    else:
+        yield from ((place, one) for one in value)
+
+
+# -- plain values ----------------------------------------------------------------------------------
+
+
+def tidy(value: float) -> float:
+    """Return a whole number without its decimal point."""
+    return int(value) if float(value).is_integer() and abs(value) < 1e6 else value
+
+
+def _quantity(kind: Quantity, value: Any, place: Place, writer: Writer) -> Any:
+    return format_exact(value, kind.dimension)
+
+
+def _same(kind: Kind, value: Any, place: Place, writer: Writer) -> Any:
+    return value
+
+
+def _file(kind: File, value: Any, place: Place, writer: Writer) -> Any:
+    return writer.names[written_place(place)]
+
+
+def _point(kind: Point, value: Any, place: Place, writer: Writer) -> Any:
+    if kind.space and value[2]:
+        return [format_exact(one, "length") for one in value]
+    return written_point((value[0], value[1]))
+
+
+def _direction(kind: Direction, value: Any, place: Place, writer: Writer) -> Any:
+    if isinstance(value, tuple):
+        return [tidy(component) for component in value]
+    return format_exact(value, "angle")
+
+
+def _listing(kind: Listing, value: Any, place: Place, writer: Writer) -> Any:
+    return [writer.plain(kind.item, one, place) for one in value]
+
+
+def _one_or(kind: OneOr, value: Any, place: Place, writer: Writer) -> Any:
+    items = _listing(Listing(kind.item), value, place, writer)
+    alike = kind.repeat and all(one == value[0] for one in value)
+    return items[0] if len(items) == 1 or alike else items
+
+
+def _planes(kind: Planes, value: Any, place: Place, writer: Writer) -> Any:
+    if isinstance(kind.item, Quantity):
+        texts = [writer.plain(kind.item, one, place) for one in value]
+        return texts[0] if value[0] == value[1] else dict(zip(PLANES, texts, strict=True))
+    named = [writer.plain(kind.item, one, part) for part, one in _in_planes(value, place)]
+    return named[0] if len(named) == 1 else dict(zip(PLANES, named, strict=False))
+
+
+def _named(kind: Named, value: Any, place: Place, writer: Writer) -> Any:
+    return {name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()}
+
+
+def _table(kind: Table, value: Any, place: Place, writer: Writer) -> Any:
+    return writer.content(kind.type, value, place)
+
+
+def _tables(kind: Tables, value: Any, place: Place, writer: Writer) -> Any:
+    return [writer.plain(kind.item, one, (*place, n)) for n, one in enumerate(value)]
+
+
+def _number(kind: Number, value: Any, place: Place, writer: Writer) -> Any:
+    return tidy(value)
+
+
+WRITERS: dict[type[Kind], Callable[[Any, Any, Place, Writer], Any]] = {
+    Anything: _same,
+    Direction: _direction,
+    File: _file,
+    Flag: _same,
+    Listing: _listing,
+    Named: _named,
+    Number: _number,
+    OneOr: _one_or,
+    Planes: _planes,
+    Point: _point,
+    Quantity: _quantity,
+    Table: _table,
+    Tables: _tables,
+    Text: _same,
+    Whole: _same,
+}
+
+# -- text ------------------------------------------------------------------------------------------
+
+
+def toml_text(of: type[Frozen], content: Mapping[str, Any]) -> str:
+    """Write the content of a file as TOML, with one line a key and one table a link or mount."""
+    plain = {name: value for name, value in content.items() if not _is_tables(value)}
+    blocks = ["".join(_lines(plain))]
+    for name, value in content.items():
+        if name not in plain:
+            blocks += _headed(name, all_keys(of)[name].kind, value)
+    return "\n".join(blocks)
+
+
+def _headed(name: str, kind: Kind, value: Any) -> Iterator[str]:
+    """Blocks with headers of a table, of a list of them, or of those with names."""
+    if isinstance(kind, Tables):
+        for item in value:
+            yield from _blocks(f"[[{name}]]", name, kind.item.type, item)
+    elif isinstance(kind, Named):
+        assert isinstance(kind.item, Table)
+        for key, item in value.items():
+            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)
+    elif isinstance(kind, Table):
+        yield from _blocks(f"[{name}]", name, kind.type, value)
+
+
+def _blocks(header: str, name: str, of: type[Frozen], table: Mapping[str, Any]) -> Iterator[str]:
+    known = all_keys(of)
+    within = {key: item for key, item in table.items() if _has_header(known[key].kind)}
+    own = {key: item for key, item in table.items() if key not in within}
+    yield "".join([header, "\n", *_lines(own)])
+    for key, item in within.items():
+        yield from _headed(f"{name}.{key}", known[key].kind, item)
+
+
+def _has_header(kind: Kind) -> bool:
+    """Whether what is inside of a table is written below a header of its own."""
+    item = kind.item if isinstance(kind, Named | Tables) else kind
+    return isinstance(item, Table) and (item.headed or kind is not item)
+
+
+def _is_tables(value: Any) -> bool:
+    return isinstance(value, dict) or (
+        isinstance(value, list) and bool(value) and all(isinstance(item, dict) for item in value)
+    )
+
+
+def _lines(table: Mapping[str, Any], prefix: str = "") -> Iterable[str]:
+    for key, value in table.items():
+        if isinstance(value, dict) and not _is_polar(value):
+            yield from _lines(value, f"{prefix}{_key(key)}.")
+        else:
+            yield f"{prefix}{_key(key)} = {_value(value)}\n"
+
+
+def _is_polar(table: Mapping[str, Any]) -> bool:
+    # A table of points may have these names too, but then they stand for points.
+    return set(table) == {"distance", "direction"} and isinstance(table["distance"], str)
+
+
+def _value(value: Any) -> str:
+    import tomli_w
+
+    if isinstance(value, list):  # tomli_w spreads lists over several lines
+        return f"[{', '.join(map(_value, value))}]"
+    if isinstance(value, dict):
+        items = ", ".join(f"{_key(name)} = {_value(item)}" for name, item in value.items())
+        return f"{{ {items} }}"
+    return tomli_w.dumps({"k": value}).removeprefix("k = ").removesuffix("\n")
+
+
+def _key(name: str) -> str:
+    import tomli_w
+
+    return tomli_w.dumps({name: 0}).removesuffix(" = 0\n")

@@ -1,0 +1,495 @@
+"""What vibration on the support shows: at one speed, over speeds, free, and in time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from math import pi
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from equipoise.i18n import say, to_say
+from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Column,
+    Facts,
+    Many,
+    Notes,
+    Span,
+    Table,
+    Text,
+    Value,
+)
+from equipoise.results.tables import driven, loud
+
+if TYPE_CHECKING:
+    from equipoise.signals import Periodic
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.modes import Mode
+    from equipoise.vibration.response import GaugeSignals, Response
+    from equipoise.vibration.sweep import Sweep
+    from equipoise.vibration.transient import Transient
+
+Array = np.ndarray[Any, Any]
+
+MODELS = {
+    "linear": to_say("the shaking force at the drive's pivot; equation (59) of Yamashita et al."),
+    "torque": to_say(
+        "the shaking force at the drive's pivot, and the drive torque; equation (57) of "
+        "Yamashita et al."
+    ),
+    "moment": to_say("the whole force and moment of the joints on the frame"),
+    "coupled": to_say(
+        "as torque, with the torque that the motion of the support takes; equation (54) of "
+        "Yamashita et al."
+    ),
+    "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
+}
+"""What each model of the support stands for."""
+NOTHING = 1e-2
+"""m, rad and their rates: scale beside which what is smaller than atoms is rounding."""
+MOST_PEAKS = 6
+"""Peaks that are told of each gauge."""
+MET_ORDERS = (1, 2, 3, 4)
+"""Orders of which the speeds that meet a mode are told."""
+PARTS = 5
+"""Equal stretches of a time, of which the first and the last show whether it has settled."""
+
+
+class Units(NamedTuple):
+    """Dimensions of a gauge's displacement, velocity and acceleration, and their usual units."""
+
+    dimensions: tuple[Dimension, Dimension, Dimension]
+    names: tuple[str | None, str | None, str | None]
+
+    def columns(self, *labels: str) -> tuple[Column, ...]:
+        """Two columns for each of the three."""
+        kinds = (kind for kind in zip(self.dimensions, self.names, strict=True) for _ in range(2))
+        pairs = zip(labels, kinds, strict=True)
+        return tuple(Column(label, kind, unit) for label, (kind, unit) in pairs)
+
+
+MOVED = Units(("length", "speed", "acceleration"), ("mm", "mm/s", "m/s^2"))
+TURNED = Units(("angle", "angular speed", "angular acceleration"), ("mrad", None, None))
+
+
+def model_told(model: str) -> str:
+    """Which model answers, and what it stands for."""
+    return say("Vibration by the model {model}: {what}", model=model, what=say(MODELS[model]))
+
+
+# -- at one speed ----------------------------------------------------------------------------------
+
+
+def response_blocks(
+    response: Response, others: Mapping[str, Response | None] | None = None
+) -> Iterator[Block]:
+    """Gauges, orders, mounts and drive; and the gauges by the other models."""
+    yield Text(_driven(response))
+    yield Text(model_told(response.model))
+    if response.modes:
+        yield modes_table(response.modes)
+    yield from gauge_tables(response)
+    if response.gauges:
+        yield _orders(response)
+    if others:
+        yield _by_model(response, others)
+    if response.mounts:
+        yield mounts_table(response)
+    yield from _drive(response)
+    if response.joints:
+        yield _joints(response)
+    if lines := tuple(_solution(response)):
+        yield Facts(say("Periodic solution"), lines)
+    if response.notes:
+        yield Notes(response.notes)
+
+
+def _driven(response: Response) -> str:
+    rows = len(response.machine.rows)
+    parts = [driven(response.machine, response.speed)]
+    if rows > 1:
+        parts.append(say("{rows} rows", rows=rows))
+    if response.drive.speed is not None:
+        parts.append(say("speed by the motor"))
+    return say(", ").join(parts)
+
+
+def modes_table(modes: Iterable[Mode]) -> Table:
+    """Natural frequencies and damping, one mode a row."""
+    rows: list[tuple[Cell, ...]] = []
+    for count, mode in enumerate(modes, 1):
+        rate = mode.natural_frequency
+        damping = Value(mode.damping_ratio, 1e-6) if rate else None
+        sizes = (Value(rate), Value(rate / 2 / pi), Value(rate / PER_RPM))
+        rows.append((str(count), *sizes, damping, _kind(mode)))
+    columns = (
+        Column(say("mode")),
+        Column("rad/s"),
+        Column("Hz"),
+        Column("1/min"),
+        Column(say("damping ratio")),
+        Column(""),
+    )
+    return Table(say("Natural frequencies"), columns, tuple(rows))
+
+
+def _kind(mode: Mode) -> str:
+    if mode.natural_frequency == 0:
+        return say("free, without a spring")
+    if mode.eigenvalue.real > 1e-9 * mode.natural_frequency:
+        return say("unstable: grows") if mode.swings else say("unstable: falls over")
+    return "" if mode.swings else say("overdamped")
+
+
+def gauge_tables(response: Response) -> Iterator[Table]:
+    """What gauges read: first those that move along a line, then those that turn."""
+    labels = (say("peak to peak"), say("RMS"))
+    rates = (say("velocity, peak to peak"), say("RMS"))
+    further = (say("acceleration, peak to peak"), say("RMS"))
+    for title, units, rotation in (
+        (say("Gauges; RMS about the mean"), MOVED, False),
+        (say("Gauges of rotation; RMS about the mean"), TURNED, True),
+    ):
+        rows = tuple(
+            (name, *(cell for signal in _signals(gauge) for cell in _ranges(signal)))
+            for name, gauge in response.gauges.items()
+            if gauge.rotation is rotation
+        )
+        if rows:
+            columns = (Column(""), *units.columns(*labels, *rates, *further))
+            yield Table(title, columns, rows)
+
+
+def _signals(gauge: GaugeSignals) -> tuple[Periodic, Periodic, Periodic]:
+    return gauge.displacement, gauge.velocity, gauge.acceleration
+
+
+def _ranges(signal: Periodic) -> tuple[Value, Value]:
+    sizes = (float(signal.peak_to_peak), float(signal.vibration_rms))
+    return Value(sizes[0], NOTHING), Value(sizes[1], NOTHING)
+
+
+def _orders(response: Response) -> Table:
+    """Amplitude of the first orders that there are, at each gauge."""
+    gauges = response.gauges
+    count = max(len(gauge.displacement.orders) for gauge in gauges.values())
+    padded = {
+        name: np.pad(gauge.displacement.sizes, (0, count - len(gauge.displacement.sizes)))
+        for name, gauge in gauges.items()
+    }
+    places = loud(list(padded.values()))
+    rows = []
+    for name, sizes in padded.items():
+        scale = max(1e3 * float(np.max(sizes[1:], initial=0.0)), NOTHING)
+        cells = (reading(float(sizes[k]), gauges[name].rotation, scale) for k in places)
+        rows.append((name, *cells))
+    labels = (f"{k / response.turns:.4g}" for k in places)
+    columns = (Column(say("order")), *map(Column, labels))
+    return Table(say("Gauges by order; amplitude"), columns, tuple(rows))
+
+
+def reading(value: float, rotation: bool, scale: float = NOTHING) -> Value:
+    """What a gauge reads, m or rad, as a cell of its own kind."""
+    kind = (TURNED if rotation else MOVED).dimensions[0]
+    return Value(value, scale, dimension=kind, unit=(TURNED if rotation else MOVED).names[0])
+
+
+def _by_model(response: Response, others: Mapping[str, Response | None]) -> Table:
+    """Peak to peak at each gauge, by every model that costs little."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, gauge in response.gauges.items():
+        cells = (
+            say("none")
+            if other is None
+            else reading(float(other.gauges[name].displacement.peak_to_peak), gauge.rotation)
+            for other in others.values()
+        )
+        rows.append((name, *cells))
+    columns = (Column(""), *map(Column, others))
+    return Table(say("Gauges by each model; peak to peak"), columns, tuple(rows))
+
+
+def mounts_table(response: Response) -> Table:
+    """Forces of the mounts, and what they hand on."""
+    rows: list[tuple[Cell, ...]] = []
+    lifting = any(mount.lifts_off for mount in response.mounts.values())
+    for name, mount in response.mounts.items():
+        kind: Dimension = "torque" if mount.torsional else "force"
+        force = mount.force
+        values = (float(force.mean), mount.largest, mount.smallest, float(force.vibration_rms))
+        scale = 100 * max(map(abs, values))
+        cells = (Value(value, scale, dimension=kind) for value in values)
+        ratio = None if np.isnan(mount.whole) else Value(mount.whole, 1.0)
+        off = Value(100 * mount.lifts_off, after=0) if mount.least == 0 else None
+        rows.append((name, *cells, ratio, *([off] if lifting else [])))
+    labels = (say("mean"), say("largest"), say("smallest"), say("RMS"), say("transmissibility"))
+    columns = (Column(""), *map(Column, labels))
+    columns += (Column(say("in the air"), unit="%"),) if lifting else ()
+    title = say(
+        "Mounts: force on the support, RMS about the mean; what they hand on of the shaking force"
+    )
+    return Table(title, columns, tuple(rows))
+
+
+def _drive(response: Response) -> Iterator[Block]:
+    rows = [_extremes(say("drive torque"), response.drive.torque, "torque")]
+    speed = response.drive.speed
+    if speed is not None:
+        rows.append(_extremes(say("crank speed"), speed, "angular speed", "rpm"))
+    labels = ("", say("mean"), say("largest"), say("smallest"), say("peak to peak"))
+    yield Table(say("Drive, all rows together"), tuple(map(Column, labels)), tuple(rows))
+    if speed is None:
+        return
+    yield Text(
+        say(
+            "The speed fluctuates by {share} % of its mean.",
+            share=f"{100 * response.drive.fluctuation:.3g}",
+        )
+    )
+    shift = response.drive.shift
+    if abs(shift) > 1e-9 * abs(response.speed):
+        yield Text(
+            say(
+                "The motor's curve is shifted by {shift} rpm to hold the mean.",
+                shift=number(shift / PER_RPM),
+            )
+        )
+
+
+def _extremes(
+    name: str, signal: Periodic, kind: Dimension, unit: str | None = None
+) -> tuple[Cell, ...]:
+    high, low = float(signal.extreme(1)[0]), float(signal.extreme(-1)[0])
+    scale = max(abs(high), abs(low))
+    values = (float(signal.mean), high, low, high - low)
+    return (name, *(Value(value, scale, dimension=kind, unit=unit) for value in values))
+
+
+def _joints(response: Response) -> Table:
+    columns = (
+        Column(""),
+        Column(say("here"), "force"),
+        Column(say("on solid ground, constant speed"), "force"),
+    )
+    rows = tuple(
+        (name, Value(joint.peak), Value(joint.on_ground)) for name, joint in response.joints.items()
+    )
+    return Table(say("Largest force in each joint of the first row"), columns, rows)
+
+
+def _solution(response: Response) -> Iterator[str]:
+    """How far the periodic solution can be trusted."""
+    if response.residual is not None:
+        yield say("residual {residual}", residual=f"{response.residual:.1e}")
+    if response.energy is not None and response.mounts:
+        yield say(
+            "energy in a period: {fed} J fed in, {lost} J lost in mounts",
+            fed=f"{response.energy.fed_in:.6g}",
+            lost=f"{response.energy.lost:.6g}",
+        )
+    if response.multipliers is not None and response.multipliers.size:
+        yield say(
+            "{verdict}: the largest multiplier of a disturbance over a period is {size}",
+            verdict=say("stable") if response.stable else say("not stable"),
+            size=f"{abs(response.multipliers[0]):.4f}",
+        )
+
+
+# -- over speeds -----------------------------------------------------------------------------------
+
+
+def sweep_blocks(sweep: Sweep) -> Iterator[Block]:
+    """Natural frequencies, resonances, and what each gauge reads at its peaks."""
+    low, high = (number(float(sweep.speed[k]) / PER_RPM) for k in (0, -1))
+    yield Text(
+        say(
+            "{link} driven at {low} to {high} rpm, {count} speeds",
+            link=sweep.machine.drive.link,
+            low=low,
+            high=high,
+            count=len(sweep.speed),
+        )
+    )
+    yield Text(model_told(sweep.model))
+    yield modes_table(sweep.modes)
+    if sweep.resonances:
+        yield resonances_table(sweep)
+    else:
+        yield Text(say("There is no resonance in this range."))
+    yield _peaks(sweep)
+    if sweep.notes:
+        yield Notes(sweep.notes)
+
+
+def resonances_table(sweep: Sweep) -> Table:
+    """Where orders of the crank meet modes."""
+    rows = tuple(
+        (
+            Value(one.speed),
+            f"{one.order:.4g}",
+            str(one.mode),
+            Value(one.frequency / 2 / pi),
+            Value(100 * one.share),
+            say("no need") if one.avoid is None else Span(*one.avoid),
+        )
+        for one in sweep.resonances
+    )
+    columns = (
+        Column(say("crank speed"), "angular speed", "rpm"),
+        Column(say("order")),
+        Column(say("mode")),
+        Column(say("frequency"), "frequency"),
+        Column(say("share"), unit="%"),
+        Column(say("keep away from"), "angular speed", "rpm"),
+    )
+    title = (
+        say("Resonances of small motion: crank speeds at which an order meets a mode")
+        if sweep.model == "exact"
+        else say("Resonances: crank speeds at which an order meets a mode")
+    )
+    what = say("share of the loudest; to be kept away from where amplified more than three times")
+    return Table(f"{title} ({what})", columns, rows)
+
+
+def _peaks(sweep: Sweep) -> Table:
+    rows = []
+    for name, curve in sweep.gauges.items():
+        tops = tuple(
+            reading_at(value, speed, curve.rotation)
+            for speed, value in sweep.peaks[name][:MOST_PEAKS]
+        )
+        k = int(np.nanargmin(curve.peak_to_peak))
+        lowest = reading_at(float(curve.peak_to_peak[k]), float(sweep.speed[k]), curve.rotation)
+        rows.append((name, lowest, Many(tops) if tops else say("none")))
+    columns = (
+        Column(""),
+        Column(say("smallest"), at=("angular speed", "rpm")),
+        Column(say("peaks, the largest first"), at=("angular speed", "rpm")),
+    )
+    return Table(say("Gauges: peak to peak, at the speed of the crank"), columns, tuple(rows))
+
+
+def reading_at(value: float, speed: float, rotation: bool) -> Value:
+    """What a gauge reads at a speed of the crank."""
+    units = TURNED if rotation else MOVED
+    return Value(value, NOTHING, speed, dimension=units.dimensions[0], unit=units.names[0])
+
+
+# -- free, and in time -----------------------------------------------------------------------------
+
+
+def free_blocks(free: FreeVibration) -> Iterator[Block]:
+    """Natural frequencies, damping, shapes, and the crank speeds that meet them."""
+    step = free.linear.excitation.step
+    if step == "moment":
+        yield Text(say("Mass of the linkages spread as in the mean of a turn."))
+    else:
+        yield Text(say("Mass of the linkages at the drive's pivot."))
+    yield Text(model_told(step))
+    yield modes_table(free.modes)
+    yield _met(free)
+    yield from _shapes(free)
+    yield _rest(free)
+
+
+def _met(free: FreeVibration) -> Block:
+    rows = tuple(
+        (str(count), *(Value(mode.natural_frequency / order) for order in MET_ORDERS))
+        for count, mode in enumerate(free.modes, 1)
+        if mode.swings
+    )
+    if not rows:
+        return Text(say("No mode swings, so no crank speed meets one."))
+    heads = (say("order {order}", order=order) for order in MET_ORDERS)
+    columns = (Column(say("mode")), *(Column(head, "angular speed", "rpm") for head in heads))
+    return Table(say("Crank speeds that meet a mode"), columns, rows)
+
+
+def _shapes(free: FreeVibration) -> Iterator[Table]:
+    """Each mode in the coordinates and at the gauges; the largest coordinate is 1."""
+    shapes = tuple(
+        (str(count), *map(_part, mode.shape.tolist())) for count, mode in enumerate(free.modes, 1)
+    )
+    title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
+    yield Table(title, tuple(map(Column, (say("mode"), *free.coordinates))), shapes)
+    gauges = tuple(
+        (str(count), *(_part(complex(values[count - 1])) for values in free.gauges.values()))
+        for count in range(1, len(free.modes) + 1)
+    )
+    yield Table(
+        say("Shapes at the gauges"), tuple(map(Column, (say("mode"), *free.gauges))), gauges
+    )
+
+
+def _part(value: complex) -> Value:
+    size, phase = abs(value), float(np.angle(value))
+    if size < 1e-6:
+        return Value(0.0)
+    if abs(phase) < np.radians(0.05):
+        return Value(size)
+    if abs(abs(phase) - pi) <= np.radians(0.05):
+        return Value(-size)
+    return Value(size, at=phase)
+
+
+def _rest(free: FreeVibration) -> Table:
+    mounts = free.linear.body.support.mounts
+    scale = max((abs(value) for value in free.preloads.values()), default=0.0)
+    rows = tuple(
+        (
+            name,
+            Value(force, scale, dimension="force" if mounts[name].axis is None else "torque"),
+            "" if free.linear.rest.carries(name, mounts[name]) else say("does not touch"),
+        )
+        for name, force in free.preloads.items()
+    )
+    columns = (Column(""), Column(say("force on the support")), Column(""))
+    return Table(say("Mounts at rest"), columns, rows)
+
+
+def transient_blocks(found: Transient) -> Iterator[Block]:
+    """Extremes of every gauge and mount, in the first and the last stretch of the time."""
+    yield Text(
+        say(
+            "From rest for {time} s, {turns} turns of the crank",
+            time=number(float(found.time[-1])),
+            turns=number(abs(float(found.crank_angle[-1])) / (2 * pi)),
+        )
+    )
+    rows = []
+    for name, values in found.gauges.items():
+        units = MOVED if found.unit(name) == "m" else TURNED
+        rows.append(_stretch(name, values, units.dimensions[0], units.names[0]))
+    for name, values in found.mounts.items():
+        rows.append(_stretch(name, values, "force" if found.along(name) else "torque"))
+    rows.append(_stretch(say("crank speed"), found.crank_speed, "angular speed", "rpm"))
+    labels = (
+        "",
+        say("smallest"),
+        say("largest"),
+        say("range in the first fifth"),
+        say("range in the last fifth"),
+    )
+    yield Table(say("Gauges, mounts and drive"), tuple(map(Column, labels)), tuple(rows))
+
+
+def _stretch(
+    name: str, values: Array, kind: Dimension, unit: str | None = None
+) -> tuple[Cell, ...]:
+    stretch = max(1, len(values) // PARTS)
+    low, high = float(np.min(values)), float(np.max(values))
+    ranges = (float(np.ptp(values[:stretch])), float(np.ptp(values[-stretch:])))
+    scale = max(abs(low), abs(high))
+    cells = (low, high, *ranges)
+    return (name, *(Value(value, scale, dimension=kind, unit=unit) for value in cells))
+
+
+SHOWS = {
+    "Response": response_blocks,
+    "Sweep": sweep_blocks,
+    "FreeVibration": free_blocks,
+    "Transient": transient_blocks,
+}

@@ -1,0 +1,311 @@
+"""The support as a rigid body on mounts: small motion, rest, and points that turn with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
+
+Array = np.ndarray[Any, Any]
+
+MISSING = (
+    "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"
+)
+LOOSE = 1e-9
+"""Share of a load that may be left over by mounts that carry it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Body:
+    """The support of a machine, seen from its reference point; matrices are (6, 6)."""
+
+    machine: Machine
+
+    @property
+    def support(self) -> Support:
+        """The table of the model; raises a `ModelError` where there is none."""
+        if self.machine.support is None:
+            raise ModelError("support", MISSING)
+        return self.machine.support
+
+    @cached_property
+    def free(self) -> Array:
+        """Numbers of the coordinates in which it can move, (D,)."""
+        return np.array([FREEDOMS.index(name) for name in self.support.coordinates])
+
+    @cached_property
+    def reference(self) -> Array:
+        """The point whose displacement is told, (3,), m."""
+        return np.array(self.support.reference)
+
+    def wrench(self, force: Array, point: Any) -> Array:
+        """Generalized force (..., 6) of forces (..., 3), N, at a point (3,) of the support."""
+        arm = np.asarray(point) - self.reference
+        both: Array = np.concatenate([force, np.cross(arm, force)], axis=-1)
+        return both
+
+    def row(self, item: Mount | Gauge) -> Array:
+        """Row (6,) that reads a displacement, or a rotation, off the coordinates."""
+        if item.axis is not None:
+            return np.asarray(np.eye(6)[3 + AXES.index(item.axis)])
+        along = np.array(unit_vector(item.direction))
+        found: Array = self.wrench(along, item.point)
+        return found
+
+    @cached_property
+    def mass(self) -> Array:
+        """Mass matrix of the support alone."""
+        support = self.support
+        return rigid_mass(
+            support.mass, np.array(support.center_of_mass) - self.reference, self._inertia()
+        )
+
+    def _inertia(self) -> Array:
+        """Inertia tensor (3, 3) about the centre of mass."""
+        support = self.support
+        if support.pivot_inertia is not None:
+            arm = (np.array(support.center_of_mass) - self.reference)[:2]
+            about_center = support.pivot_inertia - support.mass * float(arm @ arm)
+            return np.diag([0.0, 0.0, about_center])
+        if len(support.inertia) == 1:
+            return np.diag([0.0, 0.0, support.inertia[0]])
+        tensor = np.diag(support.inertia)
+        if support.products:
+            xy, yz, zx = support.products
+            tensor = tensor - np.array([[0, xy, zx], [xy, 0, yz], [zx, yz, 0]])
+        return tensor
+
+
+def rigid_mass(mass: float, arm: Array, inertia: Array) -> Array:
+    """Mass matrix (6, 6) of a rigid body: arm (3,) to its centre of mass, inertia (3, 3) there."""
+    skew = skewed(arm)
+    total = np.zeros((6, 6))
+    total[:3, :3] = mass * np.eye(3)
+    total[:3, 3:] = -mass * skew
+    total[3:, :3] = mass * skew
+    total[3:, 3:] = inertia - mass * skew @ skew
+    return total
+
+
+def skewed(arm: Array) -> Array:
+    """The matrix that takes a vector v to arm x v."""
+    x, y, z = arm
+    return np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+
+
+def moved(mass: Array, arm: Array) -> Array:
+    """A mass matrix (6, 6) about a point from which the old one lies at `arm` (3,)."""
+    carry = np.eye(6)
+    carry[:3, 3:] = -skewed(arm)
+    return np.asarray(carry.T @ mass @ carry)
+
+
+def turning_stiffness(force: Array, arm: Array) -> Array:
+    """Stiffness (6, 6) of a force that keeps its direction while its point of attack turns along.
+
+    The second-order part of its potential -f . R b, with R b = b + w x b + w x (w x b) / 2.
+    """
+    total = np.zeros((6, 6))
+    outer = np.outer(force, arm)
+    total[3:, 3:] = (force @ arm) * np.eye(3) - (outer + outer.T) / 2
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class Rest:
+    """The machine at rest in the drawn position.
+
+    preload : mount -> force (N) or torque (N m) with which it pushes there; below 0 for a
+        one-sided mount that does not touch: stiffness times its gap.
+    stiffness : (6, 6) of preloads and weights, which keep their directions as the support turns.
+    unbalance : (6,) what weights and preloads leave over, in the coordinates that are free.
+    """
+
+    preload: Mapping[str, float]
+    stiffness: Array
+    unbalance: Array
+
+    def carries(self, name: str, mount: Mount) -> bool:
+        """Whether a mount carries anything: a one-sided one may not touch."""
+        return not mount.one_sided or self.preload[name] > 0
+
+
+def at_rest(body: Body, weights: list[tuple[Array, Array]]) -> Rest:
+    """What holds the support, and how preloads and weights stiffen it.
+
+    Mounts without a given preload share the weight as linear springs do that were put under the
+    machine unloaded; one-sided ones that would have to pull let go.
+
+    weights : force (3,) and point (3,) of each.
+
+    Raises
+    ------
+    ModelError : the mounts do not carry the weight.
+    """
+    load = sum((body.wrench(force, point) for force, point in weights), np.zeros(6))
+    preload = _shared(body, load)
+    mounts = body.support.mounts
+    stiffness = np.zeros((6, 6))
+    left = load.copy()
+    for name, mount in mounts.items():
+        push = max(preload[name], 0.0) if mount.one_sided else preload[name]
+        left += push * body.row(mount)
+        if mount.point is not None:
+            force = push * np.array(unit_vector(mount.direction))
+            stiffness += turning_stiffness(force, np.array(mount.point) - body.reference)
+    for force, point in weights:
+        stiffness += turning_stiffness(force, point - body.reference)
+    unbalance = np.zeros(6)
+    unbalance[body.free] = left[body.free]
+    return Rest(preload, stiffness, unbalance)
+
+
+def _shared(body: Body, load: Array) -> dict[str, float]:
+    """Preload of every mount; those that are given, and those in which the weight settles."""
+    mounts = body.support.mounts
+    known = {name: m.preload for name, m in mounts.items() if m.preload is not None}
+    rows = {name: body.row(mount)[body.free] for name, mount in mounts.items()}
+    rates = {n: m.spring for n, m in mounts.items() if n not in known}
+    left = load[body.free] + sum(
+        (force * rows[name] for name, force in known.items()), np.zeros(len(body.free))
+    )
+    if not any(rates.values()):
+        if known or not np.any(left):
+            return {**dict.fromkeys(mounts, 0.0), **known}
+        raise ModelError("support.mounts", _uncarried(body, left))
+    touching = dict(rates)
+    for _ in range(len(rates) + 1):
+        stiffness = sum(
+            (k * np.outer(rows[n], rows[n]) for n, k in touching.items()),
+            np.zeros((len(body.free),) * 2),
+        )
+        settled = np.linalg.lstsq(stiffness, left, rcond=1e-12)[0]
+        found = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
+        kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and found[n] < 0)}
+        if kept.keys() == touching.keys():
+            break
+        touching = kept
+    over = left - stiffness @ settled
+    if np.linalg.norm(over) > LOOSE * (np.linalg.norm(load) + np.linalg.norm(left)):
+        raise ModelError("support.mounts", _uncarried(body, over))
+    return {**{name: found.get(name, 0.0) for name in mounts}, **known}
+
+
+def _uncarried(body: Body, over: Array) -> str:
+    largest = float(np.max(np.abs(over)))
+    loose = [
+        name
+        for name, value in zip(body.support.coordinates, over, strict=True)
+        if abs(value) > 0.05 * largest
+    ]
+    return (
+        f"they do not carry the weight in {' and '.join(loose)}; add a mount there, or give the "
+        "mounts a preload"
+    )
+
+
+SURGE, HEAVE, PITCH = 0, 1, 2
+IN_PLANE = (0, 1, 5)
+"""Their numbers among the six coordinates of `vibration.body`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """Motion of a point of the support along a direction fixed in space, or its rotation.
+
+    along : unit vector (2,), or None for the rotation.  arm : (2,) from the reference point, m.
+    share : 0 for an axis about which a planar support does not turn.
+    """
+
+    along: Array | None
+    arm: Array
+    share: float = 1.0
+
+    @classmethod
+    def of(cls, body: Body, item: Mount | Gauge) -> Reading:
+        if item.point is None:
+            return cls(None, np.zeros(2), 1.0 if item.axis == "pitch" else 0.0)
+        arm = (np.array(item.point) - body.reference)[:2]
+        return cls(np.array(unit_vector(item.direction)[:2]), arm)
+
+    def displacement(self, place: Array) -> Array:
+        """From the drawn position, m or rad."""
+        if self.along is None:
+            return np.asarray(place[PITCH] * self.share)
+        x, y = self.turned(place[PITCH])
+        return self._sum(place, x - self.arm[0], y - self.arm[1])
+
+    def velocity(self, place: Array, rate: Array) -> Array:
+        """m/s or rad/s."""
+        if self.along is None:
+            return np.asarray(rate[PITCH] * self.share)
+        x, y = self.turned(place[PITCH])
+        return self._sum(rate, -rate[PITCH] * y, rate[PITCH] * x)
+
+    def acceleration(self, place: Array, rate: Array, change: Array) -> Array:
+        """m/s2 or rad/s2."""
+        if self.along is None:
+            return np.asarray(change[PITCH] * self.share)
+        x, y = self.turned(place[PITCH])
+        square = rate[PITCH] ** 2
+        return self._sum(change, -change[PITCH] * y - square * x, change[PITCH] * x - square * y)
+
+    def wrench(self, force: Array, place: Array) -> tuple[Any, Any, Array]:
+        """Force along x and y, and moment about the reference point, of a force or moment here."""
+        if self.along is None:
+            return 0.0, 0.0, force * self.share
+        x, y = self.turned(place[PITCH])
+        fx, fy = force * self.along[0], force * self.along[1]
+        return fx, fy, x * fy - y * fx
+
+    def turned(self, pitch: Array) -> tuple[Array, Array]:
+        """The arm, turned with the support."""
+        c, s = np.cos(pitch), np.sin(pitch)
+        return c * self.arm[0] - s * self.arm[1], s * self.arm[0] + c * self.arm[1]
+
+    def _sum(self, moved: Array, x: Array, y: Array) -> Array:
+        assert self.along is not None
+        found: Array = self.along[0] * (moved[SURGE] + x) + self.along[1] * (moved[HEAVE] + y)
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """A mount: a spring and damper that may be preloaded, and may push on one side only."""
+
+    name: str
+    at: Reading
+    preload: float
+    stiffness: float
+    damping: float
+    one_sided: bool
+
+    def force(self, place: Array, rate: Array) -> Array:
+        """With which it pushes the support, N or N m."""
+        moved, moving = self.at.displacement(place), self.at.velocity(place, rate)
+        force = self.preload - self.stiffness * moved - self.damping * moving
+        if self.one_sided:
+            force = np.where(force.real > 0, force, 0.0)
+        return force
+
+
+def contacts_of(body: Body, rest: Rest) -> tuple[Contact, ...]:
+    """The mounts of a planar support."""
+    return tuple(
+        Contact(
+            name,
+            Reading.of(body, mount),
+            rest.preload[name],
+            mount.spring,
+            mount.damper,
+            mount.one_sided,
+        )
+        for name, mount in body.support.mounts.items()
+    )

@@ -1,0 +1,276 @@
+"""The exact equations of a machine on a planar support, (37) to (45), and followed in time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import cached_property
+from math import copysign, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine
+from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
+from equipoise.vibration.collocation import Rates
+from equipoise.vibration.linkages import Sums, sums
+
+Array = np.ndarray[Any, Any]
+Torque = Callable[[Array, Array], Array]
+"""Torque on the crank, N m, at its speed, rad/s, and a shift of the motor's speed, rad/s."""
+
+
+@dataclass(frozen=True, eq=False)
+class Coupled:
+    """The equations of a machine on its support, or on solid ground, against the crank's turning.
+
+    The independent variable s is the crank angle of a crank that turns counterclockwise, and its
+    negative for one that turns clockwise: it grows with time.  States, in this order: free
+    displacements (m, rad), their velocities, and with a motor the crank's speed (rad/s), the time
+    (s), and the shift (rad/s) of the motor's curve.
+
+    free : which of surge, heave and pitch.  torque : of the motor; None for a constant speed.
+    """
+
+    machine: Machine
+    speed: float
+    mass: float
+    first: complex
+    inertia: float
+    reference: complex
+    free: tuple[int, ...]
+    contacts: tuple[Contact, ...]
+    torque: Torque | None = None
+
+    @classmethod
+    def on_support(
+        cls, body: Body, rest: Rest, speed: float, torque: Torque | None = None
+    ) -> Coupled:
+        """On the support of the model."""
+        matrix = body.mass
+        return cls(
+            body.machine,
+            speed,
+            float(matrix[0, 0]),
+            complex(matrix[1, 5], -matrix[0, 5]),
+            float(matrix[5, 5]),
+            complex(*body.reference[:2]),
+            tuple(IN_PLANE.index(number) for number in body.free),
+            contacts_of(body, rest),
+            torque,
+        )
+
+    @classmethod
+    def on_ground(cls, machine: Machine, speed: float, torque: Torque) -> Coupled:
+        """On a frame that stands still."""
+        return cls(machine, speed, 0.0, 0j, 0.0, 0j, (), (), torque)
+
+    @property
+    def count(self) -> int:
+        """Number of states."""
+        return 2 * len(self.free) + (0 if self.torque is None else 3)
+
+    @cached_property
+    def gravity(self) -> Array:
+        return np.array(self.machine.gravity)
+
+    def rates(self, s: Array) -> Rates:
+        """Derivatives of the states by s at s (P,)."""
+        table = self.sums(self.sense * s)
+
+        def rates(states: Array) -> Array:
+            d = len(self.free)
+            speed = self.crank_speed(states)
+            found = self.accelerations(table, states)
+            parts = [*states[d : 2 * d], *found[:d]]
+            if self.torque is not None:
+                parts += [found[d], np.ones_like(speed), np.zeros_like(speed)]
+            return np.stack([np.asarray(part / (self.sense * speed)) for part in parts])
+
+        return rates
+
+    @property
+    def sense(self) -> float:
+        """1 for a crank that turns counterclockwise, -1 for clockwise."""
+        return copysign(1.0, self.speed)
+
+    def sums(self, theta: Array) -> Sums:
+        """The linkages at crank angles (P,), rad."""
+        return sums(self.machine, theta, self.reference, self.speed)
+
+    def crank_speed(self, states: Array) -> Array:
+        """rad/s, of states (n, ...)."""
+        if self.torque is None:
+            return np.full_like(states[0], self.speed)
+        speed: Array = states[2 * len(self.free)]
+        return speed
+
+    def place_and_rate(self, states: Array) -> tuple[Array, Array]:
+        """Displacements and velocities (3, ...) along surge, heave and pitch."""
+        d = len(self.free)
+        shape = (3, *states.shape[1:])
+        place, rate = np.zeros(shape, states.dtype), np.zeros(shape, states.dtype)
+        place[list(self.free)], rate[list(self.free)] = states[:d], states[d : 2 * d]
+        return place, rate
+
+    def accelerations(self, table: Sums, states: Array) -> Array:
+        """Second derivatives by time of the free coordinates, and with a motor of the crank."""
+        matrix, right = self._equations(table, states)
+        keep = [*self.free, 3] if self.torque is not None else list(self.free)
+        inner = np.moveaxis(matrix[np.ix_(keep, keep)], (0, 1), (-2, -1))
+        solved = np.linalg.solve(inner, np.moveaxis(right[keep], 0, -1)[..., None])[..., 0]
+        return np.moveaxis(solved, -1, 0)
+
+    def drive_torque(self, table: Sums, states: Array) -> Array:
+        """Torque (...) that the drive exerts on the cranks at states (n, ...), N m."""
+        if self.torque is not None:
+            d = 2 * len(self.free)
+            return self.torque(states[d], states[d + 2])
+        matrix, right = self._equations(table, states)
+        found = self.accelerations(table, states)
+        needed: Array = -right[3]
+        for k, number in enumerate(self.free):
+            needed = needed + matrix[3, number] * found[k]
+        return needed
+
+    def _equations(self, table: Sums, states: Array) -> tuple[Array, Array]:
+        """Matrix (4, 4, ...) and right-hand side (4, ...) for surge, heave, pitch and crank."""
+        place, rate = self.place_and_rate(states)
+        speed = self.crank_speed(states)
+        c, s = np.cos(place[PITCH]), np.sin(place[PITCH])
+        first = _turned(table.first + self.first, c, s)
+        first_1, first_2 = _turned(table.first_1, c, s), _turned(table.first_2, c, s)
+        load = _turned(table.load_force, c, s)
+        mass, gx, gy = self.mass + table.mass, *self.gravity
+        turning = rate[PITCH]
+        zero = np.zeros_like(speed)
+        inertia = zero + (table.inertia + self.inertia)
+        matrix = np.array(
+            [
+                [zero + mass, zero, -first[1], first_1[0]],
+                [zero, zero + mass, first[0], first_1[1]],
+                [-first[1], first[0], inertia, zero + table.spin],
+                [first_1[0], first_1[1], zero + table.spin, zero + table.drive],
+            ]
+        )
+        forces = [
+            mass * gx + load[0] + turning**2 * first[0] + 2 * turning * speed * first_1[1],
+            mass * gy + load[1] + turning**2 * first[1] - 2 * turning * speed * first_1[0],
+            first[0] * gy - first[1] * gx + table.load_moment - table.inertia_1 * speed * turning,
+        ]
+        forces[0] = forces[0] - speed**2 * first_2[0]
+        forces[1] = forces[1] - speed**2 * first_2[1]
+        forces[2] = forces[2] - speed**2 * table.spin_1
+        for contact in self.contacts:
+            parts = contact.at.wrench(contact.force(place, rate), place)
+            forces = [force + part for force, part in zip(forces, parts, strict=True)]
+        crank = first_1[0] * gx + first_1[1] * gy + table.load_torque
+        crank = crank + (table.inertia_1 * turning**2 - table.drive_1 * speed**2) / 2
+        if self.torque is not None:
+            d = 2 * len(self.free)
+            crank = crank + self.torque(speed, states[d + 2])
+        return matrix, np.array([*forces, crank])
+
+
+def _turned(vector: Array, c: Array, s: Array) -> tuple[Array, Array]:
+    """Components along x and y of a complex vector of the support's axes."""
+    x, y = vector.real, vector.imag
+    return c * x - s * y, s * x + c * y
+
+
+KNOTS = 1440
+"""Crank angles in a turn between which the linkages' sums are interpolated by cubic splines."""
+MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
+"""Of the equations, in all; and for a guess."""
+RELATIVE, ABSOLUTE = 1e-9, 1e-12
+SETTLING_TURNS = 40
+
+
+class Table:
+    """The linkages' sums at any crank angle, one at a time, by periodic splines."""
+
+    def __init__(self, system: Coupled) -> None:
+        from scipy.interpolate import CubicSpline
+
+        turns = assemble(system.machine).cycle.turns
+        s = np.linspace(0.0, 2 * pi * turns, KNOTS * turns + 1)
+        found = system.sums(s)
+        self.mass = found.mass
+        columns: list[Array] = []
+        self.complex: list[bool] = []
+        for item in fields(Sums)[1:]:
+            values = np.broadcast_to(getattr(found, item.name), s.shape)
+            self.complex.append(np.iscomplexobj(values))
+            columns += [values.real, values.imag] if self.complex[-1] else [values]
+        table = np.column_stack(columns)
+        table[-1] = table[0]
+        self._spline = CubicSpline(s, table, bc_type="periodic")
+
+    def at(self, theta: float) -> Sums:
+        values = iter(self._spline(theta).tolist())
+        found = [
+            np.array(complex(next(values), next(values)) if two else next(values))
+            for two in self.complex
+        ]
+        return Sums(self.mass, *found)
+
+
+def follow(
+    system: Coupled,
+    time: Array,
+    begin: Array,
+    shift: float = 0.0,
+    evaluations: int = MOST_EVALUATIONS,
+) -> Array:
+    """States (D + D + 2, M) at times (M,): displacements, velocities, crank's speed and angle."""
+    from scipy.integrate import solve_ivp
+
+    table = Table(system)
+    d = len(system.free)
+    left = evaluations
+
+    def rates(_: float, y: Array) -> Array:
+        nonlocal left
+        left -= 1
+        if left < 0:
+            raise ResponseError(
+                f"the motion over {time[-1]:g} s takes more than {evaluations} evaluations to "
+                "follow; give a shorter time, or softer mounts with less damping"
+            )
+        driven = [] if system.torque is None else [y[2 * d], 0.0, shift]
+        states = np.array([*y[: 2 * d], *driven])
+        found = system.accelerations(table.at(y[2 * d + 1]), states)
+        spin_up = 0.0 if system.torque is None else found[d]
+        return np.array([*y[d : 2 * d], *found[:d], spin_up, y[2 * d]])
+
+    step = 2 * pi / abs(system.speed) / 24
+    done = solve_ivp(
+        rates,
+        (float(time[0]), float(time[-1])),
+        begin,
+        "DOP853",
+        t_eval=time,
+        rtol=RELATIVE,
+        atol=ABSOLUTE,
+        max_step=step,
+    )
+    if not done.success or not np.all(np.isfinite(done.y)):
+        raise ResponseError(f"the motion cannot be followed beyond {done.t[-1]:g} s: it grows away")
+    return np.asarray(done.y)
+
+
+def settled(system: Coupled, s: Array) -> Array:
+    """States at crank angles s (M,) of the last cycle, after many turns from rest."""
+    turns = assemble(system.machine).cycle.turns
+    cycles = -(-SETTLING_TURNS // turns)
+    start = 2 * pi * turns * cycles
+    order = np.argsort(s)
+    instants = (start + s[order]) / system.speed
+    begin = np.zeros(2 * len(system.free) + 2)
+    begin[-2] = system.speed
+    states = follow(system, np.concatenate([[0.0], np.abs(instants)]), begin, 0.0, TO_SETTLE)
+    found = np.empty((2 * len(system.free), len(s)))
+    found[:, order] = states[: 2 * len(system.free), 1:]
+    return found

@@ -1,0 +1,293 @@
+"""Exact response: the periodic solution of all equations, turned into signals.
+
+Signals are sampled at equal steps of time, so that orders mean what they mean where the crank's
+speed is constant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.reactions import Pass
+from equipoise.signals import Periodic
+from equipoise.vibration.body import PITCH, Body, Reading
+from equipoise.vibration.coupled import Coupled, settled
+from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
+from equipoise.vibration.modes import swings_in_a_turn
+from equipoise.vibration.response import (
+    NEUTRAL,
+    DriveSignals,
+    Energy,
+    GaugeSignals,
+    Joint,
+    MountForce,
+    Response,
+    in_words,
+)
+from equipoise.vibration.small_motion import force_amplitudes, mount_force
+from equipoise.vibration.steady import (
+    NO_STEADY_STATE,
+    SAMPLES,
+    Guess,
+    Steady,
+    conditions_of,
+    equations,
+    fastest,
+    from_linear,
+    motor_setting,
+    steady,
+    turns_of,
+    with_motor,
+)
+
+Array = np.ndarray[Any, Any]
+
+LEANING = 10.0
+"""deg, from which on it is told how far from the drawn position the support has come to rest."""
+
+
+def solve_exact(
+    machine: Machine,
+    speed: float,
+    drive: bool,
+    near: Guess | None = None,
+    patient: bool = True,
+) -> ExactSolution:
+    """The periodic solution itself.
+
+    near : states (n, M) against the crank's turning (M,), such as those at another speed, to start
+        from; the linear response if None.
+    patient : whether to follow the machine from rest where these lead nowhere, which takes seconds.
+
+    Raises
+    ------
+    ResponseError : none was found, or none is near the drawn position.
+    """
+    system, linear = equations(machine, speed, drive)
+    guesses: list[Guess] = [] if near is None else [near]
+    setting = motor_setting(machine, speed) if drive else None
+    guesses.append(partial(from_linear, system, linear, setting))
+    if patient and setting is None:
+        guesses.append(partial(settled, system))
+    elif patient and linear is not None and setting is not None:
+        guesses.append(partial(_at_constant_speed, machine, setting))
+    swings = 0.0 if linear is None else swings_in_a_turn(linear.modes, speed)
+    found = steady(system, guesses, turns_of(machine), conditions_of(system), swings)
+    solution = ExactSolution(system, linear, found)
+    if solution.toppled:
+        raise ResponseError(NO_STEADY_STATE)
+    return solution
+
+
+def _at_constant_speed(machine: Machine, setting: tuple[float, float], s: Array) -> Array:
+    """States of a machine with a motor, from those at constant speed."""
+    states = solve_exact(machine, setting[0], False).found.orbit.at(s)
+    return with_motor(states, setting, s)
+
+
+@dataclass(frozen=True, eq=False)
+class ExactSolution:
+    """A periodic solution of the exact equations, read off at equal steps of time."""
+
+    system: Coupled
+    linear: Linear | None
+    found: Steady
+
+    @property
+    def machine(self) -> Machine:
+        return self.system.machine
+
+    @cached_property
+    def turns(self) -> int:
+        return turns_of(self.machine)
+
+    @cached_property
+    def multipliers(self) -> Array:
+        """Of displacements, velocities and the crank's speed; the largest first."""
+        count = 2 * len(self.system.free) + (self.system.torque is not None)
+        return self.found.multipliers(count)
+
+    @property
+    def lean(self) -> float:
+        """Mean rotation of the support from the drawn position, deg."""
+        return float(np.degrees(np.mean(self.ride.place[PITCH])))
+
+    @property
+    def toppled(self) -> bool:
+        """Whether this is no state of the machine, but one balanced far from where it stands."""
+        unstable = self.multipliers.size and abs(self.multipliers[0]) > 1 + NEUTRAL
+        return bool(unstable) and abs(self.lean) > LEANING
+
+    @cached_property
+    def turned(self) -> Array:
+        """Angle (N,) by which the crank has turned at equal steps of time, rad."""
+        count = SAMPLES * self.turns
+        s = np.arange(count) * (2 * pi / SAMPLES)
+        if self.system.torque is None:
+            return s
+        time = self.system.count - 2
+        orbit = self.found.orbit
+        wanted = np.arange(count) * (orbit.starts[time, -1] / count)
+        s = np.interp(wanted, orbit.starts[time], orbit.points)
+        for _ in range(8):
+            states = orbit.at(s)
+            s = s - (states[time] - wanted) * np.abs(self.system.crank_speed(states))
+        return np.asarray(s)
+
+    @property
+    def crank_angle(self) -> Array:
+        """(N,) at those instants, rad."""
+        return self.system.sense * self.turned
+
+    @cached_property
+    def states(self) -> Array:
+        """(n, N) at those instants."""
+        return np.asarray(self.found.orbit.at(self.turned))
+
+    @cached_property
+    def sums(self) -> Sums:
+        return self.system.sums(self.crank_angle)
+
+    @cached_property
+    def ride(self) -> BaseMotion:
+        """Motion of support and crank at those instants."""
+        system, states = self.system, self.states
+        place, rate = system.place_and_rate(states)
+        found = system.accelerations(self.sums, states)
+        change = np.zeros_like(place)
+        change[list(system.free)] = found[: len(system.free)]
+        spin_up = np.zeros(len(self.crank_angle)) if system.torque is None else found[-1]
+        speed = system.crank_speed(states)
+        return BaseMotion(place, rate, change, self.crank_angle, speed, spin_up, system.reference)
+
+    @cached_property
+    def passes(self) -> tuple[Pass, ...]:
+        """Joint forces of every row, in the support's axes."""
+        return tuple(
+            joint_forces(self.machine, self.ride, row.phase, complex(*row.offset))
+            for row in rows_of(self.machine)
+        )
+
+    @property
+    def speed(self) -> float:
+        """Mean speed of the crank, rad/s."""
+        if self.system.torque is None:
+            return self.system.speed
+        period = self.found.orbit.starts[self.system.count - 2, -1]
+        return float(self.system.sense * 2 * pi * self.turns / period)
+
+    def signal(self, samples: Array) -> Periodic:
+        """Of samples (N,) at those instants: against the crank angle of a constant mean speed."""
+        backwards = self.system.sense < 0
+        return Periodic.of(np.roll(samples[::-1], 1) if backwards else samples, self.turns)
+
+    def response(self, brief: bool = False) -> Response:
+        """Everything that is told of it; `brief` leaves out the joint forces."""
+        return Response(
+            self.machine,
+            "exact",
+            self.speed,
+            self.turns,
+            {} if self.linear is None else self._gauges(self.linear.body),
+            self._mounts(),
+            () if self.linear is None else self.linear.modes,
+            self._drive(),
+            {} if brief else self._joints(),
+            self.found.residual,
+            self.multipliers,
+            self.energy(),
+            tuple(self._notes()),
+        )
+
+    def _notes(self) -> Iterator[str]:
+        """What a reader has to know of the solution."""
+        yield from in_words(self.multipliers)
+        motor = self.machine.drive.motor
+        if self.system.torque is not None and motor is not None:
+            shift, own = float(self.states[-1, 0]), fastest(motor)
+            if abs(shift) > own:
+                yield (
+                    f"to hold the mean speed, the motor's curve is shifted by {shift:.4g} rad/s, "
+                    f"more than its own {own:.4g} rad/s: it is too weak or slow for this machine"
+                )
+        if abs(self.lean) > LEANING:
+            yield f"the support leans by {self.lean:.1f} deg from the drawn position in the mean"
+
+    def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
+        ride = self.ride
+        found = {}
+        for name, gauge in gauges_of(body).items():
+            at = Reading.of(body, gauge)
+            found[name] = GaugeSignals(
+                self.signal(at.displacement(ride.place)),
+                self.signal(at.velocity(ride.place, ride.rate)),
+                self.signal(at.acceleration(ride.place, ride.rate, ride.change)),
+                gauge.axis is not None,
+            )
+        return found
+
+    def _mounts(self) -> Mapping[str, MountForce]:
+        if self.linear is None:
+            return {}
+        exciting = force_amplitudes(self.linear, self.speed)
+        found = {}
+        for contact in self.system.contacts:
+            force = contact.force(self.ride.place, self.ride.rate)
+            hands_on = exciting if contact.at.along is not None else exciting[:0]
+            mount = mount_force(self.signal(force), 0.0, hands_on)
+            if contact.one_sided:
+                mount = replace(mount, lifts_off=float(np.mean(force <= 0)), least=0.0)
+            found[contact.name] = mount
+        return found
+
+    def _drive(self) -> DriveSignals:
+        torque = self.signal(self.system.drive_torque(self.sums, self.states))
+        if self.system.torque is None:
+            return DriveSignals(torque)
+        speed = self.signal(self.system.crank_speed(self.states))
+        return DriveSignals(torque, speed, float(self.states[-1, 0]))
+
+    def _joints(self) -> dict[str, Joint]:
+        """Of the first row, beside the same joints on solid ground at a constant speed."""
+        here = self.passes[0]
+        ground = forces(move(self.machine, SAMPLES, self.speed, 0.0))
+        still = {**ground.joints, **ground.gears}
+        return {
+            name: Joint(float(np.max(joint.size)), float(np.max(still[name].size)))
+            for name, joint in {**here.joints, **here.gears}.items()
+        }
+
+    def energy(self) -> Energy:
+        """Work over a period, by the quadrature of the solution itself."""
+        system, orbit = self.system, self.found.orbit
+        states = orbit.states.reshape(system.count, -1)
+        table = system.sums(system.sense * orbit.nodes.ravel())
+        place, rate = system.place_and_rate(states)
+        speed = system.crank_speed(states)
+        fed = system.drive_torque(table, states) * speed + _work_of_loads(table, place, rate, speed)
+        lost = np.zeros_like(speed)
+        for contact in system.contacts:
+            lost -= contact.force(place, rate) * contact.at.velocity(place, rate)
+        over = [
+            orbit.integral((power / np.abs(speed)).reshape(orbit.nodes.shape))
+            for power in (fed, lost)
+        ]
+        return Energy(*over)
+
+
+def _work_of_loads(table: Sums, place: Array, rate: Array, speed: Array) -> Array:
+    """Power of the loads from outside and of the springs, W."""
+    force = table.load_force * np.exp(1j * place[PITCH])
+    carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
+    return np.asarray(carried + table.load_torque * speed)

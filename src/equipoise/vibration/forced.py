@@ -1,0 +1,260 @@
+"""Steady response at one speed: which model answers, and continuation along a range of speeds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import cast, get_args
+
+from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.support import idle_parts
+from equipoise.quantities.units import HUGE
+from equipoise.vibration.body import MISSING
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.response import MODELS, Model, Response, range_shown
+from equipoise.vibration.small_motion import respond_coupled, respond_linear
+
+STANDSTILL = "a crank that stands still shakes nothing; give another speed"
+FREE = (
+    'it is "free", so that the speed follows from the motor and cannot be asked for; leave the '
+    'speed out, or make it "held"'
+)
+STEP_OF: dict[str, Step] = {
+    "linear": "linear",
+    "torque": "torque",
+    "moment": "moment",
+    "coupled": "torque",
+    "exact": "moment",
+}
+
+
+def chosen_model(machine: Machine, model: str | None, drive: bool) -> Model:
+    """The model asked for, or the usual one; refused where the machine has no part for it."""
+    if model is not None and model not in MODELS:
+        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+    if drive and machine.drive.motor is None:
+        raise ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
+    if drive and model not in {None, "exact"}:
+        raise UsageError(f"the speed follows from the motor in the model exact, not in {model}")
+    support = machine.support
+    if support is None:
+        if drive:
+            return "exact"
+        raise ModelError("support", MISSING)
+    if not support.planar and (drive or model in {"coupled", "exact"}):
+        others = [name for name in support.coordinates if name in {"sway", "roll", "yaw"}]
+        raise ModelError(
+            "support.freedoms",
+            f"the model {model or 'exact'} is for motion in the plane of the drawing; leave out "
+            f"{' and '.join(others)}, or choose moment",
+        )
+    if model is not None:
+        return model
+    return "exact" if drive else usual_step(machine)
+
+
+def check_moving(machine: Machine) -> None:
+    """Refuse a machine of which nothing shakes, with a `UsageError`."""
+    if machine.drive.speed == 0:
+        raise UsageError("a crank that stands still shakes nothing; give the drive a speed")
+
+
+def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
+    """Speed of the crank asked for, rad/s; refused where it cannot be had.
+
+    Raises
+    ------
+    ModelError, UsageError : it is 0, or the motor sets it.
+    """
+    if speed is not None and not abs(speed) < HUGE:
+        raise UsageError(f"got {speed!r} for speed; give a finite number in SI units")
+    if machine.drive.speed == 0 and speed is None:
+        raise ModelError("drive.speed", f"got 0; {STANDSTILL}")
+    if speed == 0:
+        raise UsageError(f"got a speed of 0; {STANDSTILL}")
+    motor = machine.drive.motor
+    if drive and speed is not None and motor is not None and motor.mean_speed == "free":
+        raise ModelError("drive.motor.mean_speed", FREE)
+    return machine.drive.speed if speed is None else float(speed)
+
+
+def left_out(machine: Machine) -> list[str]:
+    """What the model file gives that does nothing in a steady vibration."""
+    found = list(idle_parts(machine))
+    if machine.drive.acceleration:
+        found.append("the drive's acceleration is left out: a steady vibration has a steady crank")
+    return found
+
+
+def usual_step(machine: Machine, model: str | None = None) -> Step:
+    """The linear step that fits the support, or that goes with a model."""
+    if model is not None and model not in MODELS:
+        raise UsageError(f"got the model {model!r}; give one of {', '.join(MODELS)}")
+    if model is not None:
+        return STEP_OF[model]
+    assert machine.support is not None
+    return "linear" if machine.support.coordinates == ("pitch",) else "moment"
+
+
+def models_of(machine: Machine) -> tuple[Model, ...]:
+    """The models that can answer for a machine's support, from the plainest to the exact one."""
+    if machine.support is None:
+        return ()
+    return MODELS if machine.support.planar else ("linear", "torque", "moment")
+
+
+Progress = Callable[[int, int], None]
+Answers = list[Response | None]
+
+APPROACHES = ((1.0,), (0.8, 0.84, 0.88, 0.92, 0.96, 1.0), (1.2, 1.16, 1.12, 1.08, 1.04, 1.0))
+"""Shares of a speed through which it is come to: at once, from below and from above."""
+DIFFERENT = 1e-3
+"""Share by which two steady states differ at least at some gauge."""
+
+
+def follow_speeds(
+    machine: Machine, speeds: list[float], drive: bool, progress: Progress
+) -> tuple[Answers, list[str]]:
+    """Response at every speed, the louder one where there are two; and what to say of that."""
+    count = len(speeds)
+    upward = _along(machine, speeds, drive, lambda done: progress(done, count))
+    if not any(answer is None or _lifts_off(answer) for answer in upward):
+        return upward, []
+    downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
+    louder, both = [], []
+    for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
+        ratio = _ratio(up, down)
+        found = down if up is None or (down is not None and ratio > 1) else up
+        louder.append(found or _patiently(machine, speed, drive))
+        if up is not None and down is not None and abs(ratio - 1) > DIFFERENT:
+            both.append((speed, min(ratio, 1 / ratio)))
+    return louder, _sentences(both, count)
+
+
+def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
+    """Response by the exact equations; where mounts let go, the louder of what may be two.
+
+    Raises
+    ------
+    ResponseError : no steady state was found.
+    """
+    support = machine.support
+    if support is None or not any(mount.one_sided for mount in support.mounts.values()):
+        return solve_exact(machine, speed, drive).response()
+    found: list[Response] = []
+    for reach in APPROACHES:
+        speeds = [speed * share for share in reach]
+        answers = _along(machine, speeds, drive, lambda done: None, brief=False)
+        last = answers[-1]
+        if last is not None and all(abs(_ratio(last, other) - 1) > DIFFERENT for other in found):
+            found.append(last)
+    if not found:
+        return solve_exact(machine, speed, drive).response()
+    louder = max(found, key=_loudness)
+    notes = [_other(louder, other) for other in found if other is not louder]
+    return replace(louder, notes=(*louder.notes, *notes))
+
+
+def _loudness(answer: Response) -> float:
+    """Sum of what the gauges read, for comparing answers of one machine."""
+    return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
+
+
+def _other(louder: Response, other: Response) -> str:
+    share = 100 * _ratio(louder, other)
+    return (
+        f"another steady state at this speed shakes {share:.0f} % as much; which of them the "
+        "machine takes depends on the speeds it comes from"
+    )
+
+
+def _along(
+    machine: Machine,
+    speeds: list[float],
+    drive: bool,
+    progress: Callable[[int], None],
+    brief: bool = True,
+) -> Answers:
+    """Response at every speed, one after the other; None where no steady state was found."""
+    answers: Answers = []
+    near = None
+    for speed in speeds:
+        try:
+            found = solve_exact(machine, speed, drive, near, patient=False)
+        except ResponseError:
+            near = None
+            answers.append(None)
+        else:
+            near = found.found.orbit.at
+            answers.append(found.response(brief))
+        progress(len(answers))
+    return answers
+
+
+def _patiently(machine: Machine, speed: float, drive: bool) -> Response | None:
+    """Response at a speed at which neither neighbour nor small motion leads to one."""
+    try:
+        return solve_exact(machine, speed, drive).response(brief=True)
+    except ResponseError:
+        return None
+
+
+def _lifts_off(answer: Response | None) -> bool:
+    return answer is not None and any(mount.lifts_off for mount in answer.mounts.values())
+
+
+def _ratio(first: Response | None, second: Response | None) -> float:
+    """How much more the second shakes, at the gauge where they differ most."""
+    if first is None or second is None:
+        return 1.0
+    ratios = [1.0]
+    for name, gauge in first.gauges.items():
+        before = float(gauge.displacement.peak_to_peak)
+        after = float(second.gauges[name].displacement.peak_to_peak)
+        if before > 0 and after > 0:
+            ratios.append(after / before)
+    return max(ratios, key=lambda ratio: max(ratio, 1 / ratio))
+
+
+def _sentences(both: list[tuple[float, float]], count: int) -> list[str]:
+    if not both:
+        return []
+    speeds = [speed for speed, _ in both]
+    least = min(ratio for _, ratio in both)
+    return [
+        f"two steady states at {len(both)} of {count} speeds, {range_shown(speeds)}; the louder "
+        f"one is told, the other shakes down to {100 * least:.0f} % of it"
+    ]
+
+
+def respond(
+    machine: Machine, speed: float | None = None, model: Model | None = None, drive: bool = False
+) -> Response:
+    """Steady vibration of a machine on its support, at one speed.
+
+    Parameters
+    ----------
+    speed : of the crank, rad/s; that of the machine where not given.
+    model : one of `MODELS`; where not given, ``linear`` for a support on a pivot, ``moment`` for
+        any other, ``exact`` with `drive`.
+    drive : whether the crank's speed follows from the motor instead of being constant.
+
+    Raises
+    ------
+    ModelError : there is no support, or no motor, or the mounts do not hold the machine.
+    MassError, MotionError, UsageError, ResponseError.
+    """
+    model = chosen_model(machine, model, drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    speed = steady_speed(machine, speed, drive)
+    if model in get_args(Step):
+        found = respond_linear(Linear.of(machine, cast(Step, model)), speed)
+    elif model == "coupled":
+        found = respond_coupled(Linear.of(machine, "torque"), speed)
+    else:
+        found = respond_exact(machine, speed, drive)
+    return replace(found, notes=(*left_out(machine), *found.notes))

@@ -1,0 +1,312 @@
+"""Linear response: what linkages do to the support, and its small motion under it, by orders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.errors import ModelError, ResponseError
+from equipoise.mechanism.dynamics import Forces, forces
+from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
+from equipoise.signals import Periodic
+from equipoise.vibration.body import Body, Rest, at_rest, moved, rigid_mass
+from equipoise.vibration.linkages import rows_of, spread
+from equipoise.vibration.modes import Mode, find_modes
+
+Array = np.ndarray[Any, Any]
+Step = Literal["linear", "torque", "moment"]
+STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
+
+ANGLES = 720
+"""Crank angles in a turn from which orders are taken; more where loads may set in at once."""
+
+
+@dataclass(frozen=True, eq=False)
+class Excitation:
+    """Wrench of all linkages on the support, and where their mass and weight are.
+
+    body : the support.  step : which of the simplifications.
+    """
+
+    body: Body
+    step: Step
+
+    @property
+    def machine(self) -> Machine:
+        return self.body.machine
+
+    @cached_property
+    def motion(self) -> Motion:
+        planting = self.machine.planting
+        sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
+        return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
+
+    @cached_property
+    def pivot(self) -> complex:
+        """The drive's pivot in the frame."""
+        return complex(*self.machine.frame[self.motion.linkage.pivot])
+
+    @cached_property
+    def mass(self) -> Array:
+        """Mass matrix (6, 6) of the linkages."""
+        return np.sum([self._row_mass(row) for row in rows_of(self.machine)], axis=0)  # type: ignore[no-any-return]
+
+    def _row_mass(self, row: Row) -> Array:
+        if self.step == "moment":
+            origin = np.array([*row.offset, row.lateral])
+            return moved(self._spread, origin - self.body.reference)
+        arm = self.pivot_of(row) - self.body.reference
+        return rigid_mass(self._links_mass, arm, np.zeros((3, 3)))
+
+    @cached_property
+    def _spread(self) -> Array:
+        return spread(self.machine, self.motion.crank_angle)
+
+    @cached_property
+    def _links_mass(self) -> float:
+        return self.machine.mass
+
+    def pivot_of(self, row: Row) -> Array:
+        x, y = row.offset
+        return np.array([self.pivot.real + x, self.pivot.imag + y, row.lateral])
+
+    @cached_property
+    def weights(self) -> list[tuple[Array, Array]]:
+        """Weight (3,), N, and where it acts (3,), m, of the support and of each row."""
+        gravity = np.array([*self.machine.gravity, 0.0])
+        support = self.body.support
+        found = [(support.mass * gravity, np.array(support.center_of_mass))]
+        for row in rows_of(self.machine):
+            place = self.pivot_of(row)
+            if self.step == "moment":
+                center = self._mean_center + complex(*row.offset)
+                place = np.array([center.real, center.imag, row.lateral])
+            found.append((self._links_mass * gravity, place))
+        return found
+
+    @cached_property
+    def _mean_center(self) -> complex:
+        """Mean place of the links' common centre of mass."""
+        if not self._links_mass:
+            return self.pivot
+        sx, sy = self._spread[1, 5], -self._spread[0, 5]
+        return complex(sx, sy) / self._links_mass
+
+    def at(self, speed: float) -> Periodic:
+        """Wrench (6, K + 1) about the support's reference point at a speed, rad/s.
+
+        Without the weight itself, which the mounts carry at rest.
+        """
+        total = None
+        for row in rows_of(self.machine):
+            here = self._of_row(speed, row).shifted(row.phase)
+            total = here if total is None else total + here
+        assert total is not None
+        return total
+
+    def samples(self, theta: Array, speed: float) -> Array:
+        """The same (6, P) at crank angles (P,), rad, not by orders."""
+        total: Array = np.zeros((6, len(theta)))
+        for row in rows_of(self.machine):
+            motion = move(self.machine, theta + row.phase, speed, 0.0)
+            total = total + self.about_reference(self._signals(motion), row)
+        return total
+
+    def of_one(self, speed: float) -> Periodic:
+        """The same of one linkage alone, as the file has it."""
+        return self._of_row(speed, Row())
+
+    def _of_row(self, speed: float, row: Row) -> Periodic:
+        wrench = self.about_reference(self._on_pivot(speed).amplitudes, row)
+        return Periodic(wrench, self.motion.turns)
+
+    def about_reference(self, on_pivot: Array, row: Row) -> Array:
+        """Force along x and y and moment about the pivot of a row, (3, N), as a wrench (6, N)."""
+        force = np.zeros((on_pivot.shape[1], 3), on_pivot.dtype)
+        force[:, :2] = on_pivot[:2].T
+        wrench = self.body.wrench(force, self.pivot_of(row))
+        wrench[:, 5] += on_pivot[2]
+        return wrench.T
+
+    def _on_pivot(self, speed: float) -> Periodic:
+        """Force along x and y, and moment about the pivot, of one linkage; (3, K + 1)."""
+        planting = self.machine.planting
+        if planting is not None and planting.soil is not None:
+            return Periodic.of(self._signals(self.motion.at(speed)), self.motion.turns)
+        still, moving = self._parts
+        return Periodic(still + speed**2 * moving, self.motion.turns)
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array]:
+        """What does not depend on the speed, and what grows with its square."""
+        still, moving = (self._signals(self.motion.at(speed)) for speed in (0.0, 1.0))
+        both = Periodic.of(np.stack([still, moving - still]), self.motion.turns)
+        return both.amplitudes[0], both.amplitudes[1]
+
+    def _signals(self, motion: Motion) -> Array:
+        """Force along x and y, and moment about the pivot, (3, N)."""
+        # Springs pull frame and links alike; left in, (57) would count their torque on the drive.
+        found = replace(forces(motion, self.pivot), springs={})
+        force = found.frame_force.value - found.weight.value
+        return np.stack([force.real, force.imag, self._moment(found)])
+
+    def _moment(self, found: Forces) -> Array:
+        if self.step == "linear":
+            return np.zeros(len(found.motion.crank_angle))
+        if self.step == "torque":
+            return -found.drive_torque
+        varying: Array = found.frame_moment - self._mean_weight_moment
+        return varying
+
+    @cached_property
+    def _mean_weight_moment(self) -> float:
+        """About the pivot, N m: what the mounts carry at rest."""
+        gravity = complex(*self.machine.gravity)
+        return self._links_mass * float(cross(self._mean_center - self.pivot, gravity))
+
+
+SINGULAR = 1e10
+"""Condition of an order's equations above which it meets an undamped mode."""
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """The support with its linkages as a linear system; matrices (D, D) of the free coordinates."""
+
+    excitation: Excitation
+
+    @classmethod
+    def of(cls, machine: Machine, step: Step) -> Linear:
+        return cls(Excitation(Body(machine), step))
+
+    @property
+    def body(self) -> Body:
+        return self.excitation.body
+
+    @cached_property
+    def rest(self) -> Rest:
+        """What holds the machine in the drawn position."""
+        return at_rest(self.body, self.excitation.weights)
+
+    @cached_property
+    def mass(self) -> Array:
+        """Of the support and the linkages, kg, kg m and kg m2."""
+        return self._free(self.body.mass + self.excitation.mass)
+
+    @cached_property
+    def damping(self) -> Array:
+        """Of the mounts that carry something."""
+        return self._free(self._of_mounts("damper"))
+
+    @cached_property
+    def stiffness(self) -> Array:
+        """Of the mounts that carry something, of preloads and of weights."""
+        mounts = self._of_mounts("spring")
+        return self._free(mounts + self.rest.stiffness)
+
+    def _of_mounts(self, part: Literal["spring", "damper"]) -> Array:
+        total = np.zeros((6, 6))
+        for name, mount in self.body.support.mounts.items():
+            if self.rest.carries(name, mount):
+                row = self.body.row(mount)
+                total += getattr(mount, part) * np.outer(row, row)
+        return total
+
+    def _free(self, matrix: Array) -> Array:
+        return np.asarray(matrix[np.ix_(self.body.free, self.body.free)])
+
+    @cached_property
+    def modes(self) -> tuple[Mode, ...]:
+        """Free vibration, by frequency."""
+        return find_modes(self.mass, self.damping, self.stiffness)
+
+    def wrench(self, speed: float) -> Periodic:
+        """What excites the free coordinates (D, K + 1) at a speed, rad/s."""
+        found = self.excitation.at(speed)
+        amplitudes = found.amplitudes[self.body.free].copy()
+        amplitudes[:, 0] += self.rest.unbalance[self.body.free]
+        return Periodic(amplitudes, found.turns)
+
+    def wrench_at(self, theta: Array, speed: float) -> Array:
+        """The same (D, P) at crank angles (P,), rad, not by orders."""
+        found = self.excitation.samples(theta, speed)[self.body.free]
+        return np.asarray(found + self.rest.unbalance[self.body.free, None])
+
+    def motion(self, speed: float) -> Periodic:
+        """Displacements of the free coordinates (D, K + 1), m and rad, at a speed, rad/s.
+
+        Raises
+        ------
+        ModelError : a constant force drives the support away.
+        ResponseError : a resonance without damping.
+        """
+        wrench = self.wrench(speed)
+        frequency = wrench.orders * speed
+        impedance = self.impedance(frequency)
+        loads = wrench.amplitudes.T.copy()
+        # A coordinate without a spring has no mean of its own; nothing must push it in the mean.
+        mean = self._mean(loads[0].real)
+        loads[0], impedance[0] = mean, np.eye(len(mean))
+        if self._resonant(impedance, frequency):
+            raise ResponseError(
+                f"resonance without damping at {speed:g} rad/s; give the mounts a damping, or take "
+                "another speed"
+            )
+        moved = np.linalg.solve(impedance, loads[..., None])[..., 0]
+        return Periodic(moved.T, wrench.turns)
+
+    def impedance(self, frequency: Array) -> Array:
+        """Wrench for a unit of each displacement (F, D, D) at angular frequencies (F,), rad/s."""
+        frequency = frequency[:, None, None]
+        found: Array = self.stiffness - frequency**2 * self.mass + 1j * frequency * self.damping
+        return found
+
+    def _resonant(self, impedance: Array, frequency: Array) -> bool:
+        """Whether an order meets a mode that nothing damps, as near as rounding tells."""
+        inertia = frequency[:, None] ** 2 * np.diagonal(self.mass)
+        size = np.abs(np.diagonal(self.stiffness)) + inertia
+        size[0] = 1.0
+        scaled = impedance / np.sqrt(size[:, :, None] * size[:, None, :])
+        return bool(np.max(np.linalg.cond(scaled)) > SINGULAR)
+
+    def _mean(self, load: Array) -> Array:
+        scale = float(np.linalg.norm(self.excitation.weights[0][0])) + float(np.linalg.norm(load))
+        mean = np.linalg.lstsq(self.stiffness, load, rcond=1e-12)[0]
+        over = np.abs(self.stiffness @ mean - load)
+        if np.max(over, initial=0.0) > 1e-9 * scale:
+            names = self.body.support.coordinates
+            loose = [name for name, value in zip(names, over, strict=True) if value > 1e-9 * scale]
+            raise ModelError(
+                "support.mounts",
+                f"a constant force drives the support away in {' and '.join(loose)}; add a mount "
+                "there",
+            )
+        return mean
+
+    def seen_by(self, row: Array, moved: Periodic) -> Periodic:
+        """What a row (6,) of the body reads off displacements (D, K + 1)."""
+        return Periodic(row[self.body.free] @ moved.amplitudes, moved.turns)
+
+
+def gauges_of(body: Body) -> dict[str, Gauge]:
+    """The gauges of the model; the free coordinates at the reference point where it has none."""
+    if body.support.gauges:
+        return dict(body.support.gauges)
+    x, y, z = (float(part) for part in body.reference)
+    units = np.eye(3)
+    found = {}
+    for name in body.support.coordinates:
+        if name in AXES:
+            found[name] = Gauge(axis=name)
+        else:
+            direction = units[FREEDOMS.index(name)]
+            found[name] = Gauge(
+                (x, y, z), (float(direction[0]), float(direction[1]), float(direction[2]))
+            )
+    return found

@@ -1,0 +1,222 @@
+"""The linkages on a support as one: sums at a crank angle, and joint forces on a moving base."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.kernels import cross, dot
+from equipoise.mechanism.loads import load_demands, spring_demands
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.reactions import Demand, Pass, reactions
+from equipoise.mechanism.steps import p, u
+from equipoise.mechanism.support import Row
+from equipoise.vibration.body import PITCH
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Sums:
+    """Sums over all links at crank angles (N,), as told above.
+
+    mass : kg.  first, first_1, first_2 : complex, kg m.
+    inertia, inertia_1, spin, spin_1, drive, drive_1 : kg m2.
+    load_force (complex, N), load_moment (N m, about the reference point) and load_torque (N m, on
+    the crank) : what loads from outside do; the torque is that of the springs, too.
+    """
+
+    mass: float
+    first: Array
+    first_1: Array
+    first_2: Array
+    inertia: Array
+    inertia_1: Array
+    spin: Array
+    spin_1: Array
+    drive: Array
+    drive_1: Array
+    load_force: Array
+    load_moment: Array
+    load_torque: Array
+
+    def __add__(self, other: Sums) -> Sums:
+        return Sums(*(getattr(self, f.name) + getattr(other, f.name) for f in fields(Sums)))
+
+    def with_shaft(self, inertia: float, ratio: float) -> Sums:
+        """With a rotor that turns `ratio` times as fast as the crank, relative to the support.
+
+        Its mass, and its moment of inertia as far as it turns with the support, are the support's.
+        """
+        return replace(
+            self, spin=self.spin + ratio * inertia, drive=self.drive + ratio**2 * inertia
+        )
+
+
+def rows_of(machine: Machine) -> tuple[Row, ...]:
+    """The linkages on the support: those of `[[rows]]`, or the one of the file."""
+    return machine.rows or (Row(),)
+
+
+def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Sums:
+    """Sums over the links of all rows, and over what else turns with the crank.
+
+    Parameters
+    ----------
+    theta : (N,) crank angles of a row of phase 0, rad.
+    reference : point of the support that places are told from, m.
+    speed : of the crank, rad/s, for loads that depend on it.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    """
+    if missing := massless(machine):
+        raise MassError(missing)
+    total = None
+    for row in rows_of(machine):
+        motion = move(machine, theta + row.phase, speed, 0.0)
+        here = _of_row(motion, complex(*row.offset) - reference)
+        total = here if total is None else total + here
+    assert total is not None
+    motor = machine.drive.motor
+    total = total.with_shaft(machine.drive.flywheel, 1.0)
+    return total if motor is None else total.with_shaft(motor.inertia, motor.ratio)
+
+
+def _of_row(motion: Motion, shift: complex) -> Sums:
+    zero = np.zeros(len(motion.crank_angle))
+    total = Sums(0.0, *(zero + 0j,) * 3, *(zero,) * 6, *_loads(motion, shift))
+    for mass, own, place, first, second, w, a in _bodies(motion, shift):
+        total += Sums(
+            mass,
+            mass * place,
+            mass * first,
+            mass * second,
+            mass * dot(place, place) + own,
+            2 * mass * dot(place, first),
+            mass * cross(place, first) + own * w,
+            mass * cross(place, second) + own * a,
+            mass * dot(first, first) + own * w**2,
+            2 * (mass * dot(first, second) + own * w * a),
+            *(zero,) * 3,
+        )
+    return total
+
+
+def _bodies(motion: Motion, shift: complex) -> Iterator[tuple[Any, ...]]:
+    """Mass, inertia, place, place', place'', alpha' and alpha'' of each link."""
+    for name, link in motion.machine.links.items():
+        center = motion.mass_centers[name]
+        _, w, a = (motion.state[key] for key in u(name))
+        yield (link.mass, link.inertia, center.place + shift, center.place_1, center.place_2, w, a)
+
+
+def _loads(motion: Motion, shift: complex) -> tuple[Array, Array, Array]:
+    """Force and moment on the support, and torque on the crank, of loads from outside.
+
+    Springs between links and support turn the crank only: what they do to both cancels.
+    """
+    about = np.zeros(len(motion.crank_angle))
+    total = about + 0j
+    loads = load_demands(motion)
+    for link, (held, moment) in loads.items():
+        anchor = motion.state[p(motion.linkage.anchors[link])[0]]
+        total = total - held
+        about = about - moment - cross(anchor + shift, held)
+    return total, about, -_power(motion, loads) - _power(motion, spring_demands(motion))
+
+
+def _power(motion: Motion, demands: Mapping[str, Demand]) -> Array:
+    """Power of demands at a crank speed of 1 rad/s (N,), N m: minus the torque on the crank."""
+    total: Array = np.zeros(len(motion.crank_angle))
+    for link, (force, moment) in demands.items():
+        anchor_1 = motion.state[p(motion.linkage.anchors[link])[1]]
+        total = total + dot(anchor_1, force) + motion.state[u(link)[1]] * moment
+    return total
+
+
+def spread(machine: Machine, theta: Array) -> Array:
+    """Mean mass matrix (6, 6) of the links of one row about the frame's origin, in its own plane.
+
+    Coordinates as in `vibration.body`.  Links are flat: their own inertia about the lateral axis
+    is twice that about an axis in the plane, in the mean over directions.
+    """
+    motion = move(machine, theta)
+    total = np.zeros((6, 6))
+    for mass, own, place, *_ in _bodies(motion, 0j):
+        x, y = place.real, place.imag
+        xx, yy, xy = (float(np.mean(v)) * mass for v in (x * x, y * y, x * y))
+        sx, sy = float(np.mean(x)) * mass, float(np.mean(y)) * mass
+        total[:3, :3] += mass * np.eye(3)
+        total[:3, 3:] += np.array([[0, 0, -sy], [0, 0, sx], [sy, -sx, 0]])
+        total[3:, 3:] += np.array(
+            [[yy + own / 2, -xy, 0], [-xy, xx + own / 2, 0], [0, 0, xx + yy + own]]
+        )
+    total[3:, :3] = total[:3, 3:].T
+    return total
+
+
+@dataclass(frozen=True, eq=False)
+class BaseMotion:
+    """Motion of support and crank at N instants.
+
+    place, rate, change : (3, N) displacement, velocity and acceleration along surge, heave, pitch.
+    crank_angle, crank_speed, crank_acceleration : (N,), rad, rad/s and rad/s2, relative to it.
+    reference : the point whose displacement is told, m.
+    """
+
+    place: Array
+    rate: Array
+    change: Array
+    crank_angle: Array
+    crank_speed: Array
+    crank_acceleration: Array
+    reference: complex
+
+
+def joint_forces(machine: Machine, ride: BaseMotion, phase: float, offset: complex) -> Pass:
+    """Forces in the joints of one linkage on a moving support, in the support's axes.
+
+    phase, offset : of its row, rad and m.
+    """
+    motion = move(machine, ride.crank_angle + phase, acceleration=0.0)
+    demands: dict[str, Demand] = {}
+    acting = load_demands(motion), spring_demands(motion)
+    shift = offset - ride.reference
+    for link in machine.links:
+        force, moment = _demand(motion, link, ride, shift)
+        for held in acting:
+            more = held.get(link, (0j, 0.0))
+            force, moment = force + more[0], moment + more[1]
+        demands[link] = (force, moment)
+    return reactions(replace(motion, whole_cycle=False), demands)
+
+
+def _demand(motion: Motion, link: str, ride: BaseMotion, shift: complex) -> Demand:
+    """Force and moment about its anchor that move a link and carry its weight."""
+    body = motion.machine.links[link]
+    assert body.mass is not None and body.inertia is not None
+    center = motion.mass_centers[link]
+    _, w, a = (motion.state[name] for name in u(link))
+    turn = np.exp(-1j * ride.place[PITCH])
+    turning, spin_up = ride.rate[PITCH], ride.change[PITCH]
+    carried = turn * (ride.change[0] + 1j * ride.change[1] - complex(*motion.machine.gravity))
+    speed = ride.crank_speed
+    acceleration = (
+        carried
+        + (1j * spin_up - turning**2) * (center.place + shift)
+        + 2j * turning * speed * center.place_1
+        + center.place_1 * ride.crank_acceleration
+        + center.place_2 * speed**2
+    )
+    angular = spin_up + w * ride.crank_acceleration + a * speed**2
+    force = body.mass * acceleration
+    arm = center.place - motion.state[p(motion.linkage.anchors[link])[0]]
+    return force, body.inertia * angular + cross(arm, force)

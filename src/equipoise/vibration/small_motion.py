@@ -1,0 +1,232 @@
+"""Small motion of the support: by orders, and with the torque it takes from the drive (54)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import copysign, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.support import Gauge
+from equipoise.signals import Periodic
+from equipoise.vibration.body import IN_PLANE, PITCH
+from equipoise.vibration.collocation import Conditions, Rates
+from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.linkages import rows_of
+from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
+from equipoise.vibration.steady import ROUGH, SAMPLES, steady
+
+Array = np.ndarray[Any, Any]
+
+NEUTRAL = 1e-9
+"""Growth of a mode, beside its frequency, up to which it is rounding."""
+
+
+def respond_linear(linear: Linear, speed: float) -> Response:
+    """Response of a linear step, by orders."""
+    body = linear.body
+    moved = linear.motion(speed)
+    gauges = {
+        name: _differentiated(linear.seen_by(body.row(gauge), moved), gauge, speed)
+        for name, gauge in gauges_of(body).items()
+    }
+    mounts, notes = linear_mounts(linear, moved, moved.derivative() * speed, speed)
+    if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
+        notes.append("the support falls over by itself: it does not stand in the drawn position")
+    return Response(
+        body.machine,
+        linear.excitation.step,
+        speed,
+        moved.turns,
+        gauges,
+        mounts,
+        linear.modes,
+        DriveSignals(_torque(linear, speed)),
+        notes=tuple(notes),
+    )
+
+
+def linear_mounts(
+    linear: Linear, moved: Periodic, moving: Periodic, speed: float
+) -> tuple[dict[str, MountForce], list[str]]:
+    """Forces of the mounts at small displacements and velocities (D, K + 1); and what to say."""
+    exciting = force_amplitudes(linear, speed)
+    mounts, notes = {}, []
+    for name, mount in linear.body.support.mounts.items():
+        row, preload = linear.body.row(mount), linear.rest.preload[name]
+        force = linear.seen_by(row, moved) * -mount.spring
+        force = force + linear.seen_by(row, moving) * -mount.damper
+        if not linear.rest.carries(name, mount):
+            force, preload = force * 0.0, 0.0
+            notes.append(f"{name} does not touch at rest, and is left out")
+        elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
+            notes.append(f"{name} would have to pull, which it cannot; the model exact lets it go")
+        hands_on = exciting if mount.axis is None else exciting[:0]
+        mounts[name] = mount_force(force, preload, hands_on)
+    return mounts, notes
+
+
+def _differentiated(moved: Periodic, gauge: Gauge, speed: float) -> GaugeSignals:
+    velocity = moved.derivative() * speed
+    return GaugeSignals(moved, velocity, velocity.derivative() * speed, gauge.axis is not None)
+
+
+def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForce:
+    """A mount's whole force, and what it hands on of the force that excites, (K + 1,).
+
+    exciting : amplitudes of that force; empty for a torsional mount, which hands on none.
+    """
+    amplitudes = varying.amplitudes.copy()
+    amplitudes[0] += preload
+    count = min(len(amplitudes), len(exciting))
+    ratio = np.full(len(amplitudes), np.nan)
+    loud = exciting[:count] > 1e-9 * np.max(exciting, initial=0.0)
+    loud[:1] = False
+    np.divide(np.abs(amplitudes[:count]), exciting[:count], out=ratio[:count], where=loud)
+    whole = float(np.sqrt(np.sum(exciting[1:] ** 2) / 2))
+    force = Periodic(amplitudes, varying.turns)
+    handed_on = float(force.vibration_rms) / whole if whole else np.nan
+    return MountForce(force, ratio, handed_on, torsional=not exciting.size)
+
+
+def force_amplitudes(linear: Linear, speed: float) -> Array:
+    """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where rows cancel."""
+    whole = linear.excitation.at(speed)
+    one = linear.excitation.of_one(speed)
+    sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in (whole, one))
+    rounding = 1e-10 * len(rows_of(linear.body.machine)) * np.max(single[1:], initial=0.0)
+    return np.where(sizes > rounding, sizes, 0.0)
+
+
+def _torque(linear: Linear, speed: float) -> Periodic:
+    """Torque on all cranks on solid ground."""
+    motion = linear.excitation.motion.at(speed)
+    one = Periodic.of(forces(motion).drive_torque, motion.turns)
+    return summed(one.shifted(row.phase) for row in rows_of(linear.body.machine))
+
+
+def summed(signals: Any) -> Periodic:
+    """Sum of one signal or more."""
+    total = None
+    for signal in signals:
+        total = signal if total is None else total + signal
+    assert total is not None
+    return total  # type: ignore[no-any-return]
+
+
+@dataclass(frozen=True, eq=False)
+class Reduced:
+    """States: free displacements (m, rad), then their velocities, of a planar support.
+
+    linear : the system of step ``torque``.
+    """
+
+    linear: Linear
+    speed: float
+
+    @property
+    def count(self) -> int:
+        return 2 * len(self.free)
+
+    @cached_property
+    def free(self) -> tuple[int, ...]:
+        """Which of surge, heave and pitch."""
+        return tuple(IN_PLANE.index(number) for number in self.linear.body.free)
+
+    def rates(self, s: Array) -> Rates:
+        """Derivatives of the states by s, the crank's turning, at s (P,)."""
+        theta = self.sense * s
+        wrench = self.linear.wrench_at(theta, self.speed)
+        pull, inward = self._coupling(theta)
+
+        def rates(states: Array) -> Array:
+            d = len(self.free)
+            found = self._accelerations(wrench, pull, inward, states)
+            return np.concatenate([states[d:], found]) / abs(self.speed)
+
+        return rates
+
+    @property
+    def sense(self) -> float:
+        """1 for a crank that turns counterclockwise, -1 for clockwise."""
+        return copysign(1.0, self.speed)
+
+    def accelerations(self, theta: Array, states: Array) -> Array:
+        """Of the free coordinates (D, P) at crank angles (P,), m/s2 and rad/s2."""
+        wrench = self.linear.wrench_at(theta, self.speed)
+        return self._accelerations(wrench, *self._coupling(theta), states)
+
+    def _accelerations(self, wrench: Array, pull: Array, inward: Array, states: Array) -> Array:
+        d = len(self.free)
+        place, rate = states[:d], states[d:]
+        right = wrench.reshape(d, *(1,) * (states.ndim - 2), -1)
+        right = right - np.einsum("ab,b...->a...", self.linear.stiffness, place)
+        right = right - np.einsum("ab,b...->a...", self.linear.damping, rate)
+        mass = np.broadcast_to(self.linear.mass, (*states.shape[1:], d, d)).astype(states.dtype)
+        if PITCH in self.free:
+            k = self.free.index(PITCH)
+            mass = mass.copy()
+            mass[..., k, :] += pull.T
+            right[k] = right[k] + inward * rate[k] ** 2
+        solved = np.linalg.solve(mass, np.moveaxis(right, 0, -1)[..., None])[..., 0]
+        return np.moveaxis(solved, -1, 0)
+
+    def _coupling(self, theta: Array) -> tuple[Array, Array]:
+        """T_r = pull (D, P) . q.. - inward (P,) * pitch.^2."""
+        machine = self.linear.body.machine
+        reference = complex(*self.linear.body.reference[:2])
+        pull, inward = np.zeros((3, len(theta))), np.zeros(len(theta))
+        for row in rows_of(machine):
+            motion = move(machine, theta + row.phase, self.speed, 0.0)
+            first = sum(
+                (link.mass or 0.0) * motion.mass_centers[name].place_1
+                for name, link in machine.links.items()
+            )
+            arm = complex(*machine.frame[motion.linkage.pivot]) + complex(*row.offset) - reference
+            pull += np.stack([first.real, first.imag, (np.conj(1j * arm) * first).real])
+            inward += (np.conj(arm) * first).real
+        return pull[list(self.free)], inward
+
+
+def respond_coupled(linear: Linear, speed: float) -> Response:
+    """Response by (54)."""
+    system = Reduced(linear, speed)
+    moved = linear.motion(speed)
+
+    def guess(s: Array) -> Array:
+        theta, rough = system.sense * s, moved.upto(ROUGH)
+        return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
+
+    turns = moved.turns
+    found = steady(system, [guess], turns, Conditions.periodic(system.count))
+    theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
+    states = found.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
+    d = len(states) // 2
+    accelerations = system.accelerations(theta, states)
+    parts = [Periodic.of(part, turns) for part in (states[:d], states[d:], accelerations)]
+    body = linear.body
+    rows = {name: (body.row(gauge), gauge.axis) for name, gauge in gauges_of(body).items()}
+    gauges = {
+        name: GaugeSignals(
+            linear.seen_by(row, parts[0]),
+            linear.seen_by(row, parts[1]),
+            linear.seen_by(row, parts[2]),
+            axis is not None,
+        )
+        for name, (row, axis) in rows.items()
+    }
+    multipliers = found.multipliers(system.count)
+    plain = respond_linear(linear, speed)
+    return replace(
+        plain,
+        model="coupled",
+        gauges=gauges,
+        mounts=linear_mounts(linear, parts[0], parts[1], speed)[0],
+        residual=found.residual,
+        multipliers=multipliers,
+        notes=(*plain.notes, *in_words(multipliers)),
+    )

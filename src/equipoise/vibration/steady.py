@@ -1,0 +1,290 @@
+"""Steady state: the periodic solution of the equations, and the guess its search starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from math import ceil, copysign, pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ResponseError
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Drive, Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.motor import Motor
+from equipoise.vibration.collocation import NOTHING, RULE, Conditions, Orbit, System, solve
+from equipoise.vibration.coupled import Coupled, Torque
+from equipoise.vibration.linear import Linear
+from equipoise.vibration.linkages import rows_of
+
+Array = np.ndarray[Any, Any]
+Guess = Callable[[Array], Array]
+
+NO_STEADY_STATE = (
+    "no steady state was found; the machine may not settle into one. Look at it from rest "
+    "(--transient), or try another speed or more damping"
+)
+SAMPLES = 720
+"""In a turn, at which a solution is read off."""
+INTERVALS = 36
+"""In a turn, to begin with."""
+MOST_INTERVALS, MOST_SWINGS = 4000, 400
+FINE = 1e-11
+"""Residual of an interval at which it is left as it is."""
+ROUNDS = 14
+"""Of refinement: where a contact opens or a load sets in, intervals are cut in four."""
+NEUTRAL = 1 + 1e-6
+"""Multiplier up to which nothing grows, whatever rounding says."""
+PROGRESS, PATIENCE = 0.7, 3
+"""Share of the residual above which a finer mesh has brought nothing, and how often in a row."""
+LOOSE = 1e-6
+"""Change of the solution above which Newton's method has not found one."""
+
+
+@dataclass(frozen=True, eq=False)
+class Steady:
+    """A periodic solution against crank angle.
+
+    residual : of the worst interval, the share by which the equations are not met between nodes,
+        times the interval's share of the period.
+    """
+
+    orbit: Orbit
+    residual: float
+
+    def multipliers(self, count: int) -> Array:
+        """Floquet multipliers (count,) of the first `count` states: by what a disturbance has
+        grown after one period; the largest first.
+        """
+        values = np.linalg.eigvals(self.orbit.monodromy[:count, :count])
+        return np.asarray(values[np.argsort(-np.abs(values), kind="stable")])
+
+
+def steady(
+    system: System,
+    guesses: Iterable[Guess],
+    turns: int,
+    conditions: Conditions,
+    swings: float = 0.0,
+) -> Steady:
+    """Find the periodic solution on a mesh that is refined where the equations are not met.
+
+    Parameters
+    ----------
+    guesses : states (n, M) against the crank's turning (M,), rad; the next is tried where one leads
+        nowhere, or to a solution that is not stable, such as a support balanced on its head.
+    swings : how often the support swings freely in a turn; the mesh has to follow that.
+
+    Raises
+    ------
+    ResponseError : there is none that Newton's method could find.
+    """
+    if not swings <= MOST_SWINGS:
+        raise ResponseError(
+            f"the support swings freely {swings:.3g} times in a turn of the crank, more often than "
+            f"the {MOST_SWINGS} that the exact equations follow; for so slow a crank choose the "
+            "model moment"
+        )
+    intervals = (INTERVALS + ceil(swings)) * turns
+    points = np.linspace(0.0, 2 * pi * turns, intervals + 1)
+    orbit = _first(_tried(system, points, guess, conditions) for guess in guesses)
+    return _refined(system, orbit, conditions, 2 * intervals + MOST_INTERVALS * turns)
+
+
+def _first(tried: Iterable[Orbit | None]) -> Orbit:
+    """The first solution that is stable, or else the first."""
+    unstable = None
+    for found in tried:
+        if found is not None and _dies_out(found):
+            return found
+        unstable = unstable or found
+    if unstable is None:
+        raise ResponseError(NO_STEADY_STATE)
+    return unstable
+
+
+def _refined(system: System, orbit: Orbit, conditions: Conditions, most: int) -> Steady:
+    """The solution on a mesh of at most so many intervals, or a few more."""
+    error, idle = _residuals(system, orbit), 0
+    for _ in range(ROUNDS):
+        coarse = error > max(FINE, orbit.change)  # below its last change the solution is rounding
+        if not np.any(coarse) or len(orbit.points) > most:
+            break
+        finer = _tried(system, _cut(orbit.points, coarse), orbit.at, conditions)
+        if finer is None:
+            break
+        before, orbit = float(np.max(error)), finer
+        error = _residuals(system, orbit)
+        idle = idle + 1 if np.max(error) > PROGRESS * before else 0
+        if idle == PATIENCE:  # what is left is rounding
+            break
+    return Steady(orbit, float(np.max(error)))
+
+
+def _tried(system: System, points: Array, guess: Guess, conditions: Conditions) -> Orbit | None:
+    with np.errstate(all="ignore"):
+        try:
+            orbit = solve(system, points, guess, conditions)
+        except (np.linalg.LinAlgError, ResponseError):  # the second by a guess that takes too long
+            return None
+    return orbit if orbit.change < LOOSE else None
+
+
+def _dies_out(orbit: Orbit) -> bool:
+    """Whether disturbances do not grow; constants, such as the shift of a curve, have 1."""
+    return bool(np.max(np.abs(np.linalg.eigvals(orbit.monodromy)), initial=0.0) < NEUTRAL)
+
+
+def _residuals(system: System, orbit: Orbit) -> Array:
+    """How far each interval (K,) is from the equations, beside the largest rate of each state."""
+    steps = np.diff(orbit.points)
+    scale = np.maximum(np.max(np.abs(orbit.slopes), axis=(1, 2)), NOTHING)
+    worst = np.zeros(len(steps))
+    for share in (RULE.nodes[0] / 2, 0.5, 1 - RULE.nodes[0] / 2):
+        s = orbit.points[:-1] + share * steps
+        missed = np.abs(orbit.slopes_at(share) - system.rates(s)(orbit.at(s))) / scale[:, None]
+        worst = np.maximum(worst, np.max(missed, axis=0, initial=0.0))
+    return np.asarray(worst * steps / (orbit.points[-1] - orbit.points[0]))
+
+
+def _cut(points: Array, coarse: Array) -> Array:
+    """The mesh with coarse intervals (K,) cut in four."""
+    inner = points[:-1, None] + np.diff(points)[:, None] * np.array([0.25, 0.5, 0.75])
+    return np.sort(np.concatenate([points, inner[coarse].ravel()]))
+
+
+def torque_on_crank(drive: Drive, way: float) -> Torque:
+    """Torque on the crank, N m, at its speed and a shift of the motor's curve, both rad/s.
+
+    way : with the sign of the speed at which the motor is to turn the crank.
+    """
+    motor = drive.motor
+    assert motor is not None
+    sense = copysign(1.0, way)
+    speeds, torques = _rows(motor)
+    slopes = np.diff(torques) / np.diff(speeds)
+
+    def torque(speed: Array, shift: Array) -> Array:
+        own = sense * motor.ratio * speed - shift
+        k = np.clip(np.searchsorted(speeds, own.real, side="right") - 1, 0, len(slopes) - 1)
+        value: Array = sense * motor.ratio * (torques[k] + slopes[k] * (own - speeds[k]))
+        return value
+
+    return torque
+
+
+def _rows(motor: Motor) -> tuple[Array, Array]:
+    """Speeds and torques between which the motor's curve is straight."""
+    if motor.table is not None:
+        return np.array(motor.table.speed), np.array(motor.table.torque)
+    assert motor.no_load_speed is not None and motor.stall_torque is not None
+    return np.array([0.0, motor.no_load_speed]), np.array([motor.stall_torque, 0.0])
+
+
+def fastest(motor: Motor) -> float:
+    """Highest speed of a motor's curve, rad/s."""
+    return float(_rows(motor)[0][-1])
+
+
+def speed_at(motor: Motor, torque: float) -> float:
+    """Highest speed of the motor, rad/s, at which its torque, N m, falls through a value.
+
+    Raises
+    ------
+    ResponseError : it never does.
+    """
+    speeds, torques = _rows(motor)
+    for k in range(len(speeds) - 2, -1, -1):
+        slope = (torques[k + 1] - torques[k]) / (speeds[k + 1] - speeds[k])
+        if slope >= 0:
+            continue
+        speed = speeds[k] + (torque - torques[k]) / slope
+        low = -np.inf if k == 0 else speeds[k]
+        high = np.inf if k == len(speeds) - 2 else speeds[k + 1]
+        if low <= speed <= high:
+            return float(speed)
+    raise ResponseError(
+        f"drive.motor: its torque nowhere falls through {torque:g} N m, which the machine takes in "
+        "the mean; give a stronger motor, or a higher ratio"
+    )
+
+
+ROUGH = 12
+"""Orders of the linear response that do to start from."""
+
+
+def equations(machine: Machine, speed: float, drive: bool) -> tuple[Coupled, Linear | None]:
+    """The exact equations, and the linear ones about the same rest; None on solid ground.
+
+    drive : whether the crank's speed follows from the motor.
+    """
+    torque = torque_on_crank(machine.drive, speed) if drive else None
+    if machine.support is None:
+        assert torque is not None
+        return Coupled.on_ground(machine, speed, torque), None
+    linear = Linear.of(machine, "moment")
+    return Coupled.on_support(linear.body, linear.rest, speed, torque), linear
+
+
+def turns_of(machine: Machine) -> int:
+    """Turns of the crank in a period."""
+    return assemble(machine).cycle.turns
+
+
+def conditions_of(system: Coupled) -> Conditions:
+    """What closes a period: everything comes back, and the mean speed is held where it is."""
+    conditions = Conditions.periodic(system.count)
+    if system.torque is None:
+        return conditions
+    begin, end, value = conditions.begin.copy(), conditions.end.copy(), conditions.value.copy()
+    time, shift = system.count - 2, system.count - 1
+    begin[time], end[time] = 0.0, 0.0
+    begin[time, time] = 1.0  # the time begins at 0
+    begin[shift], end[shift] = 0.0, 0.0
+    motor = system.machine.drive.motor
+    assert motor is not None
+    if motor.mean_speed == "held":
+        end[shift, time] = 1.0
+        value[shift] = 2 * pi * turns_of(system.machine) / abs(system.speed)
+    else:
+        begin[shift, shift] = 1.0
+    return Conditions(begin, end, value)
+
+
+def from_linear(
+    system: Coupled, linear: Linear | None, setting: tuple[float, float] | None, s: Array
+) -> Array:
+    """States of the linear response, with the crank's speed constant.
+
+    setting : with a motor, mean speed and shift of its curve.
+    """
+    states = []
+    if linear is not None:
+        moved, theta = linear.motion(system.speed).upto(ROUGH), system.sense * s
+        states = [*moved.values(theta), *(moved.derivative() * system.speed).values(theta)]
+    return np.stack(states) if setting is None else with_motor(states, setting, s)
+
+
+def with_motor(states: Iterable[Array], setting: tuple[float, float], s: Array) -> Array:
+    """States of the support with those of a motor that runs evenly."""
+    speed, shift = setting
+    return np.stack([*states, np.full_like(s, speed), s / abs(speed), np.full_like(s, shift)])
+
+
+def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
+    """Mean speed of the crank and shift of the motor's curve, rad/s, if the speed were constant."""
+    motor = machine.drive.motor
+    assert motor is not None
+    sense = float(np.sign(speed))
+    own = speed_at(motor, sense * _mean_torque(machine, speed) / motor.ratio)
+    if motor.mean_speed == "free":
+        return sense * own / motor.ratio, 0.0
+    return speed, motor.ratio * abs(speed) - own
+
+
+def _mean_torque(machine: Machine, speed: float) -> float:
+    found = forces(move(machine, SAMPLES, speed, 0.0))
+    return float(np.mean(found.drive_torque)) * len(rows_of(machine))

@@ -1,0 +1,326 @@
+"""Steady response over a range of crank speeds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, cast, get_args
+
+import numpy as np
+
+from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
+from equipoise.signals import Periodic
+from equipoise.vibration.body import MISSING
+from equipoise.vibration.forced import (
+    Progress,
+    chosen_model,
+    follow_speeds,
+    left_out,
+    steady_speed,
+    usual_step,
+)
+from equipoise.vibration.free import Resonance, resonances
+from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.modes import Mode
+from equipoise.vibration.response import Model, Response, Values, mode_values, range_shown
+from equipoise.vibration.small_motion import respond_coupled, respond_linear
+
+Array = np.ndarray[Any, Any]
+
+SPEEDS = 200
+"""In a sweep, besides those about resonances."""
+MOST_SPEEDS = 20_000
+NEAR = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
+"""Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
+TOLD = ("peak_to_peak", "rms")
+MOUNT = (*TOLD, "transmissibility", "lifts_off")
+QUANTITIES = ("", "velocity_", "acceleration_")
+MOST_RESONANCES = 60
+
+
+@dataclass(frozen=True, eq=False)
+class GaugeCurve:
+    """What a gauge reads against speed, arrays (S,): m, m/s and m/s2, or rad, rad/s and rad/s2."""
+
+    peak_to_peak: Array
+    rms: Array
+    velocity_peak_to_peak: Array
+    velocity_rms: Array
+    acceleration_peak_to_peak: Array
+    acceleration_rms: Array
+    harmonics: Array
+    """(S, K + 1) amplitude of the displacement's orders."""
+    rotation: bool
+
+
+@dataclass(frozen=True, eq=False)
+class MountCurve:
+    """Force (N or N m) of a mount against speed, arrays (S,)."""
+
+    peak_to_peak: Array
+    rms: Array
+    transmissibility: Array
+    lifts_off: Array
+    torsional: bool
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Sweep(Result):
+    """Steady vibration of a machine on its support over a range of speeds.
+
+    speed : (S,) of the crank, rad/s, rising in size.  Where no steady state was found, values are
+    NaN and `notes` tell.
+    """
+
+    machine: Machine
+    model: Model
+    speed: Array
+    gauges: Mapping[str, GaugeCurve]
+    mounts: Mapping[str, MountCurve]
+    modes: tuple[Mode, ...]
+    resonances: tuple[Resonance, ...]
+    fluctuation: Array
+    stable: Array
+    notes: tuple[str, ...]
+
+    @cached_property
+    def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
+        """Speed and value of the highest points of each gauge's peak-to-peak curve."""
+        return {name: _tops(self.speed, curve.peak_to_peak) for name, curve in self.gauges.items()}
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (S,) of every figure; NaN where there is none."""
+        found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
+        for name, curve in self.gauges.items():
+            unit = "rad" if curve.rotation else "m"
+            units = ("", unit), ("velocity_", f"{unit}/s"), ("acceleration_", f"{unit}/s^2")
+            found += [
+                (f"gauges.{name}.{quantity}{figure}", unit, getattr(curve, f"{quantity}{figure}"))
+                for quantity, unit in units
+                for figure in TOLD
+            ]
+        for name, mount in self.mounts.items():
+            unit = "N m" if mount.torsional else "N"
+            found += [(f"mounts.{name}.{key}", unit, getattr(mount, key)) for key in TOLD]
+            if not mount.torsional:
+                found.append((f"mounts.{name}.transmissibility", "1", mount.transmissibility))
+        return found
+
+    def to_dict(self) -> Values:
+        """The machine-readable output, in SI units; speeds at which there is none are null."""
+        values: Values = {
+            "title": self.machine.title,
+            "model": self.model,
+            "speed": self.speed,
+            "gauges": {name: _gauge(curve) for name, curve in self.gauges.items()},
+            "mounts": {
+                name: {key: _plain(getattr(curve, key)) for key in MOUNT}
+                for name, curve in self.mounts.items()
+            },
+            "modes": [mode_values(mode) for mode in self.modes],
+            "resonances": [resonance.speed for resonance in self.resonances],
+            "resonance_map": [resonance.to_dict() for resonance in self.resonances],
+        }
+        if self.model in {"coupled", "exact"}:
+            values["stable"] = self.stable.tolist()
+        if np.any(self.fluctuation > 0):
+            values["fluctuation"] = _plain(self.fluctuation)
+        values["notes"] = list(self.notes)
+        return values
+
+
+def _gauge(curve: GaugeCurve) -> Values:
+    values: Values = {"quantity": "rotation" if curve.rotation else "displacement"}
+    values |= {key: _plain(getattr(curve, key)) for key in TOLD}
+    for name in ("velocity", "acceleration"):
+        values[name] = {key: _plain(getattr(curve, f"{name}_{key}")) for key in TOLD}
+    values["harmonics"] = _plain(curve.harmonics)
+    return values
+
+
+def _plain(values: Array) -> list[Any]:
+    """As lists, with None for what is not a number."""
+    if values.ndim > 1:
+        return [_plain(row) for row in values]
+    return [value if np.isfinite(value) else None for value in values.tolist()]
+
+
+def sweep_speed(
+    machine: Machine,
+    slowest: float,
+    fastest: float,
+    model: Model | None = None,
+    drive: bool = False,
+    speeds: int = SPEEDS,
+    progress: Progress | None = None,
+) -> Sweep:
+    """Steady vibration of a machine on its support, over a range of speeds.
+
+    Parameters
+    ----------
+    slowest, fastest : of the crank, rad/s, of the same sign.
+    model, drive : as in `respond`.
+    speeds : how many, equally spaced; more are added about each resonance.
+    progress : called with the number of speeds that are done, and of all.
+
+    Raises
+    ------
+    As `respond`.
+    """
+    model = chosen_model(machine, model, drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    if machine.support is None:
+        raise ModelError("support", MISSING)
+    for end in (slowest or fastest, fastest):  # a range that begins at 0 is told as such below
+        steady_speed(machine, end, drive)
+    if slowest * fastest <= 0 or abs(slowest) >= abs(fastest):
+        raise UsageError(
+            f"got speeds from {slowest:g} to {fastest:g} rad/s; give two of the same sign that are "
+            "not 0, the slower one first"
+        )
+    if not 2 <= speeds <= MOST_SPEEDS:
+        raise UsageError(f"got {speeds} speeds; give 2 to {MOST_SPEEDS}")
+    step = cast(Step, model) if model in get_args(Step) else usual_step(machine, model)
+    linear = Linear.of(machine, step)
+    met = resonances(linear, slowest, fastest)[:MOST_RESONANCES]
+    grid = _speeds(slowest, fastest, speeds, met, linear)
+    told = progress if progress is not None else (lambda done, total: None)
+    if model == "exact":
+        answers, notes = follow_speeds(machine, grid.tolist(), drive, told)
+    else:
+        answers, notes = _by_orders(linear, model, grid.tolist(), told), []
+    notes = [*left_out(machine), *notes, *_missing(grid, answers)]
+    return _gathered(machine, model, grid, answers, linear, met, tuple(notes))
+
+
+def _speeds(
+    slowest: float, fastest: float, count: int, met: list[Resonance], linear: Linear
+) -> Array:
+    """Equally spaced, and closer about resonances."""
+    grid = [np.linspace(slowest, fastest, count)]
+    for resonance in met:
+        damping = np.clip(linear.modes[resonance.mode - 1].damping_ratio, 1e-5, 0.05)
+        grid.append(resonance.speed * (1 + np.array(NEAR) * damping))
+    low, high = sorted((slowest, fastest))
+    speeds = np.concatenate(grid)
+    inside = np.unique(speeds[(speeds >= low) & (speeds <= high)])
+    return inside if fastest > 0 else inside[::-1]
+
+
+def _by_orders(
+    linear: Linear, model: Model, speeds: list[float], progress: Progress
+) -> list[Response | None]:
+    """The response at every speed by a model whose speeds do not depend on each other."""
+    answers: list[Response | None] = []
+    respond = respond_coupled if model == "coupled" else respond_linear
+    for speed in speeds:
+        try:
+            answers.append(respond(linear, speed))
+        except ResponseError:
+            answers.append(None)
+        progress(len(answers), len(speeds))
+    return answers
+
+
+def _missing(grid: Array, answers: list[Response | None]) -> list[str]:
+    lost = [speed for speed, answer in zip(grid.tolist(), answers, strict=True) if answer is None]
+    if len(lost) == len(grid):
+        raise ResponseError("no steady state was found at any of these speeds")
+    if not lost:
+        return []
+    return [f"no steady state was found at {len(lost)} of {len(grid)} speeds, {range_shown(lost)}"]
+
+
+def _noted(grid: Array, answers: list[Response | None]) -> Iterator[str]:
+    """What is to be said of the responses, each with the speeds of which it holds."""
+    where: dict[str, list[tuple[float, str]]] = {}
+    for speed, answer in zip(grid.tolist(), answers, strict=True):
+        for note in () if answer is None else answer.notes:
+            # Notes that differ in a number only are one.
+            where.setdefault(re.sub(r"-?[0-9.]+", "", note), []).append((speed, note))
+    for found in where.values():
+        speeds = [speed for speed, _ in found]
+        everywhere = len(found) == len(grid)
+        yield found[0][1] if everywhere else f"{range_shown(speeds)}: {found[0][1]}"
+
+
+def _gathered(
+    machine: Machine,
+    model: Model,
+    grid: Array,
+    answers: list[Response | None],
+    linear: Linear,
+    met: list[Resonance],
+    notes: tuple[str, ...],
+) -> Sweep:
+    first = next(answer for answer in answers if answer is not None)
+    return Sweep(
+        machine,
+        model,
+        grid,
+        {name: _curve(name, answers, first) for name in first.gauges},
+        {name: _mount_curve(name, answers, first) for name in first.mounts},
+        linear.modes,
+        tuple(met),
+        np.array([np.nan if a is None else a.drive.fluctuation for a in answers]),
+        np.array([a is not None and a.stable is not False for a in answers]),
+        (*notes, *_noted(grid, answers)),
+    )
+
+
+def _curve(name: str, answers: list[Response | None], first: Response) -> GaugeCurve:
+    gauges = [None if answer is None else answer.gauges[name] for answer in answers]
+    columns, sizes = [], np.empty(0)
+    for kind in ("displacement", "velocity", "acceleration"):
+        there, signal = _together([None if g is None else getattr(g, kind) for g in gauges])
+        columns += [_spread(there, signal.peak_to_peak), _spread(there, signal.vibration_rms)]
+        if kind == "displacement":
+            sizes = _spread(there, signal.sizes)
+    keys = [f"{quantity}{figure}" for quantity in QUANTITIES for figure in TOLD]
+    curves = dict(zip(keys, columns, strict=True))
+    return GaugeCurve(**curves, harmonics=sizes, rotation=first.gauges[name].rotation)
+
+
+def _mount_curve(name: str, answers: list[Response | None], first: Response) -> MountCurve:
+    mounts = [None if answer is None else answer.mounts[name] for answer in answers]
+    there, force = _together([None if mount is None else mount.force for mount in mounts])
+    found = [mount for mount in mounts if mount is not None]
+    smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in found])
+    values = (
+        force.extreme(1)[0] - smallest,
+        force.vibration_rms,
+        np.array([mount.whole for mount in found]),
+        np.array([mount.lifts_off for mount in found]),
+    )
+    curves = dict(zip(MOUNT, (_spread(there, value) for value in values), strict=True))
+    return MountCurve(**curves, torsional=first.mounts[name].torsional)
+
+
+def _together(signals: list[Periodic | None]) -> tuple[Array, Periodic]:
+    """Where (S,) there are signals, and these as one, amplitudes (there, K + 1)."""
+    there = np.array([signal is not None for signal in signals])
+    found = [signal for signal in signals if signal is not None]
+    count = max(signal.amplitudes.shape[-1] for signal in found)
+    amplitudes = np.zeros((len(found), count), complex)
+    for row, signal in zip(amplitudes, found, strict=True):
+        row[: signal.amplitudes.shape[-1]] = signal.amplitudes
+    return there, Periodic(amplitudes, found[0].turns)
+
+
+def _spread(there: Array, values: Array) -> Array:
+    """Values (there, ...) at their places among all speeds (S, ...), NaN at the others."""
+    found = np.full((len(there), *values.shape[1:]), np.nan)
+    found[there] = values
+    return found
+
+
+def _tops(speed: Array, values: Array) -> list[tuple[float, float]]:
+    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
+    found = [(float(speed[k]), float(values[k])) for k in inner]
+    return sorted(found, key=lambda top: -top[1])

@@ -1,0 +1,151 @@
+"""From rest: the exact equations followed in time."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import MassError, ResponseError, UsageError
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.model import Machine
+from equipoise.results.result import Result
+from equipoise.vibration.body import Body, Reading
+from equipoise.vibration.coupled import Coupled, follow
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.forced import chosen_model, steady_speed
+from equipoise.vibration.linear import gauges_of
+from equipoise.vibration.steady import equations, motor_setting
+
+Array = np.ndarray[Any, Any]
+
+MOST_TURNS = 2000
+LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Transient(Result):
+    """A machine on its support from rest, at M instants.
+
+    time : (M,) s.  states : (n, M), displacements and velocities of the free coordinates.
+    crank_angle, crank_speed : (M,), rad and rad/s.
+    """
+
+    machine: Machine
+    system: Coupled
+    time: Array
+    states: Array
+    crank_angle: Array
+    crank_speed: Array
+
+    @cached_property
+    def gauges(self) -> Mapping[str, Array]:
+        """Displacement (M,) at each gauge, m or rad."""
+        if self.machine.support is None:
+            return {}
+        body = Body(self.machine)
+        place, _ = self.system.place_and_rate(self.states)
+        return {
+            name: Reading.of(body, gauge).displacement(place)
+            for name, gauge in gauges_of(body).items()
+        }
+
+    @cached_property
+    def mounts(self) -> Mapping[str, Array]:
+        """Force (M,) of each mount, N or N m."""
+        ride = self.system.place_and_rate(self.states)
+        return {contact.name: contact.force(*ride) for contact in self.system.contacts}
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, unit and values (M,) of every signal."""
+        found = [
+            ("time", "s", self.time),
+            ("crank_angle", "rad", self.crank_angle),
+            ("crank_speed", "rad/s", self.crank_speed),
+        ]
+        for name, values in self.gauges.items():
+            found.append((f"gauges.{name}.displacement", self.unit(name), values))
+        for name, force in self.mounts.items():
+            found.append((f"mounts.{name}.force", "N" if self.along(name) else "N m", force))
+        return found
+
+    def along(self, mount: str) -> bool:
+        """Whether a mount pushes along a line, instead of turning back."""
+        assert self.machine.support is not None
+        return self.machine.support.mounts[mount].point is not None
+
+    def unit(self, gauge: str) -> str:
+        """SI unit of a gauge's displacement."""
+        assert self.machine.support is not None
+        return "rad" if gauges_of(Body(self.machine))[gauge].axis is not None else "m"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units."""
+        return {
+            "title": self.machine.title,
+            "time": self.time,
+            "crank_angle": self.crank_angle,
+            "crank_speed": self.crank_speed,
+            "gauges": {name: {"displacement": y} for name, y in self.gauges.items()},
+            "mounts": {name: {"force": y} for name, y in self.mounts.items()},
+        }
+
+
+def from_rest(
+    machine: Machine,
+    duration: float,
+    speed: float | None = None,
+    drive: bool = False,
+    samples: int | None = None,
+) -> Transient:
+    """Follow a machine from rest in the drawn position.
+
+    Parameters
+    ----------
+    duration : s.
+    speed : of the crank, rad/s, which it has at once; with `drive` it stands still at first, and
+        the motor brings it up.
+    samples : number of instants that are told; 72 in each turn, and 2000 at least, if None.
+
+    Raises
+    ------
+    ModelError, UsageError, ResponseError.
+    """
+    chosen_model(machine, "exact", drive)
+    if missing := massless(machine):
+        raise MassError(missing)
+    speed = steady_speed(machine, speed, drive)
+    if samples is not None and not 2 <= samples <= MOST_SAMPLES:
+        raise UsageError(f"got {samples!r} for samples; give 2 to {MOST_SAMPLES}")
+    turns = abs(speed) * duration / (2 * pi)
+    if not 0 < turns <= MOST_TURNS:
+        raise UsageError(
+            f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more "
+            f"than 0 and at most {MOST_TURNS} turns, {MOST_TURNS * 2 * pi / abs(speed):.4g} s"
+        )
+    system, _ = equations(machine, speed, drive)
+    shift = _shift(machine, speed) if drive else 0.0
+    states_of = 2 * len(system.free)
+    begin = np.zeros(states_of + 2)
+    begin[states_of] = 0.0 if drive else speed
+    count = max(LEAST_SAMPLES, round(SAMPLES_PER_TURN * turns)) if samples is None else samples
+    time = np.linspace(0.0, duration, count)
+    states = follow(system, time, begin, shift)
+    moved, crank_speed, crank_angle = np.split(states, [states_of, states_of + 1])
+    return Transient(machine, system, time, moved, crank_angle[0], crank_speed[0])
+
+
+def _shift(machine: Machine, speed: float) -> float:
+    """Shift of the motor's curve that holds the mean speed in the steady state."""
+    motor = machine.drive.motor
+    assert motor is not None
+    if motor.mean_speed == "free":
+        return 0.0
+    try:
+        return float(solve_exact(machine, speed, True).found.orbit.starts[-1, 0])
+    except ResponseError:  # then as if the speed were constant
+        return motor_setting(machine, speed)[1]

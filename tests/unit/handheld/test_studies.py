@@ -1,0 +1,159 @@
+"""Changing a number of a station, frequencies against it, and the determinant's chart."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.frequencies import natural_frequencies, scale_of
+from equipoise.handheld.model import Absorber, Hand, Harness, Impedance, Station, Tool
+from equipoise.handheld.studies import (
+    changed,
+    determinant_chart,
+    number_of,
+    vary_tool,
+    without_damping,
+)
+from unit.handheld.samples import THEORIES, bare, both, random_tool, reference, still
+
+Array = np.ndarray[Any, Any]
+FULL = Station(
+    "full",
+    0.4,
+    mass=0.7,
+    inertia=(0.01, 0.02),
+    stiffness=(300.0, 500.0),
+    absorber=Absorber(0.2, (3e3, 4e3), (1.5, 2.5)),
+    hand=Hand(0.3, (900.0, 800.0), (30.0, 20.0)),
+    harness=Harness((110.0, 120.0), (13.0, 14.0)),
+)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_one_number_is_changed_and_nothing_else(key: str) -> None:
+    tool = bare(FULL, Station("other", 1.0))
+    found = changed(tool, "full", key, 0.37)
+    assert number_of(found, "full", key) == 0.37
+    owner, _, last = key.rpartition(".")
+    before = getattr(FULL, owner) if owner else FULL
+    after = getattr(found.station("full"), owner) if owner else found.station("full")
+    value = getattr(after, last)
+    assert value == (both(0.37) if isinstance(getattr(before, last), tuple) else 0.37)
+    back = changed(found, "full", key, 1.0)
+    assert number_of(back, "full", key) == 1.0
+    for name in after.shapes:
+        if name != last:
+            assert getattr(after, name) == getattr(before, name)
+    assert found.station("other") == tool.station("other")
+    assert found.shaft == tool.shaft
+
+
+def test_a_number_of_a_pair_is_told_of_the_vertical_plane() -> None:
+    tool = bare(FULL)
+    assert number_of(tool, "full", "stiffness") == 300
+    assert number_of(tool, "full", "absorber.damping") == 1.5
+    assert number_of(tool, "full", "harness.stiffness") == 110
+
+
+def test_what_cannot_be_changed() -> None:
+    tool = bare(Station("plain", 0.4), FULL)
+    with pytest.raises(ModelError, match="nobody"):
+        changed(tool, "nobody", "mass", 1.0)
+    with pytest.raises(UsageError, match="'colour'"):
+        changed(tool, "plain", "colour", 1.0)
+    with pytest.raises(UsageError, match="'plain' has no absorber; give it one first"):
+        changed(tool, "plain", "absorber.mass", 1.0)
+    with pytest.raises(UsageError, match="'plain' has no harness; give it one first"):
+        changed(tool, "plain", "harness.damping", 1.0)
+    with pytest.raises(ModelError, match="off the shaft"):
+        changed(tool, "plain", "position", 7.0)
+    with pytest.raises(ModelError, match="give 0 or more"):
+        changed(tool, "plain", "mass", -1.0)
+
+
+@pytest.mark.parametrize(
+    ("key", "values"),
+    [
+        ("position", [0.5, 0.7, 1.0]),
+        ("mass", [0.0, 0.5, 3.0]),
+        ("stiffness", [0.0, 1e3, 1e6]),
+        ("rotational_stiffness", [0.0, 300.0]),
+        ("absorber.stiffness", [1e4, 5e4]),
+        ("absorber.mass", [0.1, 0.3]),
+    ],
+)
+def test_frequencies_against_a_number(key: str, values: list[float]) -> None:
+    """Each as finite elements of the changed tool have them, in both planes."""
+    tool = random_tool(3, "timoshenko")
+    found = vary_tool(tool, "middle", key, np.array(values), 6)
+    assert found.frequency.shape == found.parameter.shape == (2, len(values), 6)
+    for k, value in enumerate(values):
+        other = changed(tool, "middle", key, value)
+        for plane in range(2):
+            wanted = reference(other, plane, 96).natural_frequencies(6)
+            np.testing.assert_allclose(found.frequency[plane, k], wanted, rtol=1e-6)
+    np.testing.assert_allclose(found.parameter**2 * scale_of(tool), found.frequency)
+    told = found.to_dict()
+    assert told["key"] == key
+    np.testing.assert_array_equal(
+        told["natural_frequencies_lateral"], found.frequency[1] / 2 / np.pi
+    )
+    np.testing.assert_array_equal(told["eigenvalues"], found.parameter[0])
+
+
+# -- the determinant's chart -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("seed", [1, 2])
+def test_zeros_of_the_chart_are_the_natural_frequencies(theory: str, seed: int) -> None:
+    """In each plane it changes its sign there and nowhere else, dampers or not."""
+    tool = random_tool(seed, theory)
+    highest = 12.0
+    found = determinant_chart(tool, highest, 4000)
+    step = found.parameter[1]
+    assert found.parameter[-1] == highest
+    for plane in range(2):
+        sign = np.sign(found.value[plane])
+        crossing = found.parameter[:-1][sign[1:] != sign[:-1]]
+        natural = np.sqrt(natural_frequencies(tool, 12)[plane] / scale_of(tool))
+        wanted = natural[(natural > found.parameter[0]) & (natural < highest)]
+        assert len(crossing) == len(wanted) >= 4
+        assert np.all((crossing <= wanted) & (wanted <= crossing + step))
+
+
+def test_size_of_the_chart() -> None:
+    """Its peaks are from log10 2 upward: 1 + the function over its smallest peak."""
+    found = determinant_chart(bare(Station("a", 0.3, stiffness=both(2e4))), 14.0, 3000)
+    size = np.abs(found.value[0])
+    peaks = size[1:-1][(size[1:-1] > size[:-2]) & (size[1:-1] > size[2:])]
+    assert len(peaks) >= 2
+    assert np.min(peaks) == pytest.approx(np.log10(2), rel=1e-9)
+
+
+@pytest.mark.parametrize("highest", [0.0, -3.0, np.nan])
+def test_no_chart(highest: float) -> None:
+    with pytest.raises(UsageError, match="give more than 0"):
+        determinant_chart(bare(), highest)
+
+
+# -- without damping -------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_without_damping(theory: str) -> None:
+    tool = random_tool(5, theory)
+    found: Tool = without_damping(tool)
+    assert found == still(tool)
+    assert tool.damped and not found.damped
+
+
+def test_a_measured_hand_is_left_out() -> None:
+    table = Impedance((1.0, 100.0), (10.0, 30.0), (-5.0, 5.0))
+    tool = bare(Station("grip", 0.5, mass=1.0, hand=Hand(impedance=(table,))))
+    assert without_damping(tool).station("grip").hand is None
+    assert without_damping(tool).station("grip").mass == 1.0

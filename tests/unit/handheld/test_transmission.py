@@ -1,0 +1,205 @@
+"""Force on the body over the force that shakes: by finite elements, its zeros and its minima."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from math import pi
+from typing import Any
+
+import numpy as np
+import pytest
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
+from equipoise.handheld.shaft import Section, Shaft
+from equipoise.handheld.transmission import source_of, transmit
+from unit.handheld.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
+
+Array = np.ndarray[Any, Any]
+KGF = 9.80665
+
+
+def brush_cutter(damping: float = 0.0) -> Tool:
+    """Make the machine of company K of Nagamine and Irie, section 3.3, from its printed numbers."""
+    length, weight = 1.544, 3.56
+    stations = (
+        Station("engine", 0.0, mass=2.20 * weight),
+        Station("belt", 0.166 * length, harness=Harness(both(47.4 * KGF * 100))),
+        Station(
+            "handle",
+            0.266 * length,
+            mass=0.416 * weight,
+            hand=Hand(stiffness=both(51 * KGF * 100), damping=both(damping), hands=2),
+        ),
+        Station("cutter", length, mass=0.291 * weight),
+    )
+    shaft = Shaft(length, Section(100 * KGF, weight / length))
+    return Tool("K", shaft, stations, (Excitation("e", "engine", force=100.0),))
+
+
+SPEEDS = np.linspace(1000, 9000, 600) * pi / 30
+
+
+@pytest.mark.parametrize("damping", [0.0, 60.0])
+def test_equation_26(damping: float) -> None:
+    """T_R = |k2 + i w c2| |y(alpha)| / F, with y by finite elements: 1e-7 is their error."""
+    tool = brush_cutter(damping)
+    found = transmit(tool, SPEEDS[::60])
+    handle, belt = tool.station("handle"), tool.station("belt")
+    moved = (
+        reference(tool, 0, 192)
+        .response(SPEEDS[::60], [(0.0, 1.0, 0.0)])
+        .displacement([belt.position, handle.position])
+    )
+    stiffness = 2 * (51 * KGF * 100 + 1j * SPEEDS[::60] * damping)
+    np.testing.assert_allclose(
+        found.stations["handle"].size[0], np.abs(stiffness * moved[:, 1]), rtol=1e-7
+    )
+    np.testing.assert_allclose(
+        found.stations["belt"].size[0], np.abs(47.4 * KGF * 100 * moved[:, 0]), rtol=1e-7
+    )
+    ahead = np.exp(1j * (found.stations["handle"].phase[0] - np.angle(stiffness * moved[:, 1])))
+    np.testing.assert_allclose(ahead, 1, atol=1e-6)
+    assert set(found.stations) == {"handle", "belt"}
+    assert found.source == "engine"
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+def test_all_that_holds_a_station_counts(theory: str) -> None:
+    """Hand with its mass, harness and ground, in each plane under a force in that plane."""
+    tool = random_tool(4, theory)
+    speeds = np.array([150.0, 420.0, 900.0])
+    found = transmit(tool, speeds, "head")
+    for plane in range(2):
+        elements = reference(tool, plane, 192).response(speeds, [(tool.shaft.length, 1.0, 0.0)])
+        for station, attached in zip(tool.stations, attached_of(tool, plane), strict=True):
+            if station.name not in found.stations:
+                continue
+            moved = elements.displacement([station.position])[:, 0]
+            mass = station.hand.hands * station.hand.mass if station.hand else 0.0
+            force = attached.stiffness + 1j * speeds * attached.damping - speeds**2 * mass
+            ratio = found.stations[station.name].ratio[plane]
+            np.testing.assert_allclose(ratio, force * moved, rtol=1e-6)
+    assert set(found.stations) == {"front", "rear", "middle"}
+
+
+def test_zeros_of_the_undamped_tool() -> None:
+    """The ratio is real and changes its sign at resonances and at quiet speeds alone."""
+    tool = brush_cutter()
+    found = transmit(tool, SPEEDS)
+    natural = natural_frequencies(tool, 12)[0]
+    for one in found.stations.values():
+        assert np.max(np.abs(one.ratio.imag)) == 0
+        quiet = one.quiet[0][one.lowest[0] < 1e-5]
+        sign = np.sign(one.ratio[0].real)
+        turning = np.flatnonzero(sign[1:] != sign[:-1])
+        expected = sorted(
+            [w for w in natural if SPEEDS[0] < w < SPEEDS[-1]] + [float(w) for w in quiet]
+        )
+        assert len(turning) == len(expected)
+        for k, place in zip(turning, expected, strict=True):
+            assert SPEEDS[k] <= place <= SPEEDS[k + 1]
+        assert quiet.size >= 1
+
+
+def test_where_the_force_acts_there_is_one_zero_between_two_resonances() -> None:
+    """Foster: zeros of what moves at the place of the force alternate with the poles."""
+    tool = still(brush_cutter())
+    speeds = np.linspace(5, 2500, 4000)
+    (_, quiet) = _between(tool, speeds)
+    natural = natural_frequencies(tool, 30)[0]
+    inside = natural[(natural > speeds[0]) & (natural < speeds[-1])]
+    for low, high in pairwise(inside):
+        assert np.sum((quiet > low) & (quiet < high)) == 1
+
+
+def _between(tool: Tool, speeds: Array) -> tuple[Array, Array]:
+    one = transmit(tool, speeds, "handle").stations["handle"]
+    return one.size, one.quiet[0][one.lowest[0] < 1e-3]
+
+
+def test_quiet_speeds_are_zeros_of_finite_elements() -> None:
+    """1e-6 to either side the handle moves in opposite directions there."""
+    tool = brush_cutter()
+    one = transmit(tool, SPEEDS).stations["handle"]
+    quiet = one.quiet[0][one.lowest[0] < 1e-6]
+    assert quiet.size == 2
+    beside = np.outer(quiet, [1 - 1e-6, 1 + 1e-6])
+    elements = reference(tool, 0, 192).response(beside.ravel(), [(0.0, 1.0, 0.0)])
+    moved = elements.displacement([tool.station("handle").position]).real.reshape(beside.shape)
+    assert np.all(moved[:, 0] * moved[:, 1] < 0)
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("seed", [1, 5])
+def test_quiet_speeds_are_minima(theory: str, seed: int) -> None:
+    """Closer sampling finds nothing lower around them, and the curve rises to both sides."""
+    tool = random_tool(seed, theory)
+    speeds = np.linspace(100, 1500, 300)
+    found = transmit(tool, speeds)
+    step = speeds[1] - speeds[0]
+    count = 0
+    for name, one in found.stations.items():
+        for plane in range(2):
+            for quiet, lowest in zip(one.quiet[plane], one.lowest[plane], strict=True):
+                near = quiet + step * np.linspace(-0.9, 0.9, 181)
+                size = transmit(tool, near).stations[name].size[plane]
+                assert np.min(size) >= lowest * (1 - 1e-9)
+                assert size[0] > lowest and size[-1] > lowest
+                at = transmit(tool, np.array([quiet])).stations[name].size[plane, 0]
+                assert at == pytest.approx(lowest, rel=1e-6)
+                count += 1
+    assert count >= 4
+
+
+def test_source() -> None:
+    tool = brush_cutter()
+    assert source_of(tool) == "engine"
+    assert source_of(replace(tool, excitations=(Excitation("e", "cutter", force=1.0),))) == "cutter"
+    assert source_of(replace(tool, excitations=())) == "engine"
+    assert source_of(bare(Station("b", 1.0), Station("a", 0.2))) == "a"
+    with pytest.raises(ModelError, match="there is none"):
+        source_of(bare())
+
+
+def test_what_shakes_does_not_matter() -> None:
+    """It is under a unit force; the tool's own excitations only name the place."""
+    tool = brush_cutter()
+    other = replace(tool, excitations=(Excitation("e", "engine", unbalance=0.1, ratio=-3.0),))
+    one, two = (transmit(each, SPEEDS[:5]).stations["handle"].ratio for each in (tool, other))
+    np.testing.assert_array_equal(one, two)
+
+
+def test_reciprocal_places() -> None:
+    """Where both places are held alike, the ratio to one from the other is that from the one."""
+    stations = tuple(
+        Station(name, place, mass=mass, stiffness=both(4e3))
+        for name, place, mass in (("a", 0.1, 1.0), ("b", 1.2, 0.3))
+    )
+    tool = bare(*stations)
+    there = transmit(tool, SPEEDS[::100], "a").stations["b"].ratio
+    back = transmit(tool, SPEEDS[::100], "b").stations["a"].ratio
+    np.testing.assert_allclose(there, back, rtol=1e-9)
+
+
+def test_refusals() -> None:
+    with pytest.raises(ModelError, match="nothing holds the tool"):
+        transmit(bare(Station("a", 0.5, mass=1.0)), SPEEDS)
+    with pytest.raises(UsageError, match="more than 0"):
+        transmit(brush_cutter(), np.array([-1.0]))
+    with pytest.raises(ModelError, match="nobody"):
+        transmit(brush_cutter(), SPEEDS, "nobody")
+
+
+def test_as_plain_values() -> None:
+    found = transmit(random_tool(2), SPEEDS[:50])
+    told = found.to_dict()
+    assert told["source"] == "engine"
+    for name, one in found.stations.items():
+        part = told["transmission"][name]
+        np.testing.assert_array_equal(part["ratio"], np.abs(one.ratio[0]))
+        np.testing.assert_array_equal(part["ratio_lateral"], np.abs(one.ratio[1]))
+        np.testing.assert_array_equal(part["phase_lateral"], np.angle(one.ratio[1]))
+        np.testing.assert_array_equal(part["quiet_speeds_lateral"], one.quiet[1])

@@ -1,0 +1,225 @@
+"""Reading model files: what is understood, and one sentence for everything else."""
+
+from __future__ import annotations
+
+import os
+import time
+from math import cos, radians, sin
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from equipoise.errors import EquipoiseError, ModelError
+from equipoise.mechanism.model import STANDARD_GRAVITY, Gear
+from equipoise.schema import examples, load, loads
+from unit.schema.samples import EVERYTHING, FOUR_BAR
+
+
+def test_values_arrive_in_si_units() -> None:
+    machine = loads(FOUR_BAR)
+    assert machine.drive.speed == pytest.approx(193 * 2 * 3.141592653589793 / 60, rel=1e-15)
+    assert machine.links["crank"].points["B"] == (0.0335, 0.0)
+    assert machine.links["crank"].inertia == 3e-5
+    angle = radians(-83)
+    assert machine.frame["D"] == pytest.approx((0.088 * cos(angle), 0.088 * sin(angle)))
+    assert machine.gravity == STANDARD_GRAVITY
+    assert list(machine.links) == ["crank", "coupler", "rocker"]
+
+
+def test_everything_is_read() -> None:
+    machine = loads(EVERYTHING)
+    assert machine.gravity == (9.80665, 0.0)
+    assert machine.sliders[0].angle == pytest.approx(radians(5))
+    first, second = machine.gears
+    assert first.speed_ratio == 20 / 41
+    assert (second.speed_ratio, second.carrier) == (-2, "rocker")
+    assert second.pressure_angle == Gear("a", "b").pressure_angle
+    assert machine.loads[0].force == (1.0, -19.6133)
+    assert machine.position is not None
+    assert machine.position.points == {"B": (0.001, 0.002)}
+
+
+def test_right_angles_are_exact() -> None:
+    text = FOUR_BAR.replace('"-83 deg"', '"-90 deg"')
+    assert loads(text).frame["D"] == (0.0, -0.088)
+
+
+GEAR = '[[gears]]\nbetween = ["crank", "rocker"]\n'
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ('mass = "199 g"', 'mas = "199 g"', "links.crank.mas: no key is called 'mas'; did you"),
+        ('mass = "199 g"', "mass = 199", "links.crank.mass: got the bare number 199; give"),
+        ('mass = "199 g"', 'mass = "1 mm"', "links.crank.mass: got '1 mm'; mm is the unit"),
+        ('mass = "199 g"', 'mass = "-1 g"', "links.crank.mass: got -0.001 kg"),
+        ('mass = "199 g"\n', "", "links.crank: mass missing"),
+        ('["33.5 mm", "0 mm"]', '["1 mm"]', "links.crank.points.B: got a list of 1; give"),
+        ('["33.5 mm", "0 mm"]', '["1 mm", "x"]', "links.crank.points.B[2]: got 'x'; write"),
+        ('["33.5 mm", "0 mm"]', '"1 mm"', "links.crank.points.B: got '1 mm'; give [\"33.5 mm"),
+        ('["33.5 mm", "0 mm"]', "{ distance = 3 }", "points.B.direction: missing; add direction"),
+        (
+            '["33.5 mm", "0 mm"]',
+            '{ distance = 3, direction = "1 m" }',
+            "points.B.distance: got the bare number 3; give number and unit in quotes, such as "
+            '"33.5 mm" (and 1 more)',
+        ),
+        ('link = "crank"', 'link = "crnk"', "drive.link: no link is called 'crnk'; did you"),
+        ('"193 rpm"', '"50 Hz"', "drive.speed: got '50 Hz'; Hz does not tell"),
+        ('"left"', '"lft"', "assembly.C: got 'lft'; give 'left', 'right'"),
+        ('title = "Four-bar"', "title = 1", "title: got the number 1; give text in quotes"),
+        ('title = "Four-bar"', "", "title: missing; add title ="),
+        ('title = "Four-bar"', 'titel = "x"', "titel: no key is called 'titel'; did you mean"),
+        ("schema = 1", "", "schema: missing"),
+        ("schema = 1", "schema = 2", "got the number 2; this program reads schema = 1"),
+        ("schema = 1", "schema = true", "got true; this program reads schema = 1"),
+        ("[assembly]", "[sliders]\n[assembly]", "sliders: got a table; write each as a table"),
+        ("[assembly]", "[[sliders]]\n[assembly]", "sliders[1].link: missing; add link"),
+        ("[assembly]", f"{GEAR}\n[assembly]", "gears[1]: give either ratio or teeth"),
+        (
+            "[assembly]",
+            f'{GEAR}ratio = 2\nmesh = "external"\n[assembly]',
+            "gears[1].mesh: got 'external' without teeth",
+        ),
+        ("[assembly]", f"{GEAR}ratio = nan\n[assembly]", "gears[1].ratio: got the number nan"),
+        ("[assembly]", f'{GEAR}ratio = "2"\n[assembly]', "gears[1].ratio: got '2'; give a plain"),
+        ("[assembly]", f"{GEAR}teeth = [0, 2]\n[assembly]", "gears[1].teeth[1]: got the number 0"),
+        ("[assembly]", f"{GEAR}teeth = [1, 0x{'f' * 5000}]\n[assembly]", "thousands of digits"),
+        (
+            "[assembly]",
+            '[[loads]]\nlink = "crank"\ntable = "x.csv"\n[assembly]',
+            "loads[1].table: got 'x.csv'; a table can only",
+        ),
+        ('mass = "199 g"', 'mass = "1 g"\nmass = "2 g"', "line 16, column 13: cannot overwrite"),
+        ("[assembly]", "[assembly", "line 27, column 10: expected ']'"),
+        ("[assembly]", "x = " + "[" * 10**5, "nested too deeply"),
+        ("[assembly]", "x = " + "9" * 5000, "thousands of digits"),
+        ("[assembly]", "a." * 40_000 + "a = 1", "line 27: a key has more than 50 parts"),
+        ("[links.rocker]", '["li\\nks"]\n[links.rocker]', '"li\\nks": no key is called'),
+    ],
+)
+def test_one_sentence_names_the_place(old: str, new: str, said: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        loads(FOUR_BAR.replace(old, new, 1), "model.toml")
+    assert said in str(caught.value)
+    assert str(caught.value).startswith("model.toml: ")
+    assert "\n" not in str(caught.value)
+    assert len(str(caught.value)) < 400
+
+
+def test_files_that_are_none(tmp_path: Path) -> None:
+    (tmp_path / "binary").write_bytes(bytes(range(256)))
+    (tmp_path / "utf16").write_text(FOUR_BAR, encoding="utf-16")
+    with open(tmp_path / "large", "wb") as file:
+        file.truncate(100_000_000)
+    begin = time.monotonic()
+    for name, said in [
+        ("missing.toml", "there is no such file; give a path, or the name of an example: run"),
+        ("", "this is a directory; give a file"),
+        ("binary", "line 2 is not text in UTF-8"),
+        ("utf16", "line 1 is not text in UTF-8"),
+        ("large", "the file has 100 MB; at most 2 MB are read"),
+        ("nu\0ll", "cannot be read"),
+        ("x" * 5000, "cannot be read"),
+    ]:
+        with pytest.raises(ModelError) as caught:
+            load(tmp_path / name)
+        assert said in str(caught.value)
+    assert time.monotonic() - begin < 1
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs POSIX")
+def test_pipes_and_devices_do_not_hang(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", "/dev/zero"):
+        with pytest.raises(ModelError, match="no regular file"):
+            load(path)
+
+
+@pytest.mark.skipif(os.name != "posix" or os.geteuid() == 0, reason="root may read everything")
+def test_forbidden_file(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.touch(mode=0)
+    with pytest.raises(ModelError, match="may not be read"):
+        load(path)
+
+
+def test_byte_order_mark_is_accepted(tmp_path: Path) -> None:
+    path = tmp_path / "model.toml"
+    path.write_text(FOUR_BAR, encoding="utf-8-sig")
+    assert load(path) == loads(FOUR_BAR)
+
+
+def test_examples_load_by_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    names = examples("linkage")
+    assert names
+    for name, title in names.items():
+        assert load(name).title == title
+
+
+def test_near_names_of_examples() -> None:
+    with pytest.raises(ModelError, match="did you mean 'yamashita-1'"):
+        load("yamashita-11")
+
+
+def test_a_file_goes_before_an_example(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("yamashita-1").write_text(FOUR_BAR)
+    assert load("yamashita-1").title == "Four-bar"
+
+
+def complaint(text: str) -> str:
+    try:
+        loads(text)
+    except EquipoiseError as error:
+        return str(error)
+    return ""
+
+
+@given(st.data())
+def test_damaged_files_never_give_a_traceback(data: st.DataObject) -> None:
+    lines = EVERYTHING.splitlines()
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(lines) - 1))
+        begin = data.draw(st.integers(0, len(lines[at])))
+        end = data.draw(st.integers(begin, len(lines[at])))
+        tokens = st.sampled_from(['"', "[", "]", "{}", "1", "nan", "true", '"1 mm"', "[[x]]", "."])
+        with_ = data.draw(st.just("") | tokens | st.text(max_size=3))
+        lines[at] = lines[at][:begin] + with_ + lines[at][end:]
+    assert "\n" not in complaint("\n".join(lines))
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=5),
+        lambda inner: (
+            st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=4), inner, max_size=3)
+        ),
+        max_leaves=6,
+    ),
+    st.data(),
+)
+def test_any_value_anywhere_is_refused_in_one_sentence(value: object, data: st.DataObject) -> None:
+    import tomllib
+
+    import tomli_w
+
+    content = tomllib.loads(EVERYTHING)
+    place: object = content
+    while True:
+        keys = list(place) if isinstance(place, dict) else range(len(place))  # type: ignore
+        key = data.draw(st.sampled_from(keys))
+        inner = place[key]  # type: ignore[index]
+        if not isinstance(inner, dict | list) or data.draw(st.booleans()):
+            place[key] = value  # type: ignore[index]
+            break
+        place = inner
+    try:
+        text = tomli_w.dumps(content)
+    except (TypeError, ValueError):  # what TOML cannot hold
+        return
+    assert "\n" not in complaint(text)

@@ -1,0 +1,214 @@
+"""Writing files of tools: what is read again is exactly what was written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields, is_dataclass, replace
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.model import Hand, Impedance, Tool
+from equipoise.handheld.shaft import Section
+from equipoise.mechanism.model import LoadTable, Machine
+from equipoise.schema import examples, load
+from equipoise.schema.tables import format_impedance, read_impedance
+from equipoise.schema.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
+from unit.schema.tool_samples import EVERY_TOOL, TOOL
+
+TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")
+
+
+TOGETHER = (
+    ("length", "start", "stop", "position", "low", "high"),
+    ("outer_diameter", "inner_diameter"),
+    ("speed", "speeds", "idling", "racing"),
+)
+BOUNDED = ("poisson_ratio", "loss_factor", "duration")
+
+
+def changed(value: Any, factor: Callable[[str], float], name: str = "") -> Any:
+    """Return the same structure with other numbers, those of one name by one factor."""
+    if isinstance(value, float):
+        return value * factor(name)
+    if isinstance(value, tuple):
+        return tuple(changed(item, factor, name) for item in value)
+    if is_dataclass(value) and not isinstance(value, type | Machine):
+        new = {f.name: changed(getattr(value, f.name), factor, f.name) for f in fields(value)}
+        return replace(value, **new)
+    return value
+
+
+def held_by(*tables: Impedance) -> Tool:
+    """A tool with a hand of such impedances."""
+    return loads_tool(TOOL).with_station("handle", hand=Hand(impedance=tables))
+
+
+def shaken_by(machine: Machine, file: str = "") -> Tool:
+    """A tool that a linkage shakes."""
+    tool = loads_tool(TOOL)
+    (force,) = tool.excitations
+    return replace(tool, excitations=(replace(force, force=None, linkage=machine, file=file),))
+
+
+# -- text ------------------------------------------------------------------------------------------
+
+
+def test_a_file_is_written_as_people_write_it() -> None:
+    text = TOOL.replace('mass = "3.6 kg"', 'mass = "3.6 kg"\ninertia = "2500 kg mm^2"')
+    assert dumps_tool(loads_tool(text)) == text
+
+
+def test_everything_survives() -> None:
+    tool = loads_tool(EVERY_TOOL)
+    assert loads_tool(dumps_tool(tool)) == tool
+    assert dumps_tool(loads_tool(dumps_tool(tool))) == dumps_tool(tool)
+
+
+@pytest.mark.parametrize("name", examples("tool"))
+def test_examples_survive(name: str) -> None:
+    tool = load_tool(name)
+    assert loads_tool(dumps_tool(tool)) == tool
+
+
+@given(st.data())
+@settings(max_examples=40)
+def test_random_edits_survive(data: st.DataObject) -> None:
+    factors: dict[str, float] = {}
+
+    def factor(name: str) -> float:
+        if name not in factors:
+            most = 1.0 if name in BOUNDED else 100.0
+            same = next((names for names in TOGETHER if name in names), (name,))
+            factors.update(dict.fromkeys(same, data.draw(st.floats(0.01, most) | st.just(1.0))))
+        return factors[name]
+
+    tool = changed(loads_tool(EVERY_TOOL), factor)
+    assert loads_tool(dumps_tool(tool)) == tool
+
+
+size = st.floats(1e-20, 1e20)
+pairs = st.tuples(size | st.just(0.0), size | st.just(0.0))
+
+
+@given(pairs, pairs, pairs, size, st.text(max_size=5).filter(str.isprintable))
+def test_any_numbers_and_names_survive(
+    inertia: tuple[float, float],
+    stiffness: tuple[float, float],
+    damping: tuple[float, float],
+    mass: float,
+    name: str,
+) -> None:
+    assume(name.strip())
+    tool = loads_tool(TOOL)
+    station = replace(
+        tool.stations[0], name=name, mass=mass, inertia=inertia, rotational_stiffness=stiffness
+    )
+    harnessed = replace(tool.stations[1], name=f"{name}2", stiffness=stiffness, damping=damping)
+    shaken = replace(tool.excitations[0], station=name, phase=mass, ratio=-mass)
+    tool = replace(tool, stations=(station, harnessed), excitations=(shaken,))
+    try:
+        text = dumps_tool(tool)
+        text.encode()
+    except UnicodeEncodeError:  # half of a surrogate pair is no text
+        return
+    assert loads_tool(text) == tool
+
+
+def test_nothing_is_written_that_a_file_cannot_tell() -> None:
+    tool = loads_tool(TOOL)
+    profile = Section(980.0, 2.3, shear_stiffness=1e6)
+    with pytest.raises(ModelError, match=r"^shaft: a file cannot tell shear_stiffness"):
+        dumps_tool(replace(tool, shaft=replace(tool.shaft, profile=profile)))
+
+
+def test_what_has_no_file_is_not_dumped() -> None:
+    with pytest.raises(ModelError, match=r"^excitations\[1\].linkage: has no file; save"):
+        dumps_tool(shaken_by(load("scotch-yoke")))
+    with pytest.raises(ModelError, match=r"\[2\].hand.impedance: has no file; save the tool"):
+        dumps_tool(held_by(replace(TABLE, file="")))
+    with pytest.raises(ModelError, match=r"hand.impedance.lateral: has no file; save the tool"):
+        dumps_tool(held_by(TABLE, replace(TABLE, file="")))
+    assert 'hand.impedance = "hand.csv"\n' in dumps_tool(held_by(TABLE))
+    assert 'linkage = "engine.toml"\n' in dumps_tool(shaken_by(load("scotch-yoke"), "engine.toml"))
+
+
+def test_an_example_that_was_changed_is_not_dumped() -> None:
+    lighter = load("scotch-yoke").with_link("yoke", mass=1.0)
+    with pytest.raises(ModelError, match="not that of the example 'scotch-yoke' any more; save"):
+        dumps_tool(shaken_by(lighter, "scotch-yoke"))
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+
+def saved(tool: Tool, folder: Path) -> list[str]:
+    """Save a tool; the names of its files, after reading them again."""
+    path = folder / "a.toml"
+    save_tool(tool, path)
+    written = sorted(folder.iterdir())
+    assert sorted(files_of_tool(tool, path)) == written
+    assert load_tool(path) == tool
+    return [file.name for file in written]
+
+
+def test_saving_and_loading(tmp_path: Path) -> None:
+    assert saved(loads_tool(EVERY_TOOL), tmp_path) == ["a.toml"]
+
+
+def test_impedances_are_saved_beside(tmp_path: Path) -> None:
+    names = saved(held_by(TABLE, replace(TABLE, reactance=(0.0, 1.0, 2.0))), tmp_path)
+    assert names == ["a.impedance-1.csv", "a.impedance-2.csv", "a.toml"]
+
+
+def test_linkages_are_saved_beside(tmp_path: Path) -> None:
+    lighter = load("scotch-yoke").with_link("yoke", mass=1.0)
+    table = LoadTable((0.0, pi), ((1.0, 2.0), (0.0, 1.0)))
+    (load_,) = load("slider-crank-engine").loads
+    loaded = replace(load("slider-crank-engine"), loads=(replace(load_, force=None, table=table),))
+    tool = shaken_by(lighter, "scotch-yoke")
+    (first,) = tool.excitations
+    second = replace(first, name="second", linkage=loaded)
+    third = replace(first, name="third", linkage=load("scotch-yoke"))
+    assert saved(replace(tool, excitations=(first, second, third)), tmp_path) == [
+        "a.linkage-1.toml",
+        "a.linkage-2.load-1.csv",
+        "a.linkage-2.toml",
+        "a.toml",
+    ]
+
+
+def test_a_file_that_would_hide_an_example(tmp_path: Path) -> None:
+    (tmp_path / "scotch-yoke").write_text("something else")
+    save_tool(shaken_by(load("scotch-yoke"), "scotch-yoke"), tmp_path / "a.toml")
+    assert (tmp_path / "a.linkage-1.toml").is_file()
+    assert load_tool(tmp_path / "a.toml").excitations[0].linkage == load("scotch-yoke")
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("missing/tool.toml", "cannot be written"), (".", "this is a directory")],
+)
+def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) -> None:
+    with pytest.raises(UsageError, match=words):
+        save_tool(loads_tool(TOOL), tmp_path / name)
+    assert not list(tmp_path.iterdir())
+
+
+numbers = st.lists(size, min_size=2, max_size=5, unique=True)
+
+
+@given(numbers.map(sorted), st.lists(size.map(lambda x: -x) | size, min_size=5, max_size=5))
+def test_random_impedances_survive(
+    tmp_path_factory: pytest.TempPathFactory, frequency: list[float], values: list[float]
+) -> None:
+    rows = len(frequency)
+    table = Impedance(tuple(frequency), tuple(map(abs, values[:rows])), tuple(values[:rows]))
+    folder = tmp_path_factory.getbasetemp()
+    (folder / "random-hand.csv").write_text(format_impedance(table))
+    assert read_impedance("random-hand.csv", folder) == table

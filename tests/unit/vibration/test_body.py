@@ -1,0 +1,375 @@
+"""The support as a rigid body: mass, what turns with it, and how its mounts share the weight."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+import equipoise as eq
+from equipoise.errors import ModelError
+from equipoise.mechanism.support import unit_vector
+from equipoise.vibration.body import Body, at_rest, moved, rigid_mass, skewed, turning_stiffness
+from equipoise.vibration.linear import Linear
+from unit.vibration.build import Array, Gauge, Mount, block, body_of, cart, close, springs
+
+G = 9.80665
+SEEDS = pytest.mark.parametrize("seed", range(4))
+
+
+def cloud(rng: np.random.Generator) -> tuple[Array, Array]:
+    """Draw some mass points: masses (5,) and places (5, 3)."""
+    return rng.uniform(0.5, 3, 5), rng.normal(size=(5, 3))
+
+
+def kinetic_energy(masses: Array, places: Array, pole: Array, rate: Array) -> float:
+    """Of points that move with a rigid body: v + w x (p - pole)."""
+    velocity = rate[:3] + np.cross(rate[3:], places - pole)
+    return float(np.sum(masses * np.sum(velocity**2, axis=1)) / 2)
+
+
+def tensor(masses: Array, places: Array) -> tuple[float, Array, Array]:
+    """Return mass, centre of mass, and inertia tensor there."""
+    mass = float(np.sum(masses))
+    center = masses @ places / mass
+    arms = places - center
+    squares = np.sum(masses * np.sum(arms**2, axis=1))
+    return mass, center, squares * np.eye(3) - (arms.T * masses) @ arms
+
+
+# -- mass ------------------------------------------------------------------------------------------
+
+
+@SEEDS
+def test_mass_matrix_is_that_of_kinetic_energy(seed: int) -> None:
+    """A body of mass points, as moments and products of inertia, about a reference off its centre.
+
+    Products are the integrals of x y, y z and z x themselves, without a minus sign.
+    """
+    rng = np.random.default_rng(seed)
+    masses, places = cloud(rng)
+    mass, center, inertia = tensor(masses, places)
+    body = body_of(
+        mass=mass,
+        center_of_mass=tuple(center),
+        inertia=tuple(np.diag(inertia)),
+        products=(-inertia[0, 1], -inertia[1, 2], -inertia[2, 0]),
+        freedoms=("roll", "yaw", "pitch"),
+        pivot=tuple(rng.normal(size=2)),
+    )
+    assert body.reference[2] == 0
+    for rate in rng.normal(size=(5, 6)):
+        wanted = kinetic_energy(masses, places, body.reference, rate)
+        assert rate @ body.mass @ rate / 2 == pytest.approx(wanted)
+
+
+@SEEDS
+def test_rigid_mass_against_kinetic_energy(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    masses, places = cloud(rng)
+    mass, center, inertia = tensor(masses, places)
+    pole = rng.normal(size=3)
+    matrix = rigid_mass(mass, center - pole, inertia)
+    np.testing.assert_allclose(matrix, matrix.T)
+    rate = rng.normal(size=6)
+    wanted = kinetic_energy(masses, places, pole, rate)
+    assert rate @ matrix @ rate / 2 == pytest.approx(wanted)
+
+
+@SEEDS
+def test_moved_mass_matrix(seed: int) -> None:
+    """About a point from which the old one lies at an arm: as if made there from the start."""
+    rng = np.random.default_rng(seed)
+    _, center, inertia = tensor(*cloud(rng))
+    arm = rng.normal(size=3)
+    here = rigid_mass(2.5, center, inertia)
+    np.testing.assert_allclose(moved(here, arm), rigid_mass(2.5, center + arm, inertia), atol=1e-13)
+    np.testing.assert_allclose(moved(moved(here, arm), -arm), here, atol=1e-12)
+
+
+def test_skewed() -> None:
+    rng = np.random.default_rng(0)
+    arm, vector = rng.normal(size=(2, 3))
+    np.testing.assert_allclose(skewed(arm) @ vector, np.cross(arm, vector))
+
+
+def test_pivot_inertia_is_about_the_pivot() -> None:
+    about_center = body_of(pivot=(0.3, 0.4), inertia=(0.4,))
+    about_pivot = body_of(pivot=(0.3, 0.4), inertia=(), pivot_inertia=0.4 + 10 * 0.25)
+    np.testing.assert_allclose(about_pivot.mass, about_center.mass)
+    assert about_pivot.mass[5, 5] == pytest.approx(2.9)
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def test_wrench_does_the_work_of_its_force() -> None:
+    """(f, r x f) times a velocity of the body is f times the velocity of its point."""
+    body = body_of(center_of_mass=(0.2, -0.1, 0.3))
+    rng = np.random.default_rng(0)
+    force, point, rate = rng.normal(size=3), rng.normal(size=3), rng.normal(size=6)
+    velocity = rate[:3] + np.cross(rate[3:], point - body.reference)
+    assert body.wrench(force, point) @ rate == pytest.approx(float(force @ velocity))
+
+
+@pytest.mark.parametrize("axis", ["roll", "yaw", "pitch"])
+def test_rows_read_displacements_and_rotations(axis: str) -> None:
+    body = body_of()
+    rate = np.arange(1.0, 7.0)
+    turning = body.row(Gauge(axis=axis)) @ rate
+    assert turning == {"roll": 4, "yaw": 5, "pitch": 6}[axis]
+    gauge = Gauge((0.5, 0.3, -0.2), direction=(1.0, 2.0, -2.0))
+    velocity = rate[:3] + np.cross(rate[3:], [0.5, 0.3, -0.2])
+    assert body.row(gauge) @ rate == pytest.approx(float(velocity @ [1, 2, -2]) / 3)
+
+
+def second_differences(potential: Callable[[Array], float], count: int, h: float = 1e-3) -> Array:
+    """Return the matrix (count, count) of second derivatives at 0.
+
+    Central differences of 2nd order miss by h^2 / 12 of the fourth derivatives, 1e-7 of them.
+    """
+    steps = h * np.eye(count)
+    found = np.empty((count, count))
+    for j, one in enumerate(steps):
+        for k, other in enumerate(steps):
+            corners = [a * b * potential(a * one + b * other) for a in (1, -1) for b in (1, -1)]
+            found[j, k] = sum(corners) / (4 * h * h)
+    return found
+
+
+@SEEDS
+def test_turning_stiffness_against_finite_rotations(seed: int) -> None:
+    """Second derivatives of -f . R b by the rotation vector of R."""
+    force, arm = np.random.default_rng(seed).normal(size=(2, 3))
+
+    def potential(turn: Array) -> float:
+        return float(-force @ (Rotation.from_rotvec(turn).apply(arm) - arm))
+
+    found = turning_stiffness(force, arm)
+    np.testing.assert_allclose(found[3:, 3:], second_differences(potential, 3), atol=3e-6)
+    assert not np.any(found[:3]) and not np.any(found[:, :3])
+
+
+def potential_of(machine: eq.Machine) -> Callable[[Array], float]:
+    """Energy of mounts and weights of a support that has moved far, linkages where they are on
+    average."""
+    linear = Linear.of(machine, "moment")
+    body, rest = linear.body, linear.rest
+
+    def potential(place: Array) -> float:
+        turn = Rotation.from_rotvec(place[3:])
+
+        def displaced(point: Array) -> Array:
+            arm = np.asarray(point) - body.reference
+            return np.asarray(place[:3] + turn.apply(arm) - arm)
+
+        total = -sum(float(force @ displaced(point)) for force, point in linear.excitation.weights)
+        for name, mount in body.support.mounts.items():
+            if mount.point is None:
+                row = body.row(mount)
+                total += mount.torsional_stiffness * float(row @ place) ** 2 / 2
+                total -= rest.preload[name] * float(row @ place)
+                continue
+            along = float(np.array(unit_vector(mount.direction)) @ displaced(np.array(mount.point)))
+            total += mount.stiffness * along**2 / 2 - rest.preload[name] * along
+        return total
+
+    return potential
+
+
+@pytest.mark.parametrize("machine", [springs(), cart()], ids=["planar", "spatial"])
+def test_stiffness_is_that_of_the_potential(machine: eq.Machine) -> None:
+    """Mounts keep their direction, so do weights; preloads and weights stiffen by how they turn."""
+    linear = Linear.of(machine, "moment")
+    potential, free = potential_of(machine), linear.body.free
+
+    def along_free(part: Array) -> float:
+        place = np.zeros(6)
+        place[free] = part
+        return potential(place)
+
+    close(linear.stiffness, second_differences(along_free, len(free)), 1e-6)
+    slopes = [(along_free(step) - along_free(-step)) / 2e-4 for step in 1e-4 * np.eye(len(free))]
+    # At rest the potential has no slope; differences of it leave its size times 1e-16 / 1e-4.
+    assert np.max(np.abs(slopes)) < 1e-5
+    np.testing.assert_allclose(linear.rest.unbalance, 0, atol=1e-10)
+
+
+# -- weight on its mounts --------------------------------------------------------------------------
+
+
+def preloads(
+    places: dict[str, float], one_sided: tuple[str, ...] = (), center: float = 0.0, **more: float
+) -> dict[str, float]:
+    """Return what equal springs under a beam of 10 kg at places along x bear, in units of its
+    weight."""
+    mounts = {
+        name: Mount(
+            (x, -0.3, 0.0),
+            stiffness=more.get(name, 5e3),
+            one_sided=name in one_sided,
+        )
+        for name, x in places.items()
+    }
+    linear = Linear.of(block(center_of_mass=(center, 0.0, 0.0), mounts=mounts), "moment")
+    np.testing.assert_allclose(linear.rest.unbalance, 0, atol=1e-9)
+    return {name: force / (10 * G) for name, force in linear.rest.preload.items()}
+
+
+def test_two_springs_share_by_the_lever() -> None:
+    found = preloads({"a": 0.0, "b": 1.0}, center=0.3, a=1e3, b=7e4)
+    assert found == pytest.approx({"a": 0.7, "b": 0.3})
+
+
+def test_three_equal_springs() -> None:
+    """F = W (1 / n + e x / sum x^2) about their middle."""
+    found = preloads({"a": -0.5, "b": 0.0, "c": 0.5}, center=0.1)
+    assert found == pytest.approx({"a": 1 / 3 - 0.1, "b": 1 / 3, "c": 1 / 3 + 0.1})
+
+
+def test_four_equal_springs() -> None:
+    places = {"a": -0.6, "b": -0.2, "c": 0.2, "d": 0.6}
+    wanted = {name: 0.25 - 0.3 * x / 0.8 for name, x in places.items()}
+    assert preloads(places, center=-0.3) == pytest.approx(wanted)
+
+
+def test_a_stiff_spring_between_two_bears_more() -> None:
+    """Springs 1 : 4 : 1 sink alike under a weight in the middle."""
+    found = preloads({"a": -1.0, "b": 0.0, "c": 1.0}, a=1e3, b=4e3, c=1e3)
+    assert found == pytest.approx({"a": 1 / 6, "b": 4 / 6, "c": 1 / 6})
+
+
+def test_a_one_sided_mount_that_would_pull_lets_go() -> None:
+    """Of three springs under a weight far out the farthest is pulled; without it the lever holds.
+
+    The beam then tilts and leaves it by a gap, told as stiffness times gap.
+    """
+    places, center = {"a": -0.5, "b": 0.0, "c": 0.5}, 0.4
+    pulled = preloads(places, center=center)
+    assert pulled["a"] == pytest.approx(1 / 3 - 0.4)
+    found = preloads(places, ("a",), center=center)
+    # b sinks by 0.2, c by 0.8: the beam at a stands up by 0.4.
+    assert found == pytest.approx({"a": -0.4, "b": 0.2, "c": 0.8})
+    held = preloads(places, ("b", "c"), center=center)
+    assert held == pytest.approx(pulled)
+
+
+def test_letting_go_counts_for_the_stiffness_of_small_motion() -> None:
+    mounts = {
+        name: Mount((x, 0.0, 0.0), stiffness=5e3, damping=10.0, one_sided=True)
+        for name, x in (("a", -0.5), ("b", 0.0), ("c", 0.5))
+    }
+    machine = block(center_of_mass=(0.4, 0.0, 0.0), mounts=mounts, freedoms=("heave",))
+    assert Linear.of(machine, "moment").stiffness == pytest.approx(3 * 5e3)
+    machine = machine.with_support(freedoms=("heave", "pitch"))
+    linear = Linear.of(machine, "moment")
+    assert linear.stiffness[0, 0] == pytest.approx(2 * 5e3)
+    assert linear.damping[0, 0] == pytest.approx(2 * 10)
+    assert not linear.rest.carries("a", mounts["a"])
+    assert linear.rest.carries("b", mounts["b"])
+
+
+def test_given_preloads_are_kept_and_the_others_bear_the_rest() -> None:
+    mounts = {
+        "lift": Mount((0.0, 0.0, 0.0), stiffness=1e3, preload=40.0),
+        "a": Mount((-0.5, 0.0, 0.0), stiffness=5e3),
+        "b": Mount((0.5, 0.0, 0.0), stiffness=5e3),
+    }
+    rest = Linear.of(block(mounts=mounts), "moment").rest
+    each = (10 * G - 40) / 2
+    assert rest.preload == pytest.approx({"lift": 40, "a": each, "b": each})
+    np.testing.assert_allclose(rest.unbalance, 0, atol=1e-10)
+
+
+def test_given_preloads_may_leave_a_load_over() -> None:
+    """Then the machine settles where the linear response has its mean: 1.93 N over 1 kN/m."""
+    mounts = {
+        "a": Mount((-0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
+        "b": Mount((0.5, 0.0, 0.0), stiffness=500.0, preload=50.0),
+    }
+    linear = Linear.of(block(mounts=mounts), "moment")
+    assert linear.rest.unbalance[1] == pytest.approx(100 - 10 * G)
+    assert linear.motion(10.0).mean[1] == pytest.approx((100 - 10 * G) / 1000)
+
+
+def test_a_pivot_bears_the_weight() -> None:
+    """Only the moment about the pivot is shared."""
+    mounts = {"a": Mount((1.0, 0.0, 0.0), stiffness=1e3)}
+    linear = Linear.of(block(pivot=(-1.0, 0.0), mounts=mounts), "moment")
+    assert linear.rest.preload["a"] == pytest.approx(5 * G)
+
+
+def test_a_torsional_mount_bears_a_moment() -> None:
+    mounts = {"turn": Mount(axis="pitch", torsional_stiffness=1e3)}
+    linear = Linear.of(block(pivot=(-1.0, 0.0), mounts=mounts), "moment")
+    assert linear.rest.preload["turn"] == pytest.approx(10 * G)
+
+
+def test_weight_in_space() -> None:
+    """Equal feet under a plane: W (1 / 4 + e x / sum x^2 + f z / sum z^2) about their middle."""
+    places = {f"{x:+g} {z:+g}": (x, 0.0, z) for x in (-0.5, 0.5) for z in (-0.5, 0.5)}
+    mounts = {name: Mount(place, stiffness=8e3) for name, place in places.items()}
+    values = {"inertia": (1.0, 1.0, 1.0), "freedoms": ("heave", "roll", "pitch")}
+    body = block(center_of_mass=(-0.2, 0.2, 0.1), mounts=mounts, **values)
+    wanted = {n: 10 * G * (0.25 - 0.2 * x + 0.1 * z) for n, (x, _, z) in places.items()}
+    assert Linear.of(body, "moment").rest.preload == pytest.approx(wanted)
+
+
+# -- what does not hold ----------------------------------------------------------------------------
+
+
+def refused(words: str, **changes: object) -> None:
+    with pytest.raises(ModelError) as caught:
+        _ = Linear.of(block(**changes), "moment").rest
+    assert caught.value.where == "support.mounts"
+    assert caught.value.what == words
+
+
+@pytest.mark.parametrize(
+    ("mounts", "coordinates"),
+    [
+        ({}, "heave"),
+        ({"a": Mount((0.0, 0.0, 0.0), damping=9.0)}, "heave"),
+        ({"a": Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=9.0)}, "heave"),
+        ({"a": Mount((0.5, 0.0, 0.0), stiffness=9.0, one_sided=True)}, "heave and pitch"),
+        ({"a": Mount((0.5, 0.0, 0.0), stiffness=9e3)}, "heave and pitch"),
+        ({"a": Mount(axis="pitch", torsional_stiffness=9.0)}, "heave"),
+    ],
+)
+def test_mounts_that_do_not_carry_the_weight(mounts: dict[str, Mount], coordinates: str) -> None:
+    refused(
+        f"they do not carry the weight in {coordinates}; add a mount there, or give the mounts a "
+        "preload",
+        mounts=mounts,
+    )
+
+
+def test_without_gravity_nothing_needs_to_be_carried() -> None:
+    machine = eq.Machine(**{**as_values(block()), "gravity": (0.0, 0.0)})
+    rest = Linear.of(machine, "moment").rest
+    assert not any(rest.preload.values())
+
+
+def as_values(machine: eq.Machine) -> dict[str, object]:
+    return {name: value for name, value in vars(machine).items() if not name.startswith("_")}
+
+
+def test_no_support() -> None:
+    with pytest.raises(ModelError) as caught:
+        _ = Body(eq.load("yamashita-1")).support
+    assert str(caught.value) == (
+        "support: the machine stands on solid ground; add a table [support] with its mass, mounts "
+        "and gauges"
+    )
+
+
+def test_at_rest_with_weights_of_any_direction() -> None:
+    """A force aside is borne by the mount along it."""
+    body = body_of(mounts={
+        "up": Mount((0.0, 0.0, 0.0), stiffness=1e3),
+        "along": Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=1e3),
+    })  # fmt: skip
+    rest = at_rest(body, [(np.array([7.0, -5.0, 0.0]), np.zeros(3))])
+    assert rest.preload == pytest.approx({"up": 5, "along": -7})

@@ -1,0 +1,236 @@
+"""Which model answers, and what is refused, in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import inf, nan
+from typing import Literal
+
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
+from equipoise.mechanism.motor import Motor, MotorTable
+from equipoise.mechanism.support import UP
+from equipoise.vibration.exact import solve_exact
+from equipoise.vibration.forced import chosen_model, respond, usual_step
+from equipoise.vibration.response import MODELS, Model
+from equipoise.vibration.sweep import sweep_speed
+from equipoise.vibration.transient import from_rest
+from unit.vibration.build import SPEED, Mount, block, cart, rig, springs
+
+LINE = Motor(26.0, 6.0)
+BARE = eq.load("yamashita-1")
+DRIVEN = BARE.with_drive(motor=LINE)
+SPACE = (
+    "the model {} is for motion in the plane of the drawing; leave out sway and roll and yaw, or "
+    "choose moment"
+)
+
+
+def test_the_usual_model() -> None:
+    """The paper's own, (59), for its own rig; all of the moment where that is not all."""
+    assert chosen_model(rig(), None, False) == "linear"
+    assert chosen_model(springs(), None, False) == "moment"
+    assert chosen_model(cart(), None, False) == "moment"
+    assert chosen_model(rig().with_drive(motor=LINE), None, True) == "exact"
+    assert chosen_model(DRIVEN, None, True) == "exact"
+
+
+def test_the_linear_step_beside_a_model() -> None:
+    for model, step in (("exact", "moment"), ("moment", "moment"), ("coupled", "torque")):
+        assert usual_step(rig(), model) == step
+    assert (usual_step(rig()), usual_step(springs())) == ("linear", "moment")
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_the_model_asked_for(model: str) -> None:
+    for machine in (rig(), springs()):
+        assert chosen_model(machine, model, False) == model
+
+
+def refused(error: EquipoiseError, machine: eq.Machine, model: str | None, drive: bool) -> None:
+    with pytest.raises(type(error)) as caught:
+        respond(machine, SPEED, model, drive)  # type: ignore[arg-type]
+    assert str(caught.value) == str(error)
+
+
+@pytest.mark.parametrize(
+    ("machine", "model", "drive", "error"),
+    [
+        (rig(), "whole", False,
+         UsageError("got the model 'whole'; give one of linear, torque, moment, coupled, exact")),
+        (BARE, None, False,
+         ModelError("support", "the machine stands on solid ground; add a table [support] with its "
+                    "mass, mounts and gauges")),
+        (DRIVEN, "exact", False,
+         ModelError("support", "the machine stands on solid ground; add a table [support] with its "
+                    "mass, mounts and gauges")),
+        (rig(), None, True,
+         ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")),
+        (BARE, None, True,
+         ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")),
+        (rig().with_drive(motor=LINE), "linear", True,
+         UsageError("the speed follows from the motor in the model exact, not in linear")),
+        (cart(), "exact", False, ModelError("support.freedoms", SPACE.format("exact"))),
+        (cart(), "coupled", False, ModelError("support.freedoms", SPACE.format("coupled"))),
+        (cart().with_drive(motor=LINE), None, True,
+         ModelError("support.freedoms", SPACE.format("exact"))),
+    ],
+)  # fmt: skip
+def test_refusals(
+    machine: eq.Machine, model: str | None, drive: bool, error: EquipoiseError
+) -> None:
+    refused(error, machine, model, drive)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_crank_that_stands_still(model: Model) -> None:
+    words = "a crank that stands still shakes nothing; give another speed"
+    with pytest.raises(UsageError) as asked:
+        respond(rig(), 0.0, model)
+    assert str(asked.value) == f"got a speed of 0; {words}"
+    with pytest.raises(ModelError) as given:
+        respond(rig().with_drive(speed=0.0), None, model)
+    assert str(given.value) == f"drive.speed: got 0; {words}"
+
+
+def test_a_speed_that_the_motor_sets_itself() -> None:
+    free = rig().with_drive(motor=replace(LINE, mean_speed="free"))
+    words = "the speed follows from the motor and cannot be asked for"
+    for call in (
+        lambda: respond(free, 20.0, drive=True),
+        lambda: from_rest(free, 1.0, 20.0, drive=True),
+        lambda: sweep_speed(free, 10.0, 20.0, drive=True),
+    ):
+        with pytest.raises(ModelError, match=words):
+            call()
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("speed", [nan, inf, -inf])
+def test_speeds_that_are_no_numbers(model: str, speed: float) -> None:
+    with pytest.raises(UsageError, match=r"for speed; give a finite number in SI units"):
+        respond(rig(), speed, model)  # type: ignore[arg-type]
+
+
+def test_speed_of_the_machine_is_the_usual_one() -> None:
+    assert respond(rig()).speed == rig().drive.speed
+    assert respond(rig(), 7.0).speed == 7
+
+
+def test_missing_masses_are_all_named() -> None:
+    links = {name: eq.Link(dict(link.points)) for name, link in BARE.links.items()}
+    machine = replace(rig(), links=links)
+    for call in (
+        lambda: respond(machine),
+        lambda: respond(machine, model="exact"),
+        lambda: sweep_speed(machine, 3.0, 9.0),
+        lambda: from_rest(machine, 1.0),
+    ):
+        with pytest.raises(MassError) as caught:
+            call()
+        for name in links:
+            assert name in str(caught.value)
+
+
+def test_mounts_that_do_not_hold_the_machine() -> None:
+    machine = springs(mounts={"a": Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=1e3)})
+    for model in MODELS:
+        with pytest.raises(ModelError, match=r"they do not carry the weight in .*heave"):
+            respond(machine, SPEED, model)
+
+
+def test_a_motor_that_is_too_weak_says_so() -> None:
+    weak = rig().with_drive(motor=Motor(26.0, 6.0, mean_speed="free"))
+    assert respond(weak, drive=True).speed > 0
+    table = MotorTable((0.0, 30.0), (1.0, 2.0))
+    rising = eq.Drive("crank", SPEED, motor=Motor(table=table))
+    with pytest.raises(EquipoiseError, match=r"drive\.motor: its torque nowhere falls through"):
+        respond(replace(rig(), drive=rising), drive=True)
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_every_model_answers_for_a_support_without_linkage(model: Model) -> None:
+    """Links that weigh nothing shake nothing."""
+    feet = {
+        name: Mount((x, 0.0, 0.0), stiffness=5e3, damping=9.0) for name, x in (("a", -1), ("b", 1))
+    }
+    side = Mount((0.0, 0.0, 0.0), direction=0.0, stiffness=5e3, damping=9.0)
+    found = respond(block(mounts={**feet, "side": side}), SPEED, model)
+    for gauge in found.gauges.values():
+        assert float(gauge.displacement.peak_to_peak) < 1e-12
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_told_values(model: str) -> None:
+    values = respond(rig(), SPEED, model).to_dict()  # type: ignore[arg-type]
+    assert values["model"] == model
+    assert values["speed"] == SPEED
+    assert set(values["gauges"]) == {"gauge"}
+    assert set(values["mounts"]) == {"spring"}
+    gauge = values["gauges"]["gauge"]
+    assert gauge["max"] - gauge["min"] == pytest.approx(gauge["peak_to_peak"])
+    assert len(gauge["orders"]) == len(gauge["harmonics"]) == len(gauge["phases"])
+    assert ("multipliers" in values) == (model in {"coupled", "exact"})
+    assert ("energy" in values) == ("joints" in values) == (model == "exact")
+
+
+def test_stability() -> None:
+    """Damping makes disturbances die out; without any they neither grow nor die."""
+    assert respond(rig(), SPEED, "linear").stable is None
+    assert respond(rig(), SPEED, "exact").stable is True
+    spring = {"s": Mount(axis="pitch", torsional_stiffness=3250.0)}
+    undamped = respond(rig(mounts=spring), SPEED, "exact")
+    assert undamped.notes == ("a disturbance neither grows nor dies out: something is undamped",)
+
+
+@pytest.mark.parametrize("model", ["coupled", "exact"])
+@pytest.mark.parametrize("freedoms", [("surge", "heave"), ("surge", "heave", "pitch")])
+@pytest.mark.parametrize("gravity", [-9.81, -9.80665, 0.0])
+def test_a_coordinate_that_nothing_moves(
+    model: str, freedoms: tuple[str, ...], gravity: float
+) -> None:
+    """A yoke without other masses shakes along x alone: heave and pitch stay where they are."""
+    machine = replace(eq.load("scotch-yoke"), gravity=(0.0, gravity))
+    for link in ("crank", "block"):
+        machine = machine.with_link(link, mass=0.0, inertia=0.0)
+    mounts = {
+        name: Mount((x, 0.0, 0.0), direction, stiffness=4e3, damping=20.0)
+        for name, x, direction in (("l", -0.5, UP), ("r", 0.5, UP), ("a", 0.0, 0.0))
+    }
+    values = {"mass": 10.0, "center_of_mass": (0.0, 0.0, 0.0), "inertia": (0.5,)}
+    machine = machine.with_support(**values, mounts=mounts, freedoms=freedoms)
+    found = respond(machine, 13.0, model).gauges  # type: ignore[arg-type]
+    assert found["surge"].displacement.peak_to_peak > 1e-3
+    assert found["heave"].displacement.peak_to_peak < 1e-3
+
+
+@pytest.mark.parametrize("mean_speed", ["held", "free"])
+@pytest.mark.parametrize("stall_torque", [6.0, 20.0, 60.0])
+def test_on_solid_ground_with_a_motor(
+    mean_speed: Literal["held", "free"], stall_torque: float
+) -> None:
+    """Without a support there is the crank's speed alone, and one multiplier.
+
+    Nothing is lost: free, the motor runs at its no-load speed but for the curve of its torque.
+    """
+    motor = Motor(26.0, stall_torque, mean_speed=mean_speed, inertia=0.02)
+    found = respond(BARE.with_drive(motor=motor), drive=True)
+    wanted = {"held": pytest.approx(SPEED), "free": pytest.approx(26.0, rel=1e-2)}
+    assert found.speed == wanted[mean_speed]
+    assert found.drive.speed is not None
+    assert found.drive.fluctuation > 0.01
+    assert (found.gauges, found.mounts, found.modes) == ({}, {}, ())
+    assert found.multipliers is not None
+    assert found.multipliers.shape == (1,)
+    assert solve_exact(DRIVEN, SPEED, True).system.free == ()
+
+
+def test_a_motor_drives_the_way_that_is_asked_for() -> None:
+    """Whether the speed is the machine's own or given: a motor runs either way."""
+    machine = rig().with_drive(motor=LINE)
+    wanted = respond(machine.with_drive(speed=-17.0), drive=True)
+    found = respond(machine, -17.0, drive=True)
+    assert found.speed == pytest.approx(-17)
+    assert found.drive.fluctuation == pytest.approx(wanted.drive.fluctuation)

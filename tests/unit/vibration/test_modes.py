@@ -1,0 +1,221 @@
+"""Free vibration: closed forms of one and two degrees of freedom, and what does not swing."""
+
+from __future__ import annotations
+
+from math import pi, sqrt
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.vibration.free import vibrate_freely
+from equipoise.vibration.modes import Mode, find_modes
+from unit.vibration.build import Array, Gauge, Mount, block, rig, springs
+
+
+def of(mass: object, damping: object, stiffness: object) -> tuple[Mode, ...]:
+    """Find modes of matrices that may be given as lists or as numbers."""
+    parts = [np.atleast_2d(np.array(part, float)) for part in (mass, damping, stiffness)]
+    return find_modes(*parts)
+
+
+def test_one_mass_on_a_spring() -> None:
+    """w = sqrt(k / m), D = c / (2 sqrt(k m))."""
+    (mode,) = of(2.0, 6.0, 800.0)
+    assert mode.natural_frequency == pytest.approx(20)
+    assert mode.cycles_per_second == pytest.approx(10 / pi)
+    assert mode.damping_ratio == pytest.approx(0.075)
+    assert mode.damped_frequency == pytest.approx(20 * sqrt(1 - 0.075**2))
+    assert mode.eigenvalue == pytest.approx(-1.5 + 1j * mode.damped_frequency)
+    assert mode.shape == pytest.approx([1])
+    assert mode.swings
+
+
+@pytest.mark.parametrize("coupling", [0.01, 30.0, 5e4])
+def test_two_equal_masses(coupling: float) -> None:
+    """In phase at k / m, against each other at (k + 2 k') / m."""
+    k, m = 300.0, 2.0
+    stiffness = [[k + coupling, -coupling], [-coupling, k + coupling]]
+    low, high = of(np.diag([m, m]), np.zeros((2, 2)), stiffness)
+    assert low.natural_frequency == pytest.approx(sqrt(k / m))
+    assert high.natural_frequency == pytest.approx(sqrt((k + 2 * coupling) / m))
+    # Shapes are as good as the frequencies are apart.
+    assert low.shape[0] / low.shape[1] == pytest.approx(1, abs=1e-9)
+    assert high.shape[0] / high.shape[1] == pytest.approx(-1, abs=1e-9)
+    assert [mode.damping_ratio for mode in (low, high)] == pytest.approx([0, 0], abs=1e-12)
+
+
+def test_two_masses_in_a_row() -> None:
+    """Roots of (k1 + k2 - m1 w^2) (k2 - m2 w^2) = k2^2."""
+    m1, m2, k1, k2 = 1.3, 0.4, 500.0, 90.0
+    modes = of(np.diag([m1, m2]), np.zeros((2, 2)), [[k1 + k2, -k2], [-k2, k2]])
+    squares = np.roots([m1 * m2, -m2 * (k1 + k2) - m1 * k2, k1 * k2])
+    wanted = np.sqrt(np.sort(squares))
+    assert [mode.natural_frequency for mode in modes] == pytest.approx(wanted.tolist())
+    for mode in modes:
+        ratio = mode.shape[1] / mode.shape[0]
+        assert ratio == pytest.approx(k2 / (k2 - m2 * mode.natural_frequency**2))
+
+
+def random_matrices(seed: int) -> tuple[Array, Array, Array]:
+    rng = np.random.default_rng(seed)
+    parts = [rng.normal(size=(3, 3)) for _ in range(3)]
+    mass, damping, stiffness = (part @ part.T + np.eye(3) / 5 for part in parts)
+    return mass, damping / 10, 200 * stiffness
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_modes_meet_their_equation(seed: int) -> None:
+    """(M l^2 + C l + K) shape = 0, with any damping; the largest part of a shape is 1."""
+    mass, damping, stiffness = random_matrices(seed)
+    modes = find_modes(mass, damping, stiffness)
+    assert len(modes) == 3
+    for mode in modes:
+        x = mode.eigenvalue
+        left = (mass * x**2 + damping * x + stiffness) @ mode.shape
+        assert np.max(np.abs(left)) < 1e-9 * np.max(np.abs(stiffness))
+        assert np.max(np.abs(mode.shape)) == pytest.approx(1)
+        assert mode.shape[np.argmax(np.abs(mode.shape))] == pytest.approx(1)
+        assert 0 < mode.damping_ratio < 1
+    frequencies = [mode.natural_frequency for mode in modes]
+    assert frequencies == sorted(frequencies)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_proportional_damping(seed: int) -> None:
+    """C = a M + b K damps each mode by a / (2 w) + b w / 2, and leaves its shape real."""
+    mass, _, stiffness = random_matrices(seed)
+    a, b = 0.4, 1e-3
+    for damped, free in zip(
+        find_modes(mass, a * mass + b * stiffness, stiffness),
+        find_modes(mass, 0 * mass, stiffness),
+        strict=True,
+    ):
+        w = free.natural_frequency
+        assert damped.natural_frequency == pytest.approx(w)
+        assert damped.damping_ratio == pytest.approx(a / (2 * w) + b * w / 2)
+        np.testing.assert_allclose(damped.shape, free.shape, atol=1e-8)
+
+
+def test_overdamped_motion_is_told_twice() -> None:
+    """x'' + 5 x' + 4 x = 0 dies out as exp(-t) and exp(-4 t)."""
+    slow, fast = of(1.0, 5.0, 4.0)
+    assert [slow.eigenvalue, fast.eigenvalue] == pytest.approx([-1, -4])
+    assert not slow.swings and not fast.swings
+    assert slow.damping_ratio == fast.damping_ratio == 1
+
+
+def test_growing_motion() -> None:
+    """An unstable equilibrium has one motion that grows and one that dies out; a negative damper
+    makes a swing grow."""
+    falling = of(1.0, 0.0, -9.0)
+    assert sorted(mode.eigenvalue.real for mode in falling) == pytest.approx([-3, 3])
+    assert sorted(mode.damping_ratio for mode in falling) == pytest.approx([-1, 1])
+    (swinging,) = of(1.0, -0.6, 9.0)
+    assert swinging.damping_ratio == pytest.approx(-0.1)
+    assert swinging.swings
+
+
+def test_free_motion_is_told_once() -> None:
+    """Two masses that only a spring joins: they drift together, and swing at sqrt(k / reduced)."""
+    still, swinging = of(np.diag([2.0, 6.0]), np.zeros((2, 2)), [[90.0, -90.0], [-90.0, 90.0]])
+    assert still.natural_frequency == 0
+    assert still.damping_ratio == 0
+    assert not still.swings
+    assert still.shape[0] == pytest.approx(still.shape[1])
+    assert swinging.natural_frequency == pytest.approx(sqrt(90 / 1.5))
+    assert swinging.shape[0] / swinging.shape[1] == pytest.approx(-3)
+
+
+def test_free_motion_with_drag() -> None:
+    """Without a spring a damper still slows down: one motion stands, the other dies out."""
+    standing, slowing = of(2.0, 6.0, 0.0)
+    assert [standing.eigenvalue, slowing.eigenvalue] == pytest.approx([0, -3])
+
+
+def test_nothing_holds_anything() -> None:
+    modes = of(np.diag([1.0, 2.0]), np.zeros((2, 2)), np.zeros((2, 2)))
+    assert [mode.natural_frequency for mode in modes] == [0, 0]
+    assert np.linalg.matrix_rank(np.array([mode.shape for mode in modes])) == 2
+
+
+# -- supports --------------------------------------------------------------------------------------
+
+
+def test_pendulum() -> None:
+    """A body that hangs on its pivot: w^2 = m g l / (I + m l^2)."""
+    mass, arm, inertia = 10.0, 0.7, 0.4
+    hanging = block(pivot=(0.3, 0.2), center_of_mass=(0.3, 0.2 - arm, 0.0))
+    (mode,) = vibrate_freely(hanging).modes
+    wanted = sqrt(mass * 9.80665 * arm / (inertia + mass * arm**2))
+    assert mode.natural_frequency == pytest.approx(wanted)
+    standing = hanging.with_support(center_of_mass=(0.3, 0.2 + arm, 0.0))
+    assert max(m.eigenvalue.real for m in vibrate_freely(standing).modes) == pytest.approx(wanted)
+
+
+def test_spring_that_pulls_aside_stiffens_like_a_string() -> None:
+    """A mount of preload S at a lever l along x that pushes away from the pivot weakens by S l."""
+    base = {"pivot": (0.0, 0.0), "inertia": (2.0,)}
+    turning = {"turn": Mount(axis="pitch", torsional_stiffness=500.0)}
+    pushing = {"push": Mount((0.4, 0.0, 0.0), direction=0.0, stiffness=1.0, preload=200.0)}
+    (plain,) = vibrate_freely(block(**base, mounts=turning)).modes
+    (pushed,) = vibrate_freely(block(**base, mounts={**turning, **pushing})).modes
+    assert plain.natural_frequency == pytest.approx(sqrt(500 / 2))
+    # The force keeps its direction, and its point turns away under it: potential -S l cos phi.
+    assert pushed.natural_frequency == pytest.approx(sqrt((500 + 200 * 0.4) / 2))
+
+
+def test_mass_on_two_springs() -> None:
+    """Heave and pitch of a symmetric body: sqrt(2 k / m) and l sqrt(2 k / I)."""
+    k, arm = 4000.0, 0.5
+    feet = {n: Mount((x, 0.0, 0.0), stiffness=k) for n, x in (("a", -arm), ("b", arm))}
+    found = vibrate_freely(block(freedoms=("heave", "pitch"), mounts=feet))
+    assert found.coordinates == ("heave", "pitch")
+    heave, pitch = found.modes
+    assert heave.natural_frequency == pytest.approx(sqrt(2 * k / 10))
+    assert pitch.natural_frequency == pytest.approx(arm * sqrt(2 * k / 0.4))
+    np.testing.assert_allclose(np.abs([heave.shape, pitch.shape]), np.eye(2), atol=1e-9)
+    assert found.preloads == pytest.approx({"a": 5 * 9.80665, "b": 5 * 9.80665})
+    # Gauges that are not there are the coordinates themselves.
+    assert list(found.gauges) == ["heave", "pitch"]
+
+
+def test_gauges_read_shapes() -> None:
+    """A gauge 0.4 ahead of the centre reads 0.4 of the pitch; one of the rotation reads it all."""
+    feet = {n: Mount((x, 0.0, 0.0), stiffness=4e3) for n, x in (("a", -0.5), ("b", 0.5))}
+    gauges = {"ahead": Gauge((0.4, 0.0, 0.0)), "tilt": Gauge(axis="pitch")}
+    found = vibrate_freely(block(freedoms=("heave", "pitch"), mounts=feet, gauges=gauges))
+    np.testing.assert_allclose(np.abs(found.gauges["ahead"]), [1, 0.4], atol=1e-9)
+    np.testing.assert_allclose(np.abs(found.gauges["tilt"]), [0, 1], atol=1e-9)
+
+
+def test_the_linkage_rides_where_the_step_has_it() -> None:
+    """In (59) and (57) its mass is at A, 1.34 m from O; in the whole moment it is spread."""
+    inertia = 4.9854488 + 25 * 0.75**2
+    linear, torque, moment = (
+        vibrate_freely(rig(), model).modes[0].natural_frequency
+        for model in ("linear", "torque", "moment")
+    )
+    assert linear == torque == pytest.approx(sqrt(3252.81677175 / (inertia + 1.145 * 1.34**2)))
+    assert moment != pytest.approx(linear, rel=1e-3)
+    assert vibrate_freely(rig()).linear.excitation.step == "linear"
+    assert vibrate_freely(springs()).linear.excitation.step == "moment"
+
+
+def test_told_values() -> None:
+    values = vibrate_freely(springs()).to_dict()
+    assert values["model"] == "moment"
+    assert values["coordinates"] == ["surge", "heave", "pitch"]
+    assert len(values["modes"]) == 3
+    assert set(values["modes"][0]["gauges"]) == {"seat", "tilt"}
+    for key in ("mass", "damping", "stiffness"):
+        np.testing.assert_allclose(values[key], np.transpose(values[key]))
+        assert np.shape(values[key]) == (3, 3)
+
+
+def test_refusals() -> None:
+    with pytest.raises(ModelError, match=r"^support: the machine stands on solid ground"):
+        vibrate_freely(eq.load("yamashita-1"))
+    with pytest.raises(UsageError, match="got the model 'whole'; give one of linear, torque"):
+        vibrate_freely(rig(), "whole")

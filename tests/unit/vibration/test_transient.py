@@ -1,0 +1,161 @@
+"""From rest: into the steady state, with a constant speed and with a motor that runs up."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import equipoise as eq
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.motor import Motor
+from equipoise.mechanism.support import Row
+from equipoise.vibration.forced import respond
+from equipoise.vibration.transient import Transient, from_rest
+from unit.vibration.build import DAMPING, PIVOT, SPEED, STIFFNESS, Mount, block, cart, rig
+
+DAMPED = {"s": Mount(axis="pitch", torsional_stiffness=STIFFNESS, torsional_damping=100 * DAMPING)}
+LINE = Motor(26.0, 6.0, inertia=0.002)
+
+
+@pytest.mark.parametrize("speed", [SPEED, -SPEED])
+def test_it_dies_out_into_the_steady_state(speed: float) -> None:
+    """100 times the paper's damping takes 1e-10 of the start in 3 s.
+
+    The rest: 1e-9 of the integration, and 1e-9 by splines of the linkages over 0.25 deg.
+    """
+    machine = rig(mounts=DAMPED).with_rows([Row(), Row(phase=2.0)])
+    found = from_rest(machine, 3.4, speed, samples=1001)
+    late = found.time > 3.0
+    steady = respond(machine, speed, "exact")
+    wanted = steady.gauges["gauge"].displacement.values(found.crank_angle[late])
+    size = float(steady.gauges["gauge"].displacement.peak_to_peak)
+    np.testing.assert_allclose(found.gauges["gauge"][late], wanted, rtol=0, atol=1e-7 * size)
+    force = steady.mounts["s"].force.values(found.crank_angle[late])
+    np.testing.assert_allclose(found.mounts["s"][late], force, rtol=0, atol=1e-6 * np.max(force))
+
+
+def test_it_begins_at_rest_with_the_crank_turning() -> None:
+    found = from_rest(rig(), 1.0, samples=11)
+    np.testing.assert_allclose(found.time, np.linspace(0, 1, 11))
+    np.testing.assert_array_equal(found.states[:, 0], 0)
+    np.testing.assert_allclose(found.crank_speed, SPEED)
+    np.testing.assert_allclose(found.crank_angle, SPEED * found.time, rtol=1e-12, atol=1e-12)
+
+
+def test_free_decay_of_a_body_alone() -> None:
+    """A pendulum beside its equilibrium, with links that weigh nothing, by its own equation."""
+    inertia, arm, damping = 0.4, 0.5, 0.3
+    mounts = {
+        "hinge": Mount(axis="pitch", torsional_damping=damping),
+        "nothing": Mount((0.0, 0.0, 0.0), damping=1e-12, preload=0.0),
+    }
+    center = (PIVOT[0] + arm, 0.0, 0.0)
+    machine = block(pivot=PIVOT, center_of_mass=center, mounts=mounts)
+    found = from_rest(machine, 2.0, samples=81)
+    whole = inertia + 10 * arm**2
+
+    def falling(_: float, y: np.ndarray) -> list[float]:
+        return [y[1], (-10 * 9.80665 * arm * np.cos(y[0]) - damping * y[1]) / whole]
+
+    wanted = solve_ivp(
+        falling, (0, 2), [0.0, 0.0], "DOP853", t_eval=found.time, rtol=1e-11, atol=1e-12
+    )
+    assert np.min(wanted.y[0]) < -2
+    np.testing.assert_allclose(found.states, wanted.y, rtol=0, atol=1e-6)
+
+
+@pytest.fixture(scope="module")
+def run_up() -> Transient:
+    return from_rest(rig(mounts=DAMPED).with_drive(motor=LINE), 4.5, drive=True, samples=3001)
+
+
+def test_a_motor_runs_up_to_the_steady_speed(run_up: Transient) -> None:
+    """Held: the curve is shifted so that the mean speed is that of the drive."""
+    steady = respond(run_up.machine, drive=True)
+    assert run_up.crank_speed[0] == 0
+    turns = np.arange(4, 1, -1) * 2 * pi
+    end = run_up.crank_angle[-1]
+    times = np.interp(end - turns, run_up.crank_angle, run_up.time)
+    # Interpolated between samples 1.5 ms apart: 1e-5 of a turn's time.
+    assert 2 * pi / np.diff(times) == pytest.approx([SPEED, SPEED], rel=1e-4)
+    late = run_up.crank_speed[run_up.time > 4.0]
+    assert steady.drive.speed is not None
+    assert np.max(late) == pytest.approx(float(steady.drive.speed.extreme(1)[0]), rel=1e-4)
+    assert np.min(late) == pytest.approx(float(steady.drive.speed.extreme(-1)[0]), rel=1e-4)
+    gauge = run_up.gauges["gauge"][run_up.time > 4.0]
+    wanted = float(steady.gauges["gauge"].displacement.peak_to_peak)
+    assert np.ptp(gauge) == pytest.approx(wanted, rel=1e-4)
+
+
+def test_crank_never_outruns_its_motor(run_up: Transient) -> None:
+    """It turns forward all the time, and slower than without load."""
+    assert np.all(np.diff(run_up.crank_angle) > 0)
+    assert np.max(run_up.crank_speed) < 26
+
+
+def test_on_solid_ground() -> None:
+    """Without losses, the motor's own slope settles the speed in 0.2 s."""
+    found = from_rest(eq.load("yamashita-1").with_drive(motor=LINE), 2.0, drive=True, samples=801)
+    steady = respond(found.machine, drive=True)
+    assert found.gauges == {} and found.mounts == {}
+    assert steady.drive.speed is not None
+    late = found.crank_speed[found.time > 1.5]
+    # 2.5 ms between samples: a top is missed by up to 1e-3 of the swing.
+    assert np.max(late) == pytest.approx(float(steady.drive.speed.extreme(1)[0]), rel=1e-3)
+    assert np.min(late) == pytest.approx(float(steady.drive.speed.extreme(-1)[0]), rel=1e-3)
+
+
+def test_a_one_sided_mount_never_pulls() -> None:
+    feet = {
+        "foot": Mount((0.16, -0.2, 0.0), stiffness=900.0, damping=20.0, one_sided=True),
+        "axle": Mount(axis="pitch", torsional_damping=10.0),
+    }
+    found = from_rest(rig(mounts=feet, mass=4.0, center_of_mass=(-1.2, 0.0, 0.0)), 1.5)
+    force = found.mounts["foot"]
+    assert np.min(force) == 0
+    assert np.max(force) > 0
+
+
+def test_told_values() -> None:
+    found = from_rest(rig(), 0.5, samples=9)
+    values = found.to_dict()
+    assert len(values["time"]) == 9
+    assert set(values["gauges"]) == {"gauge"}
+    assert set(values["mounts"]) == {"spring"}
+    columns = {name: unit for name, unit, _ in found.columns()}
+    assert columns == {
+        "time": "s",
+        "crank_angle": "rad",
+        "crank_speed": "rad/s",
+        "gauges.gauge.displacement": "m",
+        "mounts.spring.force": "N m",
+    }
+
+
+@pytest.mark.parametrize("duration", [0.0, -1.0, 700.0])
+def test_wrong_durations(duration: float) -> None:
+    turns = abs(SPEED) * duration / (2 * pi)
+    with pytest.raises(UsageError) as caught:
+        from_rest(rig(), duration)
+    assert str(caught.value) == (
+        f"got {duration:g} s, in which the crank makes {turns:.4g} turns; give a time of more than "
+        f"0 and at most 2000 turns, {4000 * pi / abs(SPEED):.4g} s"
+    )
+
+
+def test_refusals() -> None:
+    with pytest.raises(ModelError, match="the machine stands on solid ground"):
+        from_rest(eq.load("yamashita-1"), 1.0)
+    with pytest.raises(ModelError, match=r"drive\.motor: missing"):
+        from_rest(rig(), 1.0, drive=True)
+    with pytest.raises(ModelError, match="for motion in the plane of the drawing"):
+        from_rest(cart(), 1.0)
+
+
+@pytest.mark.parametrize("samples", [1, 0, -3])
+def test_too_few_samples(samples: int) -> None:
+    with pytest.raises(UsageError, match=f"got {samples} for samples; give 2"):
+        from_rest(rig(), 0.5, samples=samples)
