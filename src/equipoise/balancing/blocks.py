@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.naming import MEASURES, objective_named, output_named, unit_of
 from equipoise.balancing.measures import unit_of as si_unit
-from equipoise.balancing.phase_cost import Term
-from equipoise.balancing.patterns import Pattern, arranged, patterns_for
 from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.naming import MEASURES, objective_named, output_named, unit_of
+from equipoise.balancing.patterns import Pattern, arranged, patterns_for
+from equipoise.balancing.phase_cost import Term
 from equipoise.balancing.workshop import sentences
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.quantities import SI, Dimension, angle, in_unit, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
@@ -135,18 +135,28 @@ def figure_unit(found: Balanced, name: str) -> str:
     return unit_of(output, measure)
 
 
+def said(text: Note | str) -> str:
+    """A sentence or a part of one, in the language that is spoken."""
+    return text.said() if isinstance(text, Note) else text
+
+
+def _within(found: Balanced) -> str:
+    """Of what the proof holds, where that is not all that the plan allows."""
+    return "".join(f" {said(part)}" for part in [found.scope] if str(part))
+
+
 def _proof(found: Balanced) -> str:
     if found.gap is None:
         return say(
             "Found among {method}; that nothing better exists is not proved of phases.",
-            method=found.method_told,
+            method=said(found.method),
         )
     return say(
         "Proof, by {method}: nothing that is allowed is better by more than {gap} of the value "
         "before{scope}.",
-        method=found.method_told,
+        method=said(found.method),
         gap=f"{max(found.gap, EXACT):.0e}",
-        scope=found.scope_told,
+        scope=_within(found),
     )
 
 
@@ -164,9 +174,12 @@ def before_after(found: Balanced) -> Table:
     for name in names:
         least = 10 * largest[_kin(units[name])]
         old, new = before.get(name), after.get(name, 0.0)
-        cells = (quantity(x[name], units[name], least) if name in x else "" for x in (before, after))
+        cells = (
+            quantity(x[name], units[name], least) if name in x else "" for x in (before, after)
+        )
         nothing = old is not None and old <= 1e-10 * least
-        changed: Cell = say("new") if old is None else Change(old, new, new > (1 + WORSE) * old)
+        worse = old is not None and new > (1 + WORSE) * old and name != "mass"
+        changed: Cell = say("new") if old is None else Change(old, new, worse)
         rows.append((figure_named(found, name), *cells, None if nothing else changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
@@ -243,7 +256,7 @@ def front_blocks(found: Front) -> Iterator[Block]:
         say(
             "Every point is as good as any can be, to {gap} of the value before{scope}.",
             gap=f"{max(found.gap, EXACT):.0e}",
-            scope=found.points[0].scope_told,
+            scope=_within(found.points[0]),
         )
     )
 

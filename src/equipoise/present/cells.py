@@ -150,7 +150,7 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     if isinstance(cell, Span):
         unit = shown[column.dimension, column.unit]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
-        ends = [Value(end, scale, digits=cell.digits) for end in (cell.low, cell.high)]
+        ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
         low, high = (_number(end, unit, column.dimension) for end in ends)
         equal = cell.high - cell.low <= 1e-10 * scale
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)

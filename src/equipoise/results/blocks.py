@@ -47,6 +47,7 @@ class Span:
     high: float
     scale: float = 0.0
     digits: int = 4
+    after: int | None = None
 
 
 @dataclass(frozen=True)
