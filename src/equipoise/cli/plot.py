@@ -23,7 +23,7 @@ from equipoise.errors import ModelError, UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.report.pictures import Picture
+    from equipoise.present.pictures import Picture
     from equipoise.studies.study import Model
 
 POINTS, MOST_POINTS = 51, 400
@@ -113,14 +113,14 @@ def _pictures(
     kind: Kind,
 ) -> None:
     from equipoise.plotting.style import render
-    from equipoise.report.findings import ToolFindings, find
+    from equipoise.present.findings import ToolFindings, find
     from equipoise.schema.output import write_all
 
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
     with naming(file):
-        from equipoise.report.pictures import each
+        from equipoise.present.pictures import each
 
         chosen = _chosen(each(found, at), only)
         for picture in chosen:

@@ -160,6 +160,7 @@ Block = Text | Facts | Table | Notes | Picture | Listing
 class Section:
     """A heading and what stands below it; `name` is its anchor."""
 
+    kind: ClassVar[str] = "section"
     name: str
     title: str
     blocks: tuple[Block, ...]

@@ -7,16 +7,15 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
+from equipoise.present.report import build, write_report
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.report import pdf as pdf_module
-from equipoise.report.build import build
-from equipoise.report.findings import ToolFindings, find
-from equipoise.report.page import page
-from equipoise.report.pdf import pdf
-from equipoise.report.pictures import pictures
-from equipoise.report.writing import write_report
+from equipoise.present import pdf as pdf_module
+from equipoise.present.findings import ToolFindings, find
+from equipoise.present.html import page
+from equipoise.present.pdf import pdf
+from equipoise.present.pictures import pictures
 
 
 class Page(HTMLParser):

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.naming import objective_named, output_named, scaled, unit_of
+from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
-from equipoise.report.changes import told
-from equipoise.report.findings import Findings
-from equipoise.report.numbers import brief, capital, change, percent
+from equipoise.present.findings import Findings
+from equipoise.quantities import brief, change, percent
 
 WORSE, MOST_WORSE = 0.1, 3
 NOTHING = 1e-9
@@ -27,7 +27,7 @@ def helps_told(found: Findings) -> Iterator[str]:
         yield from nothing_told(found)
         return
     for made in balanced.changes:
-        yield say("{sentence}.", sentence=next(told(made)))
+        yield say("{sentence}.", sentence=next(sentences(made)))
     yield from _heavy(balanced)
     for one in balanced.plan.objectives:
         before, after = balanced.objectives[one.name]
@@ -123,3 +123,8 @@ def _from_nothing(balanced: Balanced) -> Iterator[str]:
             unit = unit_of(output, "peak")
             what = output_named(output)
             yield say("{what} from 0 to {size} {unit}", what=what, size=brief(after), unit=unit)
+
+
+def capital(text: str) -> str:
+    """A text that begins a sentence."""
+    return text[:1].upper() + text[1:]

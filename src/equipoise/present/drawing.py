@@ -11,18 +11,18 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import say
 from equipoise.plotting.style import render, styled
-from equipoise.report.document import Block, Drawing
-from equipoise.report.findings import Findings, ToolFindings
-from equipoise.report.pictures import SECTIONS, each
+from equipoise.present.document import Drawn
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.pictures import SECTIONS, each
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
 
-Drawn = dict[str, list[Block]]
+Drawings = dict[str, list[Drawn]]
 """Pictures by section."""
 
 
-def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawn:
+def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings:
     """All pictures.
 
     together : whether a copy of this process may draw half of them, where there are two processors,
@@ -43,7 +43,7 @@ def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawn:
     there.close()
     try:
         drawn = _draw(found, [section for section in SECTIONS if section not in other])
-        of_helper: Drawn = here.recv()
+        of_helper: Drawings = here.recv()
         return drawn | of_helper
     except EOFError:  # the helper failed, and what it failed of is to be told
         return drawn | _draw(found, other)
@@ -73,11 +73,11 @@ def _send(pipe: Connection, found: Findings | ToolFindings, sections: Collection
         pipe.close()
 
 
-def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawn:
-    drawn: Drawn = {}
+def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+    drawn: Drawings = {}
     with styled():  # once for all of them
         for picture in each(found, sections=sections):
             svg = render(picture.draw(), "svg").decode()
-            block = Drawing(picture.name, say(picture.caption), svg)
+            block = Drawn(picture.name, say(picture.caption), svg)
             drawn.setdefault(picture.section, []).append(block)
     return drawn

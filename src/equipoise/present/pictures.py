@@ -1,19 +1,23 @@
-"""What pictures there are of a linkage, and what is written below each."""
+"""Every picture of what can be told of a file: its name, its place, its caption, how to draw it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import to_say
 from equipoise.plotting.style import styled
-from equipoise.report.findings import Findings
+from equipoise.present.findings import Findings, ToolFindings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.transmission import Transmissions
     from equipoise.planting.summary import PlantingFigures
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
@@ -184,3 +188,112 @@ def _before_and_after(balanced: Balanced) -> Iterator[Entry]:
         drawn = signal_figures(balanced)
     for name, figure in drawn.items():
         yield f"balanced-{name}", captions[name], partial(_drawn, figure)
+
+
+def of_tool(found: ToolFindings) -> Iterator[Part]:
+    """The one section of a tool."""
+    if found.modes is not None:
+        yield "tool", _modes_shown_tool(found.modes)
+    if found.transmission is not None:
+        yield "tool", _transmission(found.transmission, found.modes)
+    yield "tool", _moment(found)
+    if found.exposure is not None:
+        yield "tool", _exposure(found.exposure)
+    yield "tool", _design(found)
+
+
+def _modes_shown_tool(modes: ToolModes) -> Iterator[Entry]:
+    from equipoise.plotting.tool.modes import modes_figures
+
+    caption = to_say("Shapes of the natural vibrations of the shaft.")
+    for plane, name in enumerate(("modes", "modes-lateral")[: 1 if modes.alike else 2]):
+        yield from pages(name, caption, partial(modes_figures, modes, plane))
+
+
+def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Entry]:
+    from equipoise.plotting.tool.transmission import transmission_figure
+
+    caption = to_say("Share of a shaking force that comes to what holds the tool.")
+    planes = ("transmission", "transmission-lateral")[: 1 if found.tool.alike else 2]
+    for plane, name in enumerate(planes):
+        yield name, caption, partial(transmission_figure, found, plane, modes)
+
+
+def _moment(found: ToolFindings) -> Iterator[Entry]:
+    if found.sweep is None or found.sweep.response is None:
+        return
+    from equipoise.plotting.tool.response import moment_figure
+
+    caption = to_say("Bending moment and displacement along the shaft.")
+    yield "moment", caption, partial(moment_figure, found.sweep.response, None)
+
+
+def _exposure(found: ToolExposure) -> Iterator[Entry]:
+    from equipoise.plotting.tool.exposure import acceleration_figure, exposure_figure
+
+    caption = to_say("Acceleration of the hands against speed of the engine.")
+    yield "acceleration", caption, partial(acceleration_figure, found)
+    caption = to_say("Daily exposure of the hands, with what is allowed.")
+    yield "exposure", caption, partial(exposure_figure, found)
+
+
+def _design(found: ToolFindings) -> Iterator[Entry]:
+    if found.design is None:
+        return
+    from equipoise.plotting.tool.design import design_figure
+
+    caption = to_say("What the hand that gets most gets over the band of speeds, before and after.")
+    yield "design", caption, partial(design_figure, found.design)
+
+
+SECTIONS = ("motion", "planting", "forces", "joints", "vibration", "modes", "balance", "tool")
+"""In the order in which they are shown."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture that is drawn when it is wanted.
+
+    name : which also does for a file.  section : one of `SECTIONS`.
+    caption : an English sentence, to be said when it is shown.
+    """
+
+    name: str
+    section: str
+    caption: str
+    draw: Callable[[], Figure]
+
+
+def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
+    """All of them, in the order of `SECTIONS`.
+
+    at : crank angles at which the linkage is drawn, rad; usual ones if None.
+    """
+    return list(each(found, at))
+
+
+def each(
+    found: Findings | ToolFindings,
+    at: Sequence[float] | None = None,
+    sections: Collection[str] = SECTIONS,
+) -> Iterator[Picture]:
+    """Those of some sections one by one: what only later ones need is not computed before."""
+    from equipoise.plotting.style import free_name
+    from equipoise.present.pictures import of_linkage, of_tool
+
+    parts = of_tool(found) if isinstance(found, ToolFindings) else of_linkage(found, at)
+    taken: dict[str, None] = {}
+    for section, entries in parts:
+        if section not in sections:
+            continue
+        for name, caption, draw in entries:
+            own = free_name(name, taken)
+            taken[own] = None
+            yield Picture(own, section, caption, partial(_in_style, draw))
+
+
+def _in_style(draw: Callable[[], Figure]) -> Figure:
+    from equipoise.plotting.style import styled
+
+    with styled():
+        return draw()

@@ -9,13 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.exposure.blocks import VERDICTS
+from equipoise.handheld.blocks import UNITS, varied_named
 from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import say, spoken, to_say
-from equipoise.report.document import Answer, Tile
-from equipoise.report.findings import ToolFindings
-from equipoise.report.numbers import PER_RPM, brief, capital, change, percent
-from equipoise.report.tool_tables import in_units, varied_named
+from equipoise.i18n import say, spoken
+from equipoise.present.document import Answer, Tile
+from equipoise.present.findings import ToolFindings
+from equipoise.present.remedies import capital
+from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -23,11 +25,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
 
-VERDICTS = {
-    "below the action value": to_say("below the action value of 2.5 m/s² (2002/44/EC)"),
-    "above the action value": to_say("above the action value of 2.5 m/s² (2002/44/EC)"),
-    "above the limit value": to_say("above the limit value of 5 m/s² (2002/44/EC)"),
-}
 HOUR, DAY = 3600.0, 86400.0
 """s."""
 NEAR = 0.1
@@ -180,14 +177,16 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
 
 def _helps(design: ToolDesign) -> Iterator[str]:
     for one in design.variables:
-        before, after, unit = in_units(one)
+        kind: Dimension = one.dimension  # type: ignore[assignment]
+        unit = in_unit(UNITS.get(kind, SI[kind]))
+        before, after = unit.text(one.before), unit.text(one.after)
         if before != after:
             yield say(
                 "{name}: {before} → {after} {unit}.",
                 name=_begun(varied_named(one.name)),
                 before=before,
                 after=after,
-                unit=unit,
+                unit=unit.name,
             )
     best = design.figures[0]
     yield say(

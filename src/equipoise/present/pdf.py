@@ -11,10 +11,9 @@ import jinja2
 import equipoise
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import LANGUAGES, say, speaking
-from equipoise.report.build import build
-from equipoise.report.document import Document
-from equipoise.report.findings import Findings, ToolFindings
-from equipoise.report.page import text_of
+from equipoise.present.cells import noted, printed
+from equipoise.present.document import Document
+from equipoise.present.html import printed_grid, text_of
 
 if TYPE_CHECKING:
     import typst
@@ -34,20 +33,6 @@ SHRUNK, PAGE, HALF = 0.8, 504.0, 338.0
 LEAST = 0.7
 """Scale below which its letters would be too small to read."""
 NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
-
-
-def report_pdf(found: Findings | ToolFindings, language: str = "en", command: str = "") -> bytes:
-    """A report of findings as PDF, the same bytes on every run with the same fonts.
-
-    Parameters as of `report`.
-
-    Raises
-    ------
-    EquipoiseError : Typst is not installed.
-    UsageError : there is no font for the language.
-    """
-    check_pdf(language)
-    return pdf(build(found, language, command))
 
 
 def check_pdf(language: str) -> None:
@@ -106,6 +91,9 @@ def _families(language: str) -> list[str]:
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
     environment.filters["text"] = _text
+    environment.filters["grid"] = printed_grid
+    environment.filters["printed"] = printed
+    environment.filters["noted"] = noted
     environment.filters["width"] = _width
     return environment.from_string(text_of("report.typ.j2"))
 

@@ -1,4 +1,4 @@
-"""The summary of a linkage in plain words: what shakes, how much, why, and what helps most."""
+"""The summary of a linkage in plain words: what shakes, how much, why, and what that does."""
 
 from __future__ import annotations
 
@@ -8,15 +8,14 @@ from math import cos, pi, sin
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.naming import CAUSES, joint_named, objective_named
+from equipoise.balancing.naming import CAUSES, joint_named, objective_named, scaled
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.report.document import Answer, Tile
-from equipoise.report.findings import Findings
-from equipoise.report.helps import good_already, helps_told
-from equipoise.report.numbers import PER_RPM, angle, brief, change, percent
-from equipoise.report.outcomes import planting_told, vibration_told
-from equipoise.report.shaking import Shaking, shares
+from equipoise.present.document import Answer, Tile
+from equipoise.present.findings import Findings
+from equipoise.present.remedies import good_already, helps_told
+from equipoise.present.shaking import Shaking, shares
+from equipoise.quantities import PER_RPM, angle, brief, change, percent
 from equipoise.signals import Figures
 
 SMALL = 0.005
@@ -84,7 +83,7 @@ def _by_balancing(found: Findings, balanced: Balanced) -> Tile:
 
 
 def _at(crank_angle: float) -> str:
-    return say("at crank angle {angle}°", angle=angle(crank_angle))
+    return say("at crank angle {angle}°", angle=angle(crank_angle, 0))
 
 
 def _largest_joint(found: Findings) -> tuple[str, Figures]:
@@ -107,7 +106,7 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
     told = {"speed": speed, "peak": brief(size.peak), "rms": brief(size.rms)}
-    told["angle"] = angle(size.peak_at)
+    told["angle"] = angle(size.peak_at, 0)
     summary = found.analysis.summary
     if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
@@ -156,7 +155,7 @@ def _directed(shaking: Shaking) -> str:
         return say("It acts mostly up and down.")
     if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
         return say("It acts mostly to and fro.")
-    return say("It acts mostly along a direction of {angle}° from the x axis.", angle=angle(way))
+    return say("It acts mostly along a direction of {angle}° from the x axis.", angle=angle(way, 0))
 
 
 def _ordered(found: Findings, shaking: Shaking) -> str:
@@ -215,3 +214,74 @@ def check_whole_cycle(found: Findings) -> None:
     """A report shows whole turns."""
     if not found.analysis.motion.whole_cycle:
         raise UsageError("a report needs crank angles over the whole cycle; give a number of them")
+
+
+def vibration_told(found: Findings) -> Iterator[str]:
+    """What the gauges read, and the nearest resonance."""
+    response = found.response
+    if response is None:
+        return
+    for name, gauge in response.gauges.items():
+        scale, unit = scaled("rad" if gauge.rotation else "m")
+        yield say(
+            "The gauge {gauge} moves by {size} {unit} peak to peak at {speed} rpm.",
+            gauge=name,
+            size=brief(float(gauge.displacement.peak_to_peak) * scale),
+            unit=unit,
+            speed=brief(abs(response.speed) / PER_RPM),
+        )
+    if found.sweep is None or not found.sweep.resonances:
+        return
+    nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))
+    told = {
+        "order": f"{nearest.order:.4g}",
+        "mode": nearest.mode,
+        "frequency": brief(nearest.frequency / (2 * pi)),
+        "speed": brief(abs(nearest.speed) / PER_RPM),
+    }
+    yield say(
+        "The nearest resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz).",
+        **told,
+    )
+    if nearest.avoid is not None and _within(abs(response.speed), nearest.avoid):
+        low, high = sorted(abs(end) / PER_RPM for end in nearest.avoid)
+        yield say(
+            "The crank turns at a speed that is to be avoided: between {low} and {high} rpm this "
+            "resonance amplifies more than three times.",
+            low=brief(low),
+            high=brief(high),
+        )
+
+
+def _within(value: float, ends: tuple[float, float]) -> bool:
+    low, high = sorted(map(abs, ends))
+    return low <= value <= high
+
+
+def planting_told(found: Findings) -> Iterator[str]:
+    """Depth, entry and exit, hills, speed of the tip."""
+    if found.planting is None:
+        return
+    get = found.planting.figures.get
+
+    def told(name: str, scale: float = 1.0) -> str:
+        return brief((get(name) or 0.0) * scale)
+
+    yield say(
+        "The tip of the finger goes {depth} mm into the soil; it enters at a crank angle of "
+        "{entry}° and leaves at {exit}°.",
+        depth=told("soil.depth", 1e3),
+        entry=angle(get("entry.crank_angle") or 0.0, 0),
+        exit=angle(get("exit.crank_angle") or 0.0, 0),
+    )
+    if get("hill_spacing"):
+        yield say(
+            "Hills are {spacing} mm apart; the hole at the surface is {hole} mm long.",
+            spacing=told("hill_spacing", 1e3),
+            hole=told("soil.hole_length", 1e3),
+        )
+    yield say(
+        "The tip moves at up to {speed} m/s relative to the machine.",
+        speed=told("max_speed.value"),
+    )
