@@ -12,8 +12,8 @@ import numpy as np
 
 import equipoise as eq
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.figures import figures
-from equipoise.planting.moments import soil_crossings
+from equipoise.planting.figures import tip_figures
+from equipoise.planting.stroke import soil_crossings
 from timing import in_turn, report
 
 MACHINE = eq.load("kim-chung-a")
@@ -42,13 +42,13 @@ def designs() -> list[eq.Machine]:
 def together() -> object:
     """All figures of a family of designs, as a search has them."""
     curve = TipCurve(designs(), 180, turns=1)
-    return figures(curve, *soil_crossings(curve))
+    return tip_figures(curve, *soil_crossings(curve))
 
 
 def one_by_one() -> object:
     """The same, of one design after the other."""
     curves = [TipCurve([machine], 180, turns=1) for machine in designs()]
-    return [figures(curve, *soil_crossings(curve)) for curve in curves]
+    return [tip_figures(curve, *soil_crossings(curve)) for curve in curves]
 
 
 def main() -> None:

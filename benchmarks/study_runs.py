@@ -24,11 +24,10 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.designs import all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.schema.template import Template
-from equipoise.studies.run import sweep
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Range
+from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.run import run_study
 from equipoise.studies.store import open_store
-from equipoise.studies.study import Output, Sampling, Study, Vary
+from equipoise.studies.study import Study, samples
 from timing import in_turn
 
 MACHINE = eq.load("yamashita-1")
@@ -128,7 +127,7 @@ def stored(table: Table) -> None:
         path = Path(place, "store")
         tasks = {
             "bare": bare,
-            "sweep": lambda: sweep(study, path, workers=2),
+            "sweep": lambda: run_study(study, path, workers=2),
             "clearing up": lambda: shutil.rmtree(path),
         }
         tasks["sweep"]()
@@ -159,7 +158,7 @@ def measure_memory() -> None:
 
     with tempfile.TemporaryDirectory() as place:
         begin = time.perf_counter()
-        sweep(study_of(MANY), Path(place, "store"))
+        run_study(study_of(MANY), Path(place, "store"))
         seconds = time.perf_counter() - begin
     peak = getrusage(RUSAGE_SELF).ru_maxrss / 1024
     print(json.dumps({"seconds": seconds, "peak": peak}))
@@ -185,7 +184,7 @@ def cluster(table: Table) -> None:
 
             def task() -> None:
                 before = [processor_time(one) for one in processes]
-                sweep(study, place / "store", cluster=address)
+                run_study(study, place / "store", cluster=address)
                 after = [processor_time(one) for one in processes]
                 busy[count].append(max(b - a for a, b in zip(before, after, strict=True)))
                 shutil.rmtree(place / "store")

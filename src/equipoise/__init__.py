@@ -21,11 +21,11 @@ _HOMES = {
     "BalanceShafts": "mechanism.balance",
     "Balanced": "balancing.balanced",
     "BaseParameters": "mechanism.parameters",
-    "Best": "studies.best",
+    "Best": "studies.selection",
     "CenterMove": "mechanism.balance",
-    "Choices": "studies.spread",
+    "Choices": "studies.design_space",
     "Conditions": "balancing.linear_conditions",
-    "Correlation": "studies.study",
+    "Correlation": "studies.design_space",
     "Decay": "measured.decay",
     "DesignLimit": "handheld.design_plan",
     "DesignPlan": "handheld.design_plan",
@@ -37,7 +37,7 @@ _HOMES = {
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
-    "FourBar": "mechanism.fourbar",
+    "FourBar": "mechanism.assessment",
     "FreeVibration": "vibration.free",
     "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
@@ -47,7 +47,7 @@ _HOMES = {
     "Hand": "handheld.model",
     "Harness": "handheld.model",
     "Impedance": "handheld.model",
-    "Landscape": "studies.landscape",
+    "Landscape": "studies.objective_map",
     "Limit": "mechanism.balance",
     "Link": "mechanism.model",
     "Linkage": "mechanism.linkage",
@@ -58,22 +58,22 @@ _HOMES = {
     "Motor": "mechanism.motor",
     "MotorTable": "mechanism.motor",
     "Mount": "mechanism.support",
-    "Normal": "studies.spread",
+    "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
     "Operation": "handheld.model",
-    "Output": "studies.study",
+    "Output": "studies.design_space",
     "Periodic": "signals",
     "Phases": "mechanism.balance",
     "Phasing": "balancing.phase_search",
     "Planting": "mechanism.field",
     "PlantingFigures": "planting.summary",
     "Position": "mechanism.model",
-    "Range": "studies.spread",
+    "Range": "studies.design_space",
     "Record": "measured.record",
     "Regressor": "mechanism.parameters",
     "Response": "vibration.response",
     "Row": "mechanism.support",
-    "Sampling": "studies.study",
+    "Sampling": "studies.design_space",
     "Searched": "studies.search",
     "Section": "handheld.shaft",
     "Segment": "handheld.shaft",
@@ -90,7 +90,7 @@ _HOMES = {
     "Sweep": "vibration.sweep",
     "Task": "exposure.daily",
     "Template": "schema.template",
-    "Tolerances": "studies.tolerance",
+    "Tolerances": "studies.tolerances",
     "Tool": "handheld.model",
     "ToolDesign": "handheld.design",
     "ToolExposure": "handheld.exposed",
@@ -100,17 +100,17 @@ _HOMES = {
     "Transient": "vibration.transient",
     "Transmissions": "handheld.transmission",
     "Tube": "handheld.shaft",
-    "Uniform": "studies.spread",
-    "Vary": "studies.study",
+    "Uniform": "studies.design_space",
+    "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
-    "Weighted": "exposure.weighted",
+    "Weighted": "exposure.weighting",
     "Work": "handheld.model",
-    "analyze": "pipeline",
+    "analyze": "results.analysis",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
     "balance": "balancing.optimisation",
     "base_parameters": "mechanism.parameters",
-    "best": "studies.best",
+    "best": "studies.selection",
     "choose_phases": "balancing.phase_search",
     "conditions": "balancing.linear_conditions",
     "daily_exposure": "exposure.daily",
@@ -118,17 +118,17 @@ _HOMES = {
     "dumps": "schema.models",
     "dumps_tool": "schema.tools",
     "examples": "schema.models",
-    "export": "studies.export",
+    "export": "studies.table_files",
     "expose_tool": "handheld.exposed",
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
-    "four_bar": "mechanism.fourbar",
+    "four_bar": "mechanism.assessment",
     "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
     "json_schema": "schema.models",
-    "landscape": "studies.landscape",
+    "landscape": "studies.objective_map",
     "least_moments": "balancing.least_norm",
     "load": "schema.models",
     "load_study": "schema.studies",
@@ -145,15 +145,15 @@ _HOMES = {
     "respond": "vibration.forced",
     "respond_tool": "handheld.response",
     "resume": "schema.study_units",
+    "run_study": "studies.run",
     "save": "schema.models",
     "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
-    "simulate_decay": "measured.swinging",
-    "sweep": "studies.run",
+    "simulate_decay": "measured.record",
     "sweep_speed": "vibration.sweep",
     "sweep_tool": "handheld.sweep",
-    "tolerance": "studies.tolerance",
+    "tolerance": "studies.tolerances",
     "tool_sensitivities": "handheld.exposed",
     "trade_off": "balancing.pareto",
     "transmit": "handheld.transmission",
@@ -161,9 +161,9 @@ _HOMES = {
     "vibrate_freely": "vibration.free",
     "vibrate_tool": "handheld.modes",
     "view": "web.widget",
-    "weigh_orders": "exposure.measured",
-    "weigh_signal": "exposure.measured",
-    "weigh_spectrum": "exposure.measured",
+    "weigh_orders": "exposure.spectra",
+    "weigh_signal": "exposure.spectra",
+    "weigh_spectrum": "exposure.spectra",
     "write_report": "report.writing",
 }
 """Public names and where they live; each is imported when it is first used."""
@@ -187,10 +187,10 @@ if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure as Exposure
     from equipoise.exposure.daily import Task as Task
     from equipoise.exposure.daily import daily_exposure as daily_exposure
-    from equipoise.exposure.measured import weigh_orders as weigh_orders
-    from equipoise.exposure.measured import weigh_signal as weigh_signal
-    from equipoise.exposure.measured import weigh_spectrum as weigh_spectrum
-    from equipoise.exposure.weighted import Weighted as Weighted
+    from equipoise.exposure.spectra import weigh_orders as weigh_orders
+    from equipoise.exposure.spectra import weigh_signal as weigh_signal
+    from equipoise.exposure.spectra import weigh_spectrum as weigh_spectrum
+    from equipoise.exposure.weighting import Weighted as Weighted
     from equipoise.handheld.design import ToolDesign as ToolDesign
     from equipoise.handheld.design import design_tool as design_tool
     from equipoise.handheld.design_plan import DesignLimit as DesignLimit
@@ -224,7 +224,9 @@ if TYPE_CHECKING:
     from equipoise.measured.decay import Decay as Decay
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
-    from equipoise.measured.swinging import simulate_decay as simulate_decay
+    from equipoise.measured.record import simulate_decay as simulate_decay
+    from equipoise.mechanism.assessment import FourBar as FourBar
+    from equipoise.mechanism.assessment import four_bar as four_bar
     from equipoise.mechanism.balance import AddedMass as AddedMass
     from equipoise.mechanism.balance import Balance as Balance
     from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
@@ -240,8 +242,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
-    from equipoise.mechanism.fourbar import FourBar as FourBar
-    from equipoise.mechanism.fourbar import four_bar as four_bar
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -289,7 +289,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
-    from equipoise.pipeline import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
@@ -297,6 +296,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.present.report import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps
     from equipoise.schema.models import examples as examples
     from equipoise.schema.models import json_schema as json_schema
@@ -316,27 +316,20 @@ if TYPE_CHECKING:
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics
-    from equipoise.studies.best import Best as Best
-    from equipoise.studies.best import best as best
-    from equipoise.studies.export import export as export
-    from equipoise.studies.landscape import Landscape as Landscape
-    from equipoise.studies.landscape import landscape as landscape
-    from equipoise.studies.run import sweep as sweep
+    from equipoise.studies.design_space import Vary as Vary
+    from equipoise.studies.objective_map import Landscape as Landscape
+    from equipoise.studies.objective_map import landscape as landscape
+    from equipoise.studies.run import run_study as run_study
     from equipoise.studies.search import Searched as Searched
     from equipoise.studies.search import search_designs as search_designs
-    from equipoise.studies.spread import Choices as Choices
-    from equipoise.studies.spread import Normal as Normal
-    from equipoise.studies.spread import Range as Range
-    from equipoise.studies.spread import Uniform as Uniform
+    from equipoise.studies.selection import Best as Best
+    from equipoise.studies.selection import best as best
     from equipoise.studies.store import Store as Store
     from equipoise.studies.store import open_store as open_store
-    from equipoise.studies.study import Correlation as Correlation
-    from equipoise.studies.study import Output as Output
-    from equipoise.studies.study import Sampling as Sampling
     from equipoise.studies.study import Study as Study
-    from equipoise.studies.study import Vary as Vary
-    from equipoise.studies.tolerance import Tolerances as Tolerances
-    from equipoise.studies.tolerance import tolerance as tolerance
+    from equipoise.studies.table_files import export as export
+    from equipoise.studies.tolerances import Tolerances as Tolerances
+    from equipoise.studies.tolerances import tolerance as tolerance
     from equipoise.vibration.forced import respond as respond
     from equipoise.vibration.free import FreeVibration as FreeVibration
     from equipoise.vibration.free import vibrate_freely as vibrate_freely

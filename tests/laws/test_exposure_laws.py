@@ -7,10 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from equipoise.exposure.daily import Task, daily_exposure
-from equipoise.exposure.directive import LIMIT, time_to_reach
-from equipoise.exposure.japan import limit_time
-from equipoise.exposure.measured import weigh_orders, weigh_signal, weigh_spectrum
+from equipoise.exposure.daily import LIMIT, Task, daily_exposure, limit_time, time_to_reach
+from equipoise.exposure.spectra import weigh_orders, weigh_signal, weigh_spectrum
 from equipoise.exposure.weighting import factor
 
 HOUR = 3600.0

@@ -14,11 +14,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.applied import soil_force
 from equipoise.mechanism.field import Planting, Soil, SoilTable
-from equipoise.mechanism.soil import soil_force
-from equipoise.planting.names import TURNING, dimension_of
-from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.planting.table import table
+from equipoise.planting.goals import TURNING, dimension_of
+from equipoise.planting.summary import PlantingFigures, plant, table
 from laws import transforms
 from laws.subjects import along, gravity_power, kinetic_power, load_power, spring_power
 from laws.transforms import Units

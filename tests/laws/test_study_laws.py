@@ -10,11 +10,12 @@ import numpy as np
 import pytest
 from scipy.stats import norm, sobol_indices, uniform
 
-from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
+from equipoise.studies.design_space import Correlation, Normal, Output, Range, Uniform, Vary
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome
 from equipoise.studies.search import search_designs
-from equipoise.studies.spread import Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Study, Vary
-from equipoise.studies.tolerance import Tolerances, tolerance
+from equipoise.studies.study import Study
+from equipoise.studies.tolerances import Tolerances, tolerance
 from equipoise.studies.variance import effects, tables
 from unit.studies.samples import PATHS, study
 

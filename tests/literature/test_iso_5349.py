@@ -31,19 +31,33 @@ from math import pi, sqrt
 import numpy as np
 import pytest
 
-from equipoise.exposure.bands import band_factors, exact_middles
-from equipoise.exposure.daily import Task, daily_exposure
-from equipoise.exposure.directive import ACTION, LIMIT, points
-from equipoise.exposure.iso_5349 import (
+from equipoise.exposure.daily import (
+    ACTION,
+    LIMIT,
     SINGLE_AXIS,
     YEARS_OF_TABLE,
+    Task,
+    allowed_time,
+    daily_exposure,
+    equivalent,
+    limit_time,
+    points,
     total_value,
     years_to_white_finger,
 )
-from equipoise.exposure.iso_22867 import equivalent
-from equipoise.exposure.japan import allowed_time, limit_time
-from equipoise.exposure.measured import weigh_spectrum
-from equipoise.exposure.weighting import F1, F2, F3, F4, Q1, Q2, K, factor
+from equipoise.exposure.spectra import weigh_spectrum
+from equipoise.exposure.weighting import (
+    F1,
+    F2,
+    F3,
+    F4,
+    Q1,
+    Q2,
+    K,
+    band_factors,
+    exact_middles,
+    factor,
+)
 
 HOUR = 3600.0
 

@@ -21,8 +21,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.exposure.measured import weigh_signal
 from equipoise.exposure.signal import LEAST_DURATION, LEAST_RATE, WHOLE_RATE
+from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import factor, weighting
 
 DESIGN_GOAL = {

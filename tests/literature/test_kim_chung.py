@@ -46,8 +46,7 @@ import pytest
 from scipy.optimize import brentq
 
 import equipoise as eq
-from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.planting.table import table
+from equipoise.planting.summary import PlantingFigures, plant, table
 
 Array = np.ndarray[Any, Any]
 Signal = Callable[[Array], Array]

@@ -14,7 +14,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.signal import freqs, tf2ss
 
-from equipoise.exposure.measured import weigh_signal
+from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
 
 W1, W2, W3 = 2 * np.pi * 10**0.8, 2 * np.pi * 10**3.1, 100.0

@@ -21,12 +21,10 @@ import numpy as np
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
 from equipoise.studies import run
-from equipoise.studies.evaluate import Outcome
+from equipoise.studies.design_space import Choices, Normal, Output, Range, Sampling, Vary
 from equipoise.studies.executors import Task
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Choices, Normal, Range
-from equipoise.studies.store import Block
-from equipoise.studies.study import Output, Sampling, Study, Vary, from_plain
+from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.study import Study, from_plain, samples
 
 Array = np.ndarray[Any, Any]
 LENGTH, MASS, SPEED = "links.rod.length", "links.crank.mass", "drive.speed"
@@ -154,7 +152,7 @@ def main(command: str, path: str) -> None:
     """In a process that is going to be killed: a sweep of the short study, or its resumption."""
     run.evaluator = lambda study, threads: Formulas(pause=0.02)
     if command == "sweep":
-        run.sweep(short_study(), path, workers=2)
+        run.run_study(short_study(), path, workers=2)
     else:
         run.resume(path, restore, workers=1)
 

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from equipoise.exposure.bands import NOMINAL
-from equipoise.exposure.weighting import factor
+from equipoise.exposure.weighting import NOMINAL, factor
 from surface.running import equipoise, process, refused, succeeded
 
 RATE = 4000.0

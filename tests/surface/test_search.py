@@ -14,7 +14,7 @@ import equipoise as eq
 from equipoise.cli import progress_studies
 from equipoise.cli.progress_studies import left_told, rate_told, swept, time_told
 from equipoise.schema.study_units import Unit
-from equipoise.studies.progress import Progress
+from equipoise.studies.outcomes import Progress
 from surface.running import equipoise, succeeded
 from surface.studies import LENGTHS, TOLERANCES, written
 

@@ -56,7 +56,7 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
-    from equipoise import pipeline
+    from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
     from equipoise.schema.models import load
 
@@ -77,7 +77,7 @@ def analyze(
         None if about is None else _place(machine, about),
     )
     with naming(file):
-        analysis = pipeline.analyze(machine, *arguments)
+        analysis = analyzed(machine, *arguments)
         told = {} if count is None else {"by_order": order_values(analysis, count, zero)}
     if csv is not None:
         from equipoise.schema.output import to_csv, write

@@ -81,7 +81,7 @@ def animate(
         options["dark"] = dark
     if kind == "mp4":
         options["turns"] = turns
-    from equipoise.pipeline import analyze
+    from equipoise.results.analysis import analyze
 
     with naming(file):
         found = analyze(machine, _angles(kind, seconds))

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.studies.best import Best
+    from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
 
 MOST_TOLD = 100_000
@@ -63,7 +63,7 @@ def best(
         With --plot: kind of the pictures, svg if not given.
     """
     from equipoise.schema.study_units import machine_of
-    from equipoise.studies import best as of_stores
+    from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
     check_belonging("--out", out, design=design)
@@ -129,7 +129,7 @@ def _show(found: Best, store: Store, json: bool) -> None:
         print(json_text({"title": title_of(store), **found.to_dict()}))
     else:
         from equipoise.schema.study_units import units_in
-        from equipoise.studies.best import outputs_of
+        from equipoise.studies.selection import outputs_of
         from equipoise.terminal.best import print_best
 
         print_best(found, title_of(store), outputs_of(store), units_in(store))
@@ -155,7 +155,7 @@ def export(
         Only designs that keep every limit.
     """
     from equipoise.schema.files import printable
-    from equipoise.studies import export as of_stores
+    from equipoise.studies import table_files as of_stores
     from equipoise.studies.store import open_store
 
     opened = open_store(store)

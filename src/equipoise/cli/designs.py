@@ -84,7 +84,7 @@ def title_of(store: Store) -> str:
 
 def si_units(study: Study) -> dict[str, str]:
     """SI unit of each number and output that has one, as a store tells it."""
-    from equipoise.studies.units import SI
+    from equipoise.quantities import SI
 
     kinds = {one.path: one.dimension for one in study.vary}
     kinds |= {output.name: output.dimension for output in study.outputs}

@@ -16,7 +16,7 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure, Task
-    from equipoise.exposure.weighted import Weighted
+    from equipoise.exposure.weighting import Weighted
     from equipoise.schema.records import Accelerations
 
 INPUT = Parameter(name="INPUT", negative="")
@@ -173,7 +173,7 @@ def _value(text: str, match: re.Match[str]) -> Told:
 
 
 def _both_modes(idle: str, racing: str) -> Told:
-    from equipoise.exposure.iso_22867 import equivalent
+    from equipoise.exposure.daily import equivalent
 
     values = [
         quantity("--idle", idle, "acceleration"),
@@ -186,7 +186,7 @@ def _both_modes(idle: str, racing: str) -> Told:
 
 
 def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
-    from equipoise.exposure.measured import weigh_signal, weigh_spectrum
+    from equipoise.exposure.spectra import weigh_signal, weigh_spectrum
     from equipoise.schema.files import printable
 
     single = options.single_axis and len(found.axes) < 3

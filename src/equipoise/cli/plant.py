@@ -116,7 +116,7 @@ def plant(
 
 
 def _write_csv(figures: PlantingFigures, path: str, angles: int) -> None:
-    from equipoise.planting.table import table
+    from equipoise.planting.summary import table
 
     write_csv(table(figures, angles), path)
 
@@ -145,7 +145,7 @@ def _new_file(machine: Machine, file: str, out: str | None) -> str:
 def _fit(machine: Machine, file: str, targets: str, new: str, seed: int | None) -> Fit:
     """Search, and write the design that was found as a new model file."""
     from equipoise.cli.progress import told
-    from equipoise.planting.judge import figure_names
+    from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting
     from equipoise.schema.files import printable
     from equipoise.schema.models import files_of, save

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.present.pictures import Picture
-    from equipoise.studies.study import Model
+    from equipoise.studies.design_space import Model
 
 POINTS, MOST_POINTS = 51, 400
 """Values of each number of a map."""
@@ -170,7 +170,7 @@ def _map(
     from equipoise.cli.wishes import read_objective
     from equipoise.plotting.landscape import drawings, told
     from equipoise.schema.template import Template
-    from equipoise.studies.landscape import landscape
+    from equipoise.studies.objective_map import landscape
 
     if len(over) != 2:
         count = "once" if len(over) == 1 else f"{len(over)} times"
@@ -226,7 +226,7 @@ def _split(option: str, text: str, example: str) -> tuple[str, str]:
 
 def _read(model: Model, option: str, path: str, text: str) -> float:
     """A value of a number of the model, SI units."""
-    from equipoise.studies.variants import dimension
+    from equipoise.studies.objective_map import dimension
 
     try:
         kind = dimension(model, path)

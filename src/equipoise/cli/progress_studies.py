@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from rich.console import RenderableType
 
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.evaluate import Outcome
-    from equipoise.studies.progress import Progress
+    from equipoise.studies.outcomes import Outcome, Progress
     from equipoise.studies.study import Study
 
 GROWTH, LONGEST = 0.5, 600.0
@@ -54,7 +53,7 @@ class Watched:
     """
 
     def __init__(self, study: Study, told: Told) -> None:
-        from equipoise.studies.progress import Tally
+        from equipoise.studies.outcomes import Tally
 
         self.study, self.told = study, told
         self.tally = Tally(study.outputs, 0)
@@ -63,7 +62,7 @@ class Watched:
     def __call__(self, values: Any) -> Outcome:
         """Compute designs (P, d)."""
         from equipoise.studies.evaluate import evaluator
-        from equipoise.studies.store import Block
+        from equipoise.studies.outcomes import Block
 
         if self.compute is None:
             self.compute = evaluator(self.study)

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.progress import Progress
+    from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
     from equipoise.terminal.swept import Summary
 
@@ -60,7 +60,7 @@ def sweep(
     with naming(study), _going_on(out):
         store, last = _told(
             units,
-            lambda told: run.sweep(asked, out, workers=count, cluster=cluster, progress=told),
+            lambda told: run.run_study(asked, out, workers=count, cluster=cluster, progress=told),
         )
         _give(store, last, units, json)
 
@@ -157,7 +157,7 @@ def _give(store: Store, last: Progress, units: dict[str, Unit], json: bool) -> N
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
     from equipoise.cli.designs import title_of
-    from equipoise.studies.best import best, outputs_of
+    from equipoise.studies.selection import best, outputs_of
     from equipoise.terminal.swept import Summary
 
     outputs = outputs_of(store)

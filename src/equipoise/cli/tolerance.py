@@ -13,7 +13,7 @@ from equipoise.errors import ModelError, UsageError
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
     from equipoise.studies.study import Study
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.studies.tolerances import Tolerances
 
 MOST_DESIGNS = 10_000_000
 
@@ -78,7 +78,7 @@ def tolerance(
 
 def _found(study: Study, units: dict[str, Unit]) -> Tolerances:
     from equipoise.cli.progress_studies import Watched, swept
-    from equipoise.studies.tolerance import tolerance as of_study
+    from equipoise.studies.tolerances import tolerance as of_study
 
     with swept(units) as told:
         watched = Watched(study, told)

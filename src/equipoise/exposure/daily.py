@@ -1,23 +1,113 @@
-"""The vibration exposure of a day: tasks, what they amount to, and how long one may work."""
+"""The vibration exposure of a day: tasks, what they amount to by each standard, time limits.
+
+ISO 5349-1 and ISO 5349-2: the total value of three axes, daily exposure, years to white finger.
+
+Sources: ISO 5349-1:2001, 4.4 (equation 1), 5.3 (equations 2 and 3), Annex C (equation C.1, Table
+C.1); ISO 5349-2:2001, clause 8.  What of that was checked, and how, is told in docs/exposure.md.
+
+Guideline on vibrating tools of the Japanese Ministry of Health, Labour and Welfare, 2009.
+
+Source: notifications Kihatsu 0710 No. 1 (chain saws) and No. 2 (other tools) of 10 July 2009: A(8)
+shall not exceed 5.0 m/s2; above 2.5 m/s2 one has to work for less; the longest time a day follows
+from the total value a as T = 200/a^2 hours, and where that is more than 2 hours, it is 2 hours for
+the time being.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from math import isfinite, sqrt
+from math import inf, isfinite, sqrt
 from typing import Any, Literal
 
+import numpy as np
+
 from equipoise.errors import UsageError
-from equipoise.exposure.checks import not_negative
-from equipoise.exposure.directive import ACTION, LIMIT, points, time_to_reach
-from equipoise.exposure.iso_5349 import (
-    YEARS_OF_TABLE,
-    partial_exposure,
-    together,
-    years_to_white_finger,
-)
-from equipoise.exposure.japan import allowed_time, limit_time
+from equipoise.exposure.weighting import not_negative
 from equipoise.results.result import Result
+
+EIGHT_HOURS = 28_800.0
+"""s, to which a day's exposure is referred."""
+SINGLE_AXIS = 1.7
+"""Total value over that of the largest axis where no other was measured.  ISO 5349-1, 4.4, asks for
+a factor from 1.0 to 1.7; this is the cautious end, three axes alike."""
+YEARS_OF_TABLE = (1.0, 8.0)
+"""Ends of Table C.1, which goes from 26 to 3.7 m/s2; beyond them equation C.1 extrapolates."""
+
+
+def total_value(a_hw: Any, single_axis: bool = False) -> float:
+    """Vibration total value a_hv, m/s2, of weighted RMS accelerations (axes,), m/s2.
+
+    single_axis : estimate it as 1.7 times the largest axis.
+    """
+    values = np.asarray(a_hw, dtype=float)
+    if single_axis:
+        return SINGLE_AXIS * float(np.max(values))
+    return float(np.sqrt(np.sum(values**2)))
+
+
+def partial_exposure(a_hv: float, duration: float) -> float:
+    """A_i(8), m/s2, of a total value, m/s2, that acts for a time, s."""
+    return a_hv * sqrt(duration / EIGHT_HOURS)
+
+
+def together(partial: Iterable[float]) -> float:
+    """A(8), m/s2, of partial exposures, m/s2."""
+    return sqrt(sum(part**2 for part in partial))
+
+
+def years_to_white_finger(a8: float) -> float:
+    """D_y: years of exposure after which 10 % of a group have white fingers; A(8) in m/s2."""
+    return 31.8 * a8**-1.06 if a8 > 0 else inf
+
+
+ACTION, LIMIT = 2.5, 5.0
+"""m/s2, of A(8); Article 3, paragraph 1, b and a.  Above the first an employer has to act, Article
+5, paragraph 2; above the second nobody may be exposed, paragraph 3."""
+POINTS_OF_ACTION = 100.0
+"""Points of a day at the action value, by the exposure points system of the Health and Safety
+Executive (L140): 2 points for each hour and each (m/s2)^2, so that the limit value has 400."""
+
+
+def time_to_reach(value: float, a_hv: float) -> float:
+    """Time, s, in which a total value, m/s2, makes up a daily exposure, m/s2; infinite for 0."""
+    return EIGHT_HOURS * (value / a_hv) ** 2 if a_hv > 0 else inf
+
+
+def points(a8: float) -> float:
+    """Exposure points of a daily or partial exposure, m/s2; those of several tasks add up."""
+    return POINTS_OF_ACTION * (a8 / ACTION) ** 2
+
+
+def equivalent(idling: float, racing: float) -> float:
+    """Equivalent total value a_hv,eq, m/s2, of those when idling and when racing, m/s2.
+
+    Both count for equal times.  Source: ISO 22867, brush cutters and grass trimmers; that the times
+    are equal is also told in makers' manuals, as in that of the Stihl FS 40, 20.6.
+
+    Raises
+    ------
+    UsageError : a value is negative or no finite number.
+    """
+    idling, racing = not_negative("idling", idling), not_negative("racing", racing)
+    return sqrt((idling**2 + racing**2) / 2)
+
+
+COUNTERMEASURE, JAPANESE_LIMIT = 2.5, 5.0
+"""m/s2, of A(8): the countermeasure value and the limit value of a day."""
+HOURS, LONGEST = 200.0, 7200.0
+"""T a^2 in h (m/s2)^2, and the longest time a day, s."""
+
+
+def limit_time(a_hv: float) -> float:
+    """T = 200/a^2 hours a day, here in s, of a total value, m/s2; infinite for 0."""
+    return 3600 * HOURS / a_hv**2 if a_hv > 0 else inf
+
+
+def allowed_time(a_hv: float) -> float:
+    """Time a day, s, that a tool may be used for: T, but at most two hours."""
+    return min(limit_time(a_hv), LONGEST)
+
 
 DAY = 86_400.0
 """s."""

@@ -19,8 +19,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.exposure.bands import EDGES
-from equipoise.exposure.checks import of_axes, rising
+from equipoise.exposure.weighting import EDGES, of_axes, rising
 from equipoise.signals import harmonics
 
 Array = np.ndarray[Any, Any]

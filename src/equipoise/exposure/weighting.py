@@ -1,4 +1,6 @@
-"""The frequency weighting Wh of hand-transmitted vibration, exactly: ISO 5349-1, Annex A.
+"""The frequency weighting Wh of ISO 5349-1, Annex A, exactly; its bands, and weighted vibration.
+
+The frequency weighting Wh of hand-transmitted vibration, exactly: ISO 5349-1, Annex A.
 
 Analog filters in series, with s = i f where f is the frequency in Hz:
 
@@ -7,18 +9,91 @@ Analog filters in series, with s = i f where f is the frequency in Hz:
     a-v transition  K (1 + s/f3) / (1 + s/(Q2 f4) + s^2/f4^2)
 
 The transition leaves acceleration as it is below some 16 Hz and makes a velocity of it above.
+
+One-third-octave bands: their exact middles 10^(n/10) Hz, their names, and sums over them.
+
+Source of middles and edges: IEC 61260-1, system of base ten; of the range: ISO 5349-1, Table A.2.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import pi, sqrt
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.quantities.units import HUGE, TINY
+from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
+
+AXES = ("x", "y", "z")
+
+
+def not_negative(name: str, value: Any, unit: str = "m/s^2") -> float:
+    """A finite number of 0 or more."""
+    if isinstance(value, bool) or not isinstance(value, int | float | np.floating | np.integer):
+        raise UsageError(f"{name}: got {value!r}; give a number of 0 or more")
+    if value != 0 and not TINY <= value <= HUGE:
+        raise UsageError(f"{name}: got {value:g} {unit}; give a finite number of 0 or more")
+    return float(value)
+
+
+def row(name: str, values: Any, unit: str) -> Array:
+    """Finite numbers (N,)."""
+    found = _numbers(name, values)
+    if found.ndim != 1 or not found.size:
+        raise UsageError(f"{name}: got the shape {found.shape}; give a row of numbers in {unit}")
+    return found
+
+
+def rising(name: str, values: Any, unit: str) -> Array:
+    """Finite numbers (N,), each larger than the one before."""
+    found = row(name, values, unit)
+    if not np.all(np.diff(found) > 0):
+        raise UsageError(f"{name}: the values must rise from one to the next")
+    return found
+
+
+def of_axes(name: str, values: Any, count: int) -> Array:
+    """Finite numbers (axes, count) of one to three axes; a single row is one axis."""
+    found = _numbers(name, values)
+    found = found[np.newaxis] if found.ndim == 1 else found
+    if found.ndim != 2 or not 1 <= len(found) <= len(AXES) or found.shape[1] != count:
+        raise UsageError(
+            f"{name}: got the shape {np.shape(values)}; give one to three axes of {count} values"
+        )
+    return found
+
+
+def amplitudes(name: str, values: Any, count: int) -> Array:
+    """As `of_axes`, of 0 or more."""
+    found = of_axes(name, values, count)
+    if np.any(found < 0):
+        raise UsageError(f"{name}: got {np.min(found):g}; give values of 0 or more")
+    return found
+
+
+def sizes(name: str, values: Any) -> Array:
+    """Absolute values of complex numbers of any shape."""
+    try:
+        found: Array = np.abs(np.array(values, dtype=complex))
+    except (TypeError, ValueError):
+        raise UsageError(f"{name}: got {type(values).__name__}; give rows of numbers") from None
+    return found
+
+
+def _numbers(name: str, values: Any) -> Array:
+    try:
+        found = np.array(values, dtype=float)
+    except (TypeError, ValueError):
+        raise UsageError(f"{name}: got {type(values).__name__}; give rows of numbers") from None
+    if not np.all(np.abs(found) <= HUGE):
+        raise UsageError(f"{name}: a value is not finite; give finite numbers")
+    return found
+
 
 F1, F2 = 10**0.8, 10**3.1
 """Hz, corners of the band limits.  This and what follows: ISO 8041-1, Table 3, row Wh, as quoted in
@@ -76,3 +151,131 @@ def _within(frequency: Any) -> tuple[Array, Array]:
     if np.any(np.isnan(values)):
         raise UsageError("frequency: got a value that is no number; give frequencies in Hz")
     return np.clip(values, -FASTEST, FASTEST), np.abs(values) > FASTEST
+
+
+NUMBERS = tuple(range(8, 32))
+"""n of the bands that Wh is given for; band n has its middle at 10^(n/10) Hz."""
+NOMINAL: tuple[float, ...] = (
+    *(6.3, 8.0, 10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0, 50.0),
+    *(63.0, 80.0, 100.0, 125.0, 160.0, 200.0, 250.0, 315.0, 400.0, 500.0),
+    *(630.0, 800.0, 1000.0, 1250.0),
+)
+"""Hz, names of these bands."""
+MIDDLES = 10 ** (np.array(NUMBERS) / 10)
+"""Hz, (24,)."""
+EDGES = 10 ** ((np.arange(8, 33) - 0.5) / 10)
+"""Hz, (25,): band k reaches from edge k to edge k + 1."""
+
+NEAR = 0.06
+"""Bands, by which a nominal frequency may miss the exact one: 31.5 Hz misses it by 0.02."""
+
+
+def band_factors() -> dict[float, float]:
+    """Factor of every band by its nominal frequency, Hz, taken at its exact middle."""
+    return dict(zip(NOMINAL, factor(MIDDLES).tolist(), strict=True))
+
+
+def exact_middles(frequency: Array) -> Array:
+    """Exact middles, Hz, of bands (K,) that are given by nominal or exact ones.
+
+    Raises
+    ------
+    UsageError : a frequency is the middle of no band from 6.3 to 1250 Hz.
+    """
+    with np.errstate(divide="ignore"):
+        number = 10 * np.log10(frequency)
+    nearest = np.clip(np.nan_to_num(np.rint(number)), NUMBERS[0], NUMBERS[-1])
+    for given, wrong in zip(frequency, np.abs(number - nearest) > NEAR, strict=True):
+        if wrong:
+            raise UsageError(
+                f"frequency: got {given:g} Hz; give middles of one-third-octave bands, 6.3, 8, 10, "
+                "12.5 Hz and so on to 1250 Hz"
+            )
+    middles: Array = 10 ** (nearest / 10)
+    return middles
+
+
+def rms_in_bands(frequency: Array, squares: Array) -> Array:
+    """RMS (axes, 24) in every band of lines (K,), Hz, with mean squares (axes, K).
+
+    A line belongs to the band between whose edges it lies: the bands are ideal filters.
+    """
+    at = np.searchsorted(EDGES, frequency, side="right") - 1
+    inside = (at >= 0) & (at < len(NUMBERS))
+    sums = [np.bincount(at[inside], weights=row[inside], minlength=len(NUMBERS)) for row in squares]
+    return np.sqrt(np.array(sums).reshape(len(squares), len(NUMBERS)))
+
+
+Kind = Literal["signal", "spectrum", "bands", "orders"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Weighted(Result):
+    """Weighted acceleration of a handle; see docs/exposure.md.
+
+    kind : what it comes from.
+    axes : names of the axes that were measured.
+    a_h : (axes,) RMS without weighting and without the mean, m/s2; None where it is not known.
+    a_hw : (axes,) weighted RMS, m/s2.
+    a_hv : vibration total value, m/s2.
+    band_a_h, band_a_hw : (axes, 24) the same in one-third-octave bands from 6.3 to 1250 Hz.
+    single_axis : whether the total value is estimated from the largest axis.
+    duration, sampling_rate : of a signal, s and Hz; else None.
+    notes : what deserves a second look, as sentences.
+    """
+
+    kind: Kind
+    axes: tuple[str, ...]
+    a_h: Array | None
+    a_hw: Array
+    a_hv: float
+    band_a_h: Array | None
+    band_a_hw: Array
+    single_axis: bool = False
+    duration: float | None = None
+    sampling_rate: float | None = None
+    notes: tuple[str, ...] = ()
+
+    @property
+    def dominant_axis(self) -> str:
+        """The axis with the largest weighted value."""
+        return self.axes[int(np.argmax(self.a_hw))]
+
+    @property
+    def dominant_band(self) -> float | None:
+        """Nominal frequency, Hz, of the band with the largest weighted value; None if all are 0."""
+        sums = np.sum(self.band_a_hw**2, axis=0)
+        return NOMINAL[int(np.argmax(sums))] if np.any(sums) else None
+
+    @property
+    def dominant_share(self) -> float:
+        """Share of the weighted mean squares of all axes that lies in that band."""
+        sums = np.sum(self.band_a_hw**2, axis=0)
+        whole = float(np.sum(self.a_hw**2))
+        return float(np.max(sums)) / whole if whole else 0.0
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as plain data, in SI units."""
+        return {
+            "kind": self.kind,
+            "axes": list(self.axes),
+            "duration": self.duration,
+            "sampling_rate": self.sampling_rate,
+            "a_h": _plain(self.a_h),
+            "a_hw": _plain(self.a_hw),
+            "a_hv": self.a_hv,
+            "single_axis": self.single_axis,
+            "dominant_axis": self.dominant_axis,
+            "dominant_band": self.dominant_band,
+            "dominant_share": self.dominant_share,
+            "bands": {
+                "frequency": list(NOMINAL),
+                "a_h": _plain(self.band_a_h),
+                "a_hw": _plain(self.band_a_hw),
+            },
+            "notes": list(self.notes),
+        }
+
+
+def _plain(values: Array | None) -> Any:
+    return None if values is None else values.tolist()

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.exposure.daily import Exposure, Task, daily_exposure
-from equipoise.exposure.iso_22867 import equivalent
+from equipoise.exposure.daily import Exposure, Task, daily_exposure, equivalent
 from equipoise.exposure.weighting import squared_factor
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.duals import Dual, variables

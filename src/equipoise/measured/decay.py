@@ -10,10 +10,9 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.measured.estimate import Quantity
+from equipoise.measured.fits import WholeFit, fit_whole, line_of_swings
 from equipoise.measured.record import Kind, Record, positive
-from equipoise.measured.swings import line_of_swings
 from equipoise.measured.turning import Turns, find_turns
-from equipoise.measured.wholefit import WholeFit, fit_whole
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]

@@ -1,9 +1,18 @@
-"""A recorded or simulated decay, as a value."""
+"""A recorded decay as a value, and free motion with damping and friction to simulate one.
+
+Free motion with viscous damping and Coulomb friction, exactly: one formula a half-swing.
+
+x'' + 2 sigma x' + (beta^2 + sigma^2) (x - center) = -+ (beta^2 + sigma^2) d, where sigma is the
+decay rate, beta the damped angular frequency and d the Coulomb friction over the stiffness.
+Between two turning points the friction keeps its sense, so that the motion is one about a centre
+moved by d; it ends where a turning point lies within d of the centre, since the spring no longer
+overcomes the friction (that at rest is taken to be that in motion).
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import isfinite
+from math import atan2, isfinite, pi, sqrt
 from typing import Any, Literal
 
 import numpy as np
@@ -107,3 +116,139 @@ def _column(name: str, values: Any) -> Array:
         raise UsageError(f"{name}: a value is not finite; leave such samples out")
     column.flags.writeable = False
     return column
+
+
+@dataclass(frozen=True)
+class Swinging:
+    """A free motion, told from one of its turning points.
+
+    Parameters
+    ----------
+    turned : time of that turning point, s.
+    side : +1 where the displacement there is above the centre, -1 below.
+    amplitude : its distance from the centre, in the record's unit.
+    center : the position that the spring pulls to.
+    damped : beta, damped angular frequency, rad/s.
+    rate : sigma, 1/s; negative where the motion grows.
+    friction : d, in the record's unit; a negative one feeds the motion.
+    """
+
+    turned: float
+    side: float
+    amplitude: float
+    center: float
+    damped: float
+    rate: float
+    friction: float
+
+    @property
+    def half_period(self) -> float:
+        """Time from turning point to turning point, s."""
+        return pi / self.damped
+
+    @property
+    def loss(self) -> float:
+        """-ln of the ratio of two half-swings without Coulomb friction."""
+        return self.rate * self.half_period
+
+    def reaches(self, number: Array) -> Array:
+        """How far half-swings set out from the centre of each: A_k, at or below 0 where none does.
+
+        number : (K,) whole numbers; half-swing 0 begins at the turning point told.
+        """
+        return reaches(number, self.amplitude, self.loss, self.friction)
+
+    def displacement(self, time: Array) -> Array:
+        """Displacement (N,) at times (N,), which may lie before the turning point told."""
+        since = (time - self.turned) / self.half_period
+        number = np.floor(since).astype(int)
+        stop = self._stop(number)
+        number = np.minimum(number, stop)
+        first = int(np.min(number, initial=0))
+        reach = self.reaches(np.arange(first, int(np.max(number, initial=0)) + 1))[number - first]
+        after = np.where(number < stop, pi * (since - number), 0.0)  # at rest: as at the turn
+        slow = self.rate / self.damped
+        shape = np.exp(-slow * after) * (np.cos(after) + slow * np.sin(after))
+        sense = np.where(number % 2 == 0, self.side, -self.side)
+        moved: Array = self.center + sense * (self.friction + reach * shape)
+        return moved
+
+    def _stop(self, number: Array) -> int:
+        """First half-swing among those asked for that does not come about, or one beyond them."""
+        last = int(np.max(number, initial=0))
+        stuck = self.reaches(np.arange(max(last, 0) + 1)) <= 0
+        return int(np.argmax(stuck)) if stuck.any() else last + 1
+
+
+def reaches(number: Array, amplitude: float, loss: float, friction: float) -> Array:
+    """A_k = A_0 r^k - 2 d (1 + r + ... + r^(k-1)) with A_0 = amplitude - d and r = exp(-loss)."""
+    power = np.exp(-loss * number)
+    total = number if abs(loss) < 1e-12 else np.expm1(-loss * number) / np.expm1(-loss)
+    reach: Array = (amplitude - friction) * power - 2 * friction * total
+    return reach
+
+
+def simulate_decay(
+    time: Any,
+    *,
+    natural_frequency: float,
+    damping_ratio: float = 0.0,
+    coulomb: float = 0.0,
+    start: float = 1.0,
+    velocity: float = 0.0,
+    center: float = 0.0,
+    noise: float = 0.0,
+    seed: int = 1,
+    kind: Kind = "length",
+) -> Record:
+    """Free decay with viscous damping and Coulomb friction: exact, not integrated.
+
+    Parameters
+    ----------
+    time : (N,), s, rising; the motion begins at the first.
+    natural_frequency : undamped angular frequency sqrt(stiffness / inertia), rad/s.
+    damping_ratio : of the viscous damping, 0 to below 1.
+    coulomb : Coulomb friction over stiffness, m or rad.
+    start, velocity : displacement and velocity at the first time.
+    center : displacement at which the spring is at ease.
+    noise : standard deviation of the normally distributed noise that is added.
+    seed : of that noise.
+    kind : ``"length"`` or ``"angle"``.
+
+    Raises
+    ------
+    UsageError : a value cannot be used.
+    """
+    positive("natural_frequency", natural_frequency)
+    if not 0 <= damping_ratio < 1:
+        raise UsageError(f"damping_ratio: got {damping_ratio:g}; give 0 to below 1")
+    for name, value in (("coulomb", coulomb), ("noise", noise)):
+        if not value >= 0:
+            raise UsageError(f"{name}: got {value:g}; give 0 or more")
+    still = Record(time, np.zeros(np.shape(time)), kind)
+    rate = damping_ratio * natural_frequency
+    damped = natural_frequency * sqrt(1 - damping_ratio**2)
+    motion = _from_start(float(still.time[0]), start - center, velocity, damped, rate, coulomb)
+    displacement = center + motion.displacement(still.time)
+    if noise:
+        displacement += np.random.default_rng(seed).normal(0.0, noise, displacement.shape)
+    return Record(still.time, displacement, kind)
+
+
+def _from_start(
+    time: float, start: float, velocity: float, damped: float, rate: float, friction: float
+) -> Swinging:
+    """The motion about 0 that passes `start` with that velocity."""
+    if velocity == 0:
+        side = 1.0 if start >= 0 else -1.0
+        return Swinging(time, side, abs(start), 0.0, damped, rate, friction)
+    side = 1.0 if velocity > 0 else -1.0  # it turns on the side to which it moves
+    away = side * start + friction  # from the centre that friction has moved
+    speed = side * velocity
+    sine = (speed + rate * away) / damped
+    turn = atan2(speed, rate * sine + damped * away)  # the velocity is 0; 0 < turn < pi
+    slow = rate / damped
+    reach = np.exp(-slow * turn) * (away * np.cos(turn) + sine * np.sin(turn))
+    return Swinging(
+        time + turn / damped, side, float(reach) - friction, 0.0, damped, rate, friction
+    )

@@ -15,9 +15,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.measured.extremes import means, zigzag
-from equipoise.measured.local import Local, fitted, steepest_time, top
 from equipoise.measured.record import Record
+from equipoise.measured.smoothing import Local, fitted, means, steepest_time, top, zigzag
 
 Array = np.ndarray[Any, Any]
 

@@ -9,7 +9,7 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.instants import Signal, largest, roots, smallest
 from equipoise.mechanism.tip import STEP, TipCurve
-from equipoise.planting.vectors import (
+from equipoise.planting.stroke import (
     Array,
     Figures,
     direction,

@@ -1,15 +1,50 @@
-"""What a search of geometry has to reach: targets, limits, and figures to make small or large."""
+"""What a search of geometry has to reach, and designs judged by it, many at once."""
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from math import pi, radians
 from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.errors import UsageError
-from equipoise.planting.names import TURNING, dimension_of
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.mechanism.family import Family
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine, unknown
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.designs import Designs
+from equipoise.planting.figures import tip_figures
+from equipoise.planting.stroke import soil_crossings
+
+_NAMES = {
+    "length": "height width length lift depth x y surface hill_spacing smallest_radius "
+    "path_length_machine path_length_ground ground_advance ground_distance hole_length",
+    "angle": "crank_angle direction attitude crank_travel min_at max_at transmission",
+    "speed": "velocity ground_velocity max_speed min_speed forward_speed highest_forward_speed",
+    "acceleration": "acceleration max_acceleration min_acceleration limit",
+    "time": "time",
+    "frequency": "planting_frequency",
+    "angular speed": "speed highest_speed",
+}
+_DIMENSIONS = {name: kind for kind, names in _NAMES.items() for name in names.split()}
+
+TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
+"""Last parts of the names of angles that are the same after a turn."""
+
+
+def dimension_of(figure: str) -> str | None:
+    """Dimension of a figure such as ``curve.height``, or None for a plain number."""
+    *path, last = figure.split(".")
+    if path and path[0] == "ratio" and last in ("min", "max"):
+        return None
+    if path and path[0] == "clearance" and last == "value":
+        return "length"
+    component = last in ("size", "value", "min") or (last in ("x", "y") and len(path) > 1)
+    return _DIMENSIONS.get(path[-1] if path and component else last)
+
 
 Array = np.ndarray[Any, Any]
 
@@ -119,3 +154,131 @@ class Goal:
         if self.make is None:
             return np.zeros_like(values)
         return values if self.make == "smallest" else -values
+
+
+GRID = 180
+"""Crank angles between which instants of designs are looked for."""
+OPEN = 1e-4
+"""Squared sine of the smallest transmission angle (0.6 deg) below which a design counts as open."""
+LEAST_LIFT = 0.01
+"""Share of the path's height by which the tip of a design has to rise above the soil."""
+COST_OF_OPEN, COST_OF_NONE = 1e9, 1e8
+"""Cost of a design that cannot turn, and of one that lacks a figure."""
+LIMITS = 1e3
+"""Weight of limits beside targets in the global search."""
+
+
+@dataclass(frozen=True, eq=False)
+class Outcome:
+    """Designs judged, P of them.
+
+    off : (P, T) targets, in steps.  slack : (P, L) limits, in steps, negative outside.
+    size : (P,) what is to become small, in steps.  worst : (P,) see `OPEN`.
+    """
+
+    off: Array
+    slack: Array
+    size: Array
+    worst: Array
+
+    @property
+    def kept(self) -> Array:
+        """Whether a design can turn and keeps every limit (P,)."""
+        kept: Array = (self.worst > OPEN) & np.all(self.slack >= 0, axis=1)
+        return kept & np.isfinite(self.cost)
+
+    @cached_property
+    def cost(self) -> Array:
+        """One number (P,) for the global search."""
+        outside = np.maximum(-self.slack, 0.0)
+        cost = np.sum(self.off**2, axis=1) + self.size
+        cost = cost + LIMITS * np.sum(outside + outside**2, axis=1)
+        cost = np.where(np.isfinite(cost), cost, COST_OF_NONE)
+        opened: Array = np.where(self.worst > OPEN, cost, COST_OF_OPEN * (1 - self.worst))
+        return opened
+
+
+class Problem:
+    """Designs of a machine and the goals that they have to meet.
+
+    judged : number of designs so far.
+    """
+
+    def __init__(self, designs: Designs, goals: Sequence[Goal]) -> None:
+        self.designs, self.goals = designs, tuple(goals)
+        self.judged = 0
+        self.groups = {goal.group for goal in goals}
+        if not self.goals:
+            raise UsageError("goals: there is none; give at least one")
+        known = _figures([designs.machine])
+        for goal in goals:
+            if goal.figure not in known:
+                raise UsageError(f"goals: {unknown(goal.figure, known, 'figure')}")
+        self.scales = [goal.scale(float(known[goal.figure][0])) for goal in goals]
+
+    @property
+    def makes(self) -> bool:
+        """Whether a figure is to become small or large."""
+        return any(goal.make for goal in self.goals)
+
+    def judge(self, values: Array) -> Outcome:
+        """Judge designs (P, n)."""
+        self.judged += len(values)
+        machines, worst = self._built(values)
+        good = worst > OPEN
+        found = {goal.figure: np.full(len(values), np.nan) for goal in self.goals}
+        if np.any(good):
+            some = [m for m, g in zip(machines, good, strict=True) if g and m is not None]
+            computed = _figures(some, self.groups, turns=1)  # dyads alone are back after one
+            for name, column in found.items():
+                column[good] = computed[name]
+        off, slack, size = [], [], np.zeros(len(values))
+        for goal, scale in zip(self.goals, self.scales, strict=True):
+            column = found[goal.figure]
+            if goal.target is not None:
+                off.append(goal.off(column) / scale)
+            slack += [part / scale for part in goal.slack(column)]
+            size = size + goal.size(column) / scale
+        return Outcome(_columns(off, len(values)), _columns(slack, len(values)), size, worst)
+
+    def _built(self, values: Array) -> tuple[list[Machine | None], Array]:
+        """Machines, and the smallest number (P,) of any of their dyads round the turn."""
+        machines: list[Machine | None] = []
+        for row in values:
+            try:
+                machine = self.designs.build(row)
+                assemble(machine)
+                machines.append(machine)
+            except EquipoiseError:  # lengths of nothing, pins that coincide
+                machines.append(None)
+        worst = np.full(len(values), -1.0)
+        built = [k for k, machine in enumerate(machines) if machine is not None]
+        if built:
+            family = Family([assemble(m) for m in machines if m is not None])
+            theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (len(built), GRID + 1))
+            with np.errstate(all="ignore"):
+                numbers = family.numbers(family.solve(theta))
+            worst[built] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
+        return machines, worst
+
+
+def _figures(
+    machines: list[Machine], wanted: Collection[str] | None = None, turns: int | None = None
+) -> dict[str, Array]:
+    """Figures of designs by name, (P,); NaN where a design does not have one."""
+    with np.errstate(all="ignore"):
+        curve = TipCurve(machines, GRID, turns)
+        entry, leave = soil_crossings(curve)
+        found = tip_figures(curve, entry, leave, wanted=wanted)
+        lift, height = curve.highest[0] - curve.surface, curve.highest[0] - curve.lowest[0]
+        plants = np.isfinite(entry) & (lift > LEAST_LIFT * height)
+        return {name: np.where(plants, values, np.nan) for name, values in found.items()}
+
+
+def figure_names(machine: Machine) -> list[str]:
+    """Names of the figures of which a search can make goals."""
+    return list(_figures([machine]))
+
+
+def _columns(columns: list[Array], count: int) -> Array:
+    return np.stack(columns, axis=1) if columns else np.zeros((count, 0))

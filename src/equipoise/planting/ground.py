@@ -14,7 +14,7 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.instants import crossings, integral, lowest_within
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.vectors import wrapped
+from equipoise.planting.stroke import wrapped
 
 Array = np.ndarray[Any, Any]
 

@@ -19,8 +19,7 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import Call
 from equipoise.planting.designs import Designs, Sense
-from equipoise.planting.goals import Goal
-from equipoise.planting.judge import LIMITS, Problem
+from equipoise.planting.goals import LIMITS, Goal, Problem
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.results.result import Result
 

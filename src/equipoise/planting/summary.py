@@ -1,31 +1,61 @@
-"""All that is read off a planting machine, as one result."""
+"""All that is read off a planting machine, as one result, and as a table against crank angle."""
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 from math import isfinite, pi
 from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.dynamics import Forces, forces, massless
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Named
+from equipoise.mechanism.motion import MOST_ANGLES, Motion, Named, PointMotion, move
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.figures import figures
+from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
-from equipoise.planting.moments import finger_base
-from equipoise.planting.torque import SoilForces, soil_forces
-from equipoise.planting.tray import tray_crossings
-from equipoise.planting.vectors import wrapped
-from equipoise.planting.visits import Visit, visits
+from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.results.result import Result
-from equipoise.signals import Figures
+from equipoise.signals import Figures, figures
 
 Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class SoilForces:
+    """Forces of a machine in the soil, and of the same machine in the air.
+
+    motion : what both belong to.  in_soil, in_air : their forces.
+    """
+
+    motion: Motion
+    in_soil: Forces
+    in_air: Forces
+
+    def compared(self) -> dict[str, tuple[Figures, Figures]]:
+        """Figures in the air and in the soil of the drive torque and of every joint's force."""
+        air, soil = _signals(self.in_air), _signals(self.in_soil)
+        angles = self.motion.crank_angle
+        return {name: (figures(angles, air[name]), figures(angles, soil[name])) for name in air}
+
+
+def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
+    """Forces in the soil and in the air; None where no soil or not every mass is given."""
+    planting = machine.planting
+    if planting is None or planting.soil is None or massless(machine):
+        return None
+    motion = move(machine, angles)
+    dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))
+    return SoilForces(motion, forces(motion), forces(dry))
+
+
+def _signals(found: Forces) -> dict[str, Array]:
+    joints = {f"joints.{name}": joint.size for name, joint in found.joints.items()}
+    return {"drive_torque": found.drive_torque, **joints}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -123,7 +153,7 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     path, stays = GroundPath(curve), visits(curve)
     main = stays[0]
     breaks = path.sense * path.breaks(path.sense * main.entry, path.sense * main.exit)
-    found = figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
+    found = tip_figures(curve, np.array([main.entry]), np.array([main.exit]), breaks[None])
     crossed = tray_crossings(curve)
     values = _of_drive(curve) | {name: float(value[0]) for name, value in found.items()}
     known = Named("figure", ((n, value) for n, value in values.items() if isfinite(value)))
@@ -202,3 +232,49 @@ def _notes(
         yield f"{base} is below the surface at entry or exit, so that no length of a hole is told"
     if planting.finger_from is None and base is not None:
         yield f"the finger is taken from {base} to {planting.tip}; finger_from can name another"
+
+
+def table(figures: PlantingFigures, angles: int = 360) -> list[tuple[str, str, Array]]:
+    """Columns as name, unit and values (N,), over one cycle in the order of time.
+
+    angles : number of crank angles in a turn, from 0 in the sense of the drive.
+
+    The path over ground begins where the machine is at crank angle 0: X = x + v t, equation [11] of
+    Kim and Chung with a signed crank speed, so that it holds for both senses of rotation.
+    """
+    turns = figures.curve.turns
+    if not 1 <= angles <= MOST_ANGLES // turns:
+        raise UsageError(f"--angles: got {angles}; give 1 to {MOST_ANGLES // turns}")
+    speed, forward = figures["speed"], figures["forward_speed"]
+    way = np.arange(angles * turns) * (2 * pi / angles)
+    motion = move(figures.machine, np.sign(speed) * way)
+    time = way / abs(speed)
+    columns = [
+        ("crank_angle", "rad", np.mod(motion.crank_angle, 2 * pi * turns)),
+        ("time", "s", time),
+    ]
+    columns += _columns("tip", motion.points[figures.planting.tip], time, forward)
+    if figures.curve.link in motion.mass_centers:
+        center = motion.mass_centers[figures.curve.link]
+        columns += _columns("center_of_mass", center, time, forward)
+    return columns
+
+
+def _columns(
+    name: str, point: PointMotion, time: Array, forward: float
+) -> list[tuple[str, str, Array]]:
+    over_ground = point.velocity + forward
+    columns = {
+        "x": ("m", point.x),
+        "y": ("m", point.y),
+        "ground_x": ("m", point.x + forward * time),
+        "vx": ("m/s", point.vx),
+        "vy": ("m/s", point.vy),
+        "speed": ("m/s", np.abs(point.velocity)),
+        "ground_vx": ("m/s", over_ground.real),
+        "ground_speed": ("m/s", np.abs(over_ground)),
+        "ax": ("m/s^2", point.ax),
+        "ay": ("m/s^2", point.ay),
+        "acceleration": ("m/s^2", np.abs(point.acceleration_vector)),
+    }
+    return [(f"{name}.{key}", unit, values) for key, (unit, values) in columns.items()]

@@ -11,10 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
-from equipoise.exposure.bands import EDGES
-from equipoise.exposure.directive import ACTION, LIMIT
-from equipoise.exposure.iso_5349 import partial_exposure
-from equipoise.exposure.weighting import factor
+from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure
+from equipoise.exposure.weighting import EDGES, factor
 from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
@@ -33,7 +31,7 @@ from equipoise.plotting.style import (
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
-    from equipoise.exposure.weighted import Weighted
+    from equipoise.exposure.weighting import Weighted
 
 Array = np.ndarray[Any, Any]
 

@@ -32,7 +32,7 @@ from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place, told
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.studies.landscape import Landscape
+    from equipoise.studies.objective_map import Landscape
 
 Array = np.ndarray[Any, Any]
 

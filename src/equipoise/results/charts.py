@@ -1,79 +1,267 @@
-"""A chart as data: curves of a quantity, what marks them, and what they are drawn against.
+"""A chart as data: curves of quantities, what marks them, and what they are drawn against.
 
-Nothing here knows colours, inches or Matplotlib: a curve has a role, and who renders the chart
-gives each role its look.
+Nothing here knows colours, inches or Matplotlib: what is drawn has a role, and who renders the
+chart gives each role its look.  Values are in SI units; an axis tells in which unit it is read.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import pi
 from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.quantities import Dimension
+from equipoise.i18n import say
+from equipoise.quantities import Dimension, Display, display, typeset
 
 Array = np.ndarray[Any, Any]
+Across = Literal["x", "y"]
+"""Which axis a line, a band or bars stand on."""
 
-Role = Literal["main", "second", "third", "fourth", "before", "after", "air", "soil", "row", "rows"]
-"""What a curve is; its look follows."""
+PLAIN = Display("", 1.0)
+DEGREES = Display("deg", 180 / pi)
+RPM = Display("rpm", 30 / pi)
+
+
+@dataclass(frozen=True)
+class Axis:
+    """What is drawn along one axis.
+
+    label : without its unit.  unit : in which values are read, and how many of it one SI unit is.
+    scale : ``crank`` is an angle in degrees, numbered by parts of a turn.
+    low, high : ends, SI units; as the values are, with `room` (their share) beyond, where None.
+    ticks : places (SI units) and what is written there, where round numbers will not do.
+    """
+
+    label: str = ""
+    unit: Display = PLAIN
+    scale: Literal["linear", "log", "crank"] = "linear"
+    low: float | None = None
+    high: float | None = None
+    room: float = 0.05
+    ticks: tuple[tuple[float, str], ...] | None = None
+
+    @classmethod
+    def of(
+        cls,
+        label: str,
+        dimension: Dimension | None,
+        values: Any = (),
+        usual: tuple[str, str, str] | None = None,
+        **rest: Any,
+    ) -> Axis:
+        """An axis in the unit in which some values (SI, complex ones by their parts) read best."""
+        parts = np.ravel(np.asarray(values))
+        parts = np.concatenate([parts.real, parts.imag]) if np.iscomplexobj(parts) else parts
+        return cls(label, display(dimension, parts, usual), **rest)
+
+    @property
+    def unit_name(self) -> str:
+        """The unit as print has it."""
+        return "deg" if self.unit.unit == "deg" else self.unit.name
+
+    @property
+    def text(self) -> str:
+        """Label and unit."""
+        if not self.unit.unit:
+            return self.label
+        return say("{quantity}, {unit}", quantity=self.label, unit=self.unit_name)
+
+    def told(self, value: float) -> str:
+        """A value in SI units as a number of this axis, with a true minus."""
+        return shown(self.unit.factor * value)
+
+    def quantity(self, value: float) -> str:
+        """The same with its unit."""
+        return f"{self.told(value)} {self.unit_name}".rstrip()
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values (N,) over the abscissa of the panel, in SI units.
+    """Values (N,) over places (N,), SI units; NaN where there are none.
 
-    x : (N,) where it differs from that of the panel.
+    role : names the look.  steps : whether values hold up to the next place.
+    dashed : whether it is drawn so, whatever its role.
     """
 
+    x: Array
     y: Array
     label: str = ""
-    role: Role = "main"
-    x: Array | None = None
+    role: str = "main"
+    steps: bool = False
+    dashed: bool = False
 
 
-@dataclass(frozen=True)
-class Mark:
-    """A place of a curve that is told, such as an extreme; SI units."""
+@dataclass(frozen=True, eq=False)
+class Area:
+    """What lies between two curves low and high, (N,), over places (N,); SI units."""
 
-    x: float
-    y: float
-    text: str = ""
+    x: Array
+    low: Array
+    high: Array
+    role: str
+    label: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Bars:
+    """Bars of some sizes (N,) at places (N,), SI units.
+
+    width : in units of the places.  across : the axis on which they stand.
+    told : whether their sizes are written at their ends.
+    roles : of each bar, where they differ.
+    """
+
+    at: Array
+    size: Array
+    width: float | Array
+    role: str = "main"
+    label: str = ""
+    across: Across = "x"
+    told: bool = False
+    roles: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
 class Band:
-    """A stretch of the abscissa that is shaded, such as the stay in the soil; SI units."""
+    """A stretch of an axis that is shaded, SI units."""
 
     low: float
     high: float
-    role: Literal["soil", "forbidden", "resonance"] = "soil"
+    role: str
+    label: str = ""
+    axis: Across = "x"
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line from end to end at a place of an axis, SI units."""
+
+    at: float
+    role: str
+    label: str = ""
+    axis: Across = "x"
+
+
+@dataclass(frozen=True)
+class Mark:
+    """A place that is told, such as an extreme; SI units.
+
+    wish : direction in which its text stands best, deg.  sign : whether a sign stands at the place.
+    optional : whether the text may be left out where there is no room.
+    near : least distance of the text from the place, points.
+    """
+
+    x: float
+    y: float
+    text: str = ""
+    role: str = "main"
+    wish: float = 90.0
+    sign: bool = True
+    optional: bool = False
+    near: float = 7.0
+    bold: bool = False
+    label: str = ""
+
+
+@dataclass(frozen=True)
+class Flag:
+    """Words above the axes, in one or more rows, with a line down to a place of the x axis.
+
+    weight : where there is no room for all, those that weigh less are left out.
+    """
+
+    at: float
+    texts: tuple[str, ...]
+    weight: float = 1.0
+
+
+@dataclass(frozen=True)
+class Aside:
+    """Words at the right of the axes, with a line to a place of the y axis."""
+
+    at: float
+    text: str
+    role: str = "ink"
+
+
+@dataclass(frozen=True)
+class Arrow:
+    """From one place to another, x + iy, SI units."""
+
+    tail: complex
+    head: complex
+    role: str = "main"
 
 
 @dataclass(frozen=True, eq=False)
-class Axis:
-    """What is drawn along an axis.
+class Outline:
+    """A closed line (N,) of places x + iy, SI units, that is filled."""
 
-    dimension : of its values; plain numbers where None.
-    values : (N,) common abscissa of the curves; None on the other axis.
+    places: Array
+    role: str
+    label: str = ""
+    holes: tuple[Array, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """Values (J, K) over places x (K,) and y (J,), SI units; NaN where there are none.
+
+    told : what is written at lines of equal value, by a function of the value in SI units.
+    lacking : what it is called where there are no values.
     """
 
-    label: str
-    dimension: Dimension | None = None
-    values: Array | None = None
-    logarithmic: bool = False
+    x: Array
+    y: Array
+    values: Array
+    axis: Axis
+    lacking: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Panel:
-    """One pair of axes."""
+    """One pair of axes with what stands in them.
+
+    title : above the left end.  remark : above the right end, small.
+    message : in the middle, where there is nothing else.
+    keyed : whether its curves are told in a legend of its own, above it, and not in the chart's.
+    equal : whether both axes have one scale; rings : circles about the origin instead of a grid.
+    bare : without axes.  height : points; as wide as it needs where `equal`.
+    flag_words : what the rows of flags are.  left, right : lines of words beside the axes.
+    right_axis : places on the y axis, and what is written at the right end; its label.
+    zero : whether a thin line at 0 is drawn.
+    """
 
     x: Axis
     y: Axis
-    curves: tuple[Curve, ...]
-    title: str = ""
+    curves: tuple[Curve, ...] = ()
     marks: tuple[Mark, ...] = ()
     bands: tuple[Band, ...] = ()
+    lines: tuple[Line, ...] = ()
+    bars: tuple[Bars, ...] = ()
+    areas: tuple[Area, ...] = ()
+    arrows: tuple[Arrow, ...] = ()
+    outlines: tuple[Outline, ...] = ()
+    flags: tuple[Flag, ...] = ()
+    flag_words: tuple[str, ...] = ()
+    asides: tuple[Aside, ...] = ()
+    surface: Surface | None = None
+    title: str = ""
+    remark: str = ""
+    message: str = ""
+    keyed: bool = False
+    equal: bool = False
+    rings: bool = False
+    bare: bool = False
+    zero: bool = True
+    grid: bool = True
+    height: float = 0.0
+    left: tuple[str, ...] = ()
+    right: tuple[str, ...] = ()
+    right_axis: Axis | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,9 +269,26 @@ class Chart:
     """Panels that belong together.
 
     name : of the picture, also as a file.  title : of the machine.  what : that is shown.
+    columns : panels side by side.  stacked : whether panels below each other share their x axes.
+    keys : roles and names for the legend, before those of what is drawn.
+    foot : one label for the x axes of all panels.  words : lines below the heading.
     """
 
     name: str
     title: str
     what: str
     panels: tuple[Panel, ...]
+    columns: int = 1
+    stacked: bool = True
+    keys: tuple[tuple[str, str], ...] = ()
+    foot: str = ""
+    words: tuple[str, ...] = ()
+
+    def named(self, name: str) -> Chart:
+        """The same by another name."""
+        return replace(self, name=name)
+
+
+def shown(value: float) -> str:
+    """Four significant digits, with a true minus."""
+    return typeset(f"{value:.4g}")

@@ -17,9 +17,9 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.exposure.checks import AXES
 from equipoise.exposure.daily import Task
 from equipoise.exposure.signal import UNEVEN_STEPS, uneven
+from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
 from equipoise.schema import csv_columns
 from equipoise.schema.csv_columns import Forms, arrays_of

@@ -15,9 +15,19 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities.problems import described
 from equipoise.schema.files import printable
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
+from equipoise.studies.design_space import (
+    Choices,
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Spread,
+    Uniform,
+    Vary,
+)
 from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.spread import Choices, Normal, Range, Spread, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary, from_plain
+from equipoise.studies.study import Study, from_plain
 
 if TYPE_CHECKING:
     from equipoise.schema import document_study

@@ -19,9 +19,10 @@ from equipoise.schema.template import Template
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.studies.run import Told
+    from equipoise.studies.design_space import Output, Vary
+    from equipoise.studies.run import OnProgress
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Output, Study, Vary
+    from equipoise.studies.study import Study
 
 
 def resume(
@@ -29,7 +30,7 @@ def resume(
     *,
     workers: int | None = None,
     cluster: str | None = None,
-    progress: Told | None = None,
+    progress: OnProgress | None = None,
 ) -> Store:
     """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
 

@@ -17,8 +17,7 @@ from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
-from equipoise.planting.goals import Goal
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import Goal, dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.fields import PAIR, Table
 from equipoise.schema.files import FileError, printable, read_text

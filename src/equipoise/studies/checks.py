@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import inf, isfinite, prod
-from typing import TYPE_CHECKING, Any
+from typing import Any, get_args
 
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown, wrong_text
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
+from equipoise.studies.design_space import (
+    KEYS,
+    Choices,
+    Command,
+    Correlation,
+    Make,
+    Method,
+    Model,
+    Output,
+    Range,
+    Sampling,
+    Vary,
+)
 
-if TYPE_CHECKING:
-    from equipoise.studies.study import Output, Study, Vary
-
-METHODS = ("grid", "sobol", "latin-hypercube", "monte-carlo")
-COMMANDS = ("analyze", "plant", "respond", "balance", "tool")
-MAKES = ("smallest", "largest")
+METHODS, COMMANDS, MAKES = map(get_args, (Method, Command, Make))
 
 MOST_DESIGNS = 1_000_000_000
 MOST_VARIED, MOST_OUTPUTS, MOST_CHUNK, MOST_SEED = 1000, 1000, 10_000_000, 2**32 - 1
@@ -25,27 +32,21 @@ ANGLES, TOLERANCE = (8, 65_536), (1e-12, 0.1)
 """Fewest and most crank angles in a turn; least and largest tolerance of the figures."""
 RESERVED = ("design", "done", "kept", "reason")
 """Names of columns that a store of designs has anyway."""
-KEYS: dict[type[Any], str] = {
-    Range: "range",
-    Choices: "list",
-    Normal: "normal",
-    Uniform: "uniform",
-}
 
 
-def check_numbers(study: Study) -> list[tuple[float, str | None]]:
+def check_numbers(model: Model, vary: Sequence[Vary]) -> list[tuple[float, str | None]]:
     """Number and dimension of everything that varies, as the model has it.
 
     Raises
     ------
     ModelError : nothing varies, or the model has no such number, or one of them twice.
     """
-    if not study.vary:
+    if not vary:
         raise ModelError("vary", "there is none; give at least one [[vary]]")
-    if len(study.vary) > MOST_VARIED:
-        raise ModelError("vary", f"got {len(study.vary)}; at most {MOST_VARIED} numbers may vary")
+    if len(vary) > MOST_VARIED:
+        raise ModelError("vary", f"got {len(vary)}; at most {MOST_VARIED} numbers may vary")
     first: dict[str, int] = {}
-    for number, one in enumerate(study.vary, 1):
+    for number, one in enumerate(vary, 1):
         if one.path in first:
             raise ModelError(
                 f"vary[{number}].path",
@@ -59,11 +60,11 @@ def check_numbers(study: Study) -> list[tuple[float, str | None]]:
                 f"vary[{number}].path", f"got {path!r}; no column can have / in its name, rename it"
             )
         try:
-            numbers.append(study.model.number(path))
+            numbers.append(model.number(path))
         except ModelError as error:
             raise ModelError(f"vary[{number}].path", error.what) from error
     try:
-        study.model.machine({path: value for path, (value, _) in zip(first, numbers, strict=True)})
+        model.machine({path: value for path, (value, _) in zip(first, numbers, strict=True)})
     except ModelError as error:
         place = f"vary[{first[error.where]}].path" if error.where in first else "model"
         what = error.what if error.where in first else f"{error.where}: {error.what}"
@@ -71,27 +72,14 @@ def check_numbers(study: Study) -> list[tuple[float, str | None]]:
     return numbers
 
 
-def problems(study: Study) -> Iterator[ModelError]:
-    """Everything else that is wrong with a study, the first things first."""
-    yield from wrong_text("title", study.title)
-    for number, one in enumerate(study.vary, 1):
-        yield from _wrong_spread(f"vary[{number}]", one, study)
-    yield from _wrong_sampling(study)
-    yield from _wrong_correlations(study)
-    yield from _wrong_outputs(study)
-    yield from _wrong_accuracy(study)
-    if not 0 <= study.chunk <= MOST_CHUNK:
-        yield ModelError("chunk", f"got {study.chunk}; give 1 to {MOST_CHUNK} designs")
-
-
 # -- what varies, and how --------------------------------------------------------------------------
 
 
-def _wrong_spread(where: str, one: Vary, study: Study) -> Iterator[ModelError]:
+def wrong_spread(where: str, one: Vary, model: Model, method: Method) -> Iterator[ModelError]:
     spread = one.spread
     key = f"{where}.{KEYS[type(spread)]}"
-    grid = study.sampling.method == "grid"
-    if isinstance(study.model.number(one.path)[0], int):
+    grid = method == "grid"
+    if isinstance(model.number(one.path)[0], int):
         if spread.tolerance:
             yield ModelError(key, f"{one.path} is a whole number; give a range or a list")
         if isinstance(spread, Choices) and not all(map(float.is_integer, spread.values)):
@@ -102,7 +90,7 @@ def _wrong_spread(where: str, one: Vary, study: Study) -> Iterator[ModelError]:
         if not grid and spread.steps is not None:
             yield ModelError(
                 f"{where}.steps",
-                f"goes with a grid, not with {study.sampling.method}; leave it out",
+                f"goes with a grid, not with {method}; leave it out",
             )
     if grid and (not isinstance(spread, Range) or spread.steps is not None):
         try:
@@ -111,12 +99,11 @@ def _wrong_spread(where: str, one: Vary, study: Study) -> Iterator[ModelError]:
             yield ModelError(key, str(error))
 
 
-def _wrong_sampling(study: Study) -> Iterator[ModelError]:
-    sampling = study.sampling
+def wrong_sampling(sampling: Sampling, vary: Sequence[Vary]) -> Iterator[ModelError]:
     if sampling.method not in METHODS:
         yield ModelError("sampling.method", unknown(sampling.method, METHODS, "method"))
     if sampling.method == "grid":
-        size = prod(study.shape)
+        size = prod(shape_of(vary))
         if sampling.designs is not None:
             yield ModelError(
                 "sampling.designs",
@@ -138,12 +125,14 @@ def _wrong_sampling(study: Study) -> Iterator[ModelError]:
         yield ModelError("sampling.seed", f"got {sampling.seed}; give 0 to {MOST_SEED}")
 
 
-def _wrong_correlations(study: Study) -> Iterator[ModelError]:
+def wrong_correlations(
+    correlations: Sequence[Correlation], vary: Sequence[Vary], method: Method
+) -> Iterator[ModelError]:
     given: dict[frozenset[str], int] = {}
-    spreads = {one.path: one.spread for one in study.vary}
-    for number, one in enumerate(study.correlations, 1):
+    spreads = {one.path: one.spread for one in vary}
+    for number, one in enumerate(correlations, 1):
         where = f"correlations[{number}]"
-        if study.sampling.method == "grid":
+        if method == "grid":
             yield ModelError(where, "a grid has no correlations; leave them out, or take sobol")
         for end, path in enumerate((one.first, one.second), 1):
             if path not in spreads:
@@ -169,7 +158,7 @@ def _wrong_correlations(study: Study) -> Iterator[ModelError]:
                 f"got {one.coefficient:g}; give a number between -1 and 1, without these",
             )
     try:
-        np.linalg.cholesky(correlation_matrix(study)[1])
+        np.linalg.cholesky(correlation_matrix([*spreads], correlations)[1])
     except np.linalg.LinAlgError:
         yield ModelError(
             "correlations",
@@ -178,35 +167,40 @@ def _wrong_correlations(study: Study) -> Iterator[ModelError]:
         )
 
 
-def correlation_matrix(study: Study) -> tuple[list[int], np.ndarray[Any, Any]]:
+def correlation_matrix(
+    paths: Sequence[str], correlations: Sequence[Correlation]
+) -> tuple[list[int], np.ndarray[Any, Any]]:
     """Which of the varied numbers are correlated, and the matrix of these, (k, k)."""
-    column = {path: number for number, path in enumerate(study.paths)}
-    of = {path for one in study.correlations for path in (one.first, one.second)}
-    columns = sorted(column[path] for path in of)
+    columns = sorted(
+        {paths.index(path) for one in correlations for path in (one.first, one.second)}
+    )
     matrix = np.eye(len(columns))
-    for one in study.correlations:
-        i, j = columns.index(column[one.first]), columns.index(column[one.second])
+    for one in correlations:
+        i, j = (columns.index(paths.index(path)) for path in (one.first, one.second))
         matrix[i, j] = matrix[j, i] = one.coefficient
     return columns, matrix
+
+
+def shape_of(vary: Sequence[Vary]) -> tuple[int, ...]:
+    """Of a grid: values of each number; the last runs fastest."""
+    return tuple(len(one.spread.levels) for one in vary)
 
 
 # -- what is computed ------------------------------------------------------------------------------
 
 
-def _wrong_outputs(study: Study) -> Iterator[ModelError]:
-    if not study.outputs:
+def wrong_outputs(
+    outputs: Sequence[Output], paths: Sequence[str], kind: str
+) -> Iterator[ModelError]:
+    if not outputs:
         yield ModelError("outputs", "there is none; give at least one [[outputs]]")
-    if len(study.outputs) > MOST_OUTPUTS:
-        yield ModelError(
-            "outputs", f"got {len(study.outputs)}; at most {MOST_OUTPUTS} are computed"
-        )
-    taken: dict[str, str] = {
-        path: f"the path of vary[{n}]" for n, path in enumerate(study.paths, 1)
-    }
+    if len(outputs) > MOST_OUTPUTS:
+        yield ModelError("outputs", f"got {len(outputs)}; at most {MOST_OUTPUTS} are computed")
+    taken: dict[str, str] = {path: f"the path of vary[{n}]" for n, path in enumerate(paths, 1)}
     taken |= dict.fromkeys(RESERVED, "what every store of designs has")
-    for number, output in enumerate(study.outputs, 1):
+    for number, output in enumerate(outputs, 1):
         where = f"outputs[{number}]"
-        yield from _wrong_output(where, output, study.model.kind)
+        yield from _wrong_output(where, output, kind)
         if output.name in taken:
             yield ModelError(
                 f"{where}.name",
@@ -248,17 +242,13 @@ def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]
         yield ModelError(where, "at_least is above at_most")
 
 
-def _wrong_accuracy(study: Study) -> Iterator[ModelError]:
+def wrong_accuracy(angles: int | None, tolerance: float, chunk: int) -> Iterator[ModelError]:
     fewest, most = ANGLES
-    if study.angles is not None and not fewest <= study.angles <= most:
-        yield ModelError(
-            "accuracy.angles", f"got {study.angles}; give {fewest} to {most} in a turn"
-        )
+    if angles is not None and not fewest <= angles <= most:
+        yield ModelError("accuracy.angles", f"got {angles}; give {fewest} to {most} in a turn")
     least, largest = TOLERANCE
-    if not least <= study.tolerance <= largest:
-        yield ModelError(
-            "accuracy.tolerance", f"got {study.tolerance:g}; give {least:g} to {largest:g}"
-        )
+    if not least <= tolerance <= largest:
+        yield ModelError("accuracy.tolerance", f"got {tolerance:g}; give {least:g} to {largest:g}")
 
-
-__all__ = ["check_numbers", "correlation_matrix", "problems"]
+    if not 0 <= chunk <= MOST_CHUNK:
+        yield ModelError("chunk", f"got {chunk}; give 1 to {MOST_CHUNK} designs")

@@ -1,20 +1,30 @@
-"""What each command gives of a model as one object, the same as it prints with ``--json``.
+"""What each command gives of a model as one object, the same as it prints with ``--json``; and
+where the outputs of a study stand in it, found once on its model.
 
-Each takes the keys that are wanted of it, None for all: what takes time for other keys is left out.
+Each command takes the keys that are wanted of it, None for all: what takes time for other keys is
+left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.errors import ModelError
+from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.steps import Call
+from equipoise.studies.figures import PLACES, Of, Step, resolve
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
+    from equipoise.studies.design_space import Output
+    from equipoise.studies.study import Study
 
 Values = Mapping[str, Any]
 Wanted = Collection[str] | None
@@ -28,8 +38,7 @@ SPLIT = {"by_cause", "by_link"}
 
 def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted."""
-    from equipoise.pipeline import analyze
-    from equipoise.results.analysis import LEAST_ANGLES, order_values
+    from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
@@ -123,3 +132,171 @@ COMMANDS: dict[str, Callable[[Machine | Tool, Wanted], Values]] = {
     "tool": _of_tool,
 }
 """By the command's name; `analyze` stands apart, for its crank angles."""
+
+
+ANGLES = 360
+"""Crank angles in a turn to begin with."""
+TRIED = 32
+"""Designs among which one is looked for that has all figures, where the model itself fails."""
+
+_FIRST = re.compile(r"[.\[]")
+
+
+@dataclass(frozen=True)
+class Request:
+    """Figures that one command has to give; ``planted`` is `plant` of many designs at once.
+
+    columns : of the outputs.  steps : to each of them.  wanted : keys of the command's object.
+    """
+
+    command: str
+    columns: tuple[int, ...]
+    steps: tuple[tuple[Step, ...], ...]
+
+    @property
+    def wanted(self) -> set[str]:
+        along = {"crank_angle", "speed"} if any(is_place(one) for one in self.steps) else set()
+        return {str(one[0]) for one in self.steps} | along
+
+
+def check_outputs(study: Study) -> tuple[Request, ...]:
+    """Find every output of a study once, on its model, before time is spent on designs.
+
+    Raises
+    ------
+    ModelError : an output leads to no number, or the model cannot be computed; `where` is the key
+        of the study file.
+    """
+    return find_outputs(study, study.outputs)
+
+
+def find_outputs(study: Study, outputs: Sequence[Output]) -> tuple[Request, ...]:
+    """The same of some of its outputs, whose columns count among these."""
+    commands = dict.fromkeys(output.of for output in outputs)
+    return tuple(asked for command in commands for asked in _of_command(study, outputs, command))
+
+
+def _of_command(study: Study, outputs: Sequence[Output], command: str) -> list[Request]:
+    """The steps to all figures of a command, on the model or on one of the first designs."""
+    columns = tuple(k for k, output in enumerate(outputs) if output.of == command)
+    asked = [outputs[k] for k in columns]
+    first: EquipoiseError | None = None
+    for make in _models(study):
+        try:
+            with np.errstate(all="ignore"):
+                model = make()
+                steps = _steps(study, asked, model, command)
+        except _NoFigure as error:
+            raise error.sentence from None
+        except EquipoiseError as error:
+            first = first or error
+        else:
+            return _parted(study, model, Request(command, columns, steps))
+    where = f"outputs[{1 + study.outputs.index(asked[0])}].of"
+    raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
+
+
+def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request]:
+    """What can be had of many designs at once, and the rest."""
+    if asked.command != "plant":
+        return [asked]
+    together = can_plant_together(cast("Machine", model), study.paths, asked.steps)
+    parts = []
+    for command, wanted in (("planted", True), ("plant", False)):
+        chosen = [k for k, one in enumerate(together) if one == wanted]
+        columns = tuple(asked.columns[k] for k in chosen)
+        parts.append(Request(command, columns, tuple(asked.steps[k] for k in chosen)))
+    return [part for part in parts if part.columns]
+
+
+OF_ONE = {"visits", "loops", "cusps", "tray_crossings", "forces"} | {
+    *("speed", "forward_speed", "hill_spacing", "planting_frequency")
+}
+"""Keys of what `plant` reads off one machine, not off a curve of many."""
+EACH_ITS_OWN = {"planting.depth", "planting.forward_speed", "planting.hill_spacing"}
+"""Numbers of the field that may differ from machine to machine of a curve."""
+
+
+def can_plant_together(
+    machine: Machine, paths: Sequence[str], figures: Sequence[Sequence[Step]]
+) -> list[bool]:
+    """Which of some figures can be had of many designs at once.
+
+    paths : of the numbers that vary.  figures : as steps through what `plant` gives.
+    """
+    field = {path for path in paths if path.startswith("planting.")}
+    alike = field <= EACH_ITS_OWN and not machine.gears
+    alike = alike and all(isinstance(step, Call) for step in assemble(machine).motion)
+    return [alike and steps[0] not in OF_ONE for steps in figures]
+
+
+def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
+    """The model, then some designs of the study, each to be called for."""
+    from equipoise.studies.study import samples
+
+    yield study.model.base
+    for row in samples(study, 0, min(TRIED, study.size)):
+        values = dict(zip(study.paths, row.tolist(), strict=True))
+        yield partial(study.model.machine, values)
+
+
+class _NoFigure(Exception):
+    """A path leads nowhere; `sentence` tells."""
+
+    def __init__(self, sentence: ModelError) -> None:
+        self.sentence = sentence
+
+
+def _steps(
+    study: Study, asked: Sequence[Output], model: Machine | Tool, command: str
+) -> tuple[tuple[Step, ...], ...]:
+    """Steps to the figures that a command gives of one machine."""
+    begins = {_FIRST.split(output.value, maxsplit=1)[0] for output in asked}
+    values = _values(study, model, command, begins)
+    try:
+        return tuple(_resolved(study, values, output) for output in asked)
+    except UsageError:  # told again with all that there is
+        values = _values(study, model, command, None)
+    found = []
+    for output in asked:
+        try:
+            found.append(_resolved(study, values, output))
+        except UsageError as error:
+            where = f"outputs[{1 + study.outputs.index(output)}].value"
+            missing = values.get("missing")
+            told = f"got {output.value!r}; there are no forces, {missing}" if missing else error
+            raise _NoFigure(ModelError(where, str(told))) from None
+    return tuple(found)
+
+
+def _values(
+    study: Study, model: Machine | Tool, command: str, wanted: set[str] | None
+) -> Mapping[str, Any]:
+    if command != "analyze":
+        return COMMANDS[command](model, wanted)
+    return analyzed(cast("Machine", model), study.angles or ANGLES, None)
+
+
+def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[Step, ...]:
+    """The steps of one path; of an analysis it may begin below ``summary``."""
+    if output.of != "analyze":
+        return resolve(values, output.value)
+    steps = resolve(values, output.value, short="summary")
+    if study.angles is None and steps[0] != "by_order" and any(isinstance(s, int) for s in steps):
+        raise UsageError(
+            f"got {output.value!r}, one of a list that runs over crank angles, whose number is not "
+            "fixed; give a figure of the list, such as .max, or angles in [accuracy]"
+        )
+    return steps
+
+
+def is_place(steps: Sequence[Step]) -> bool:
+    """Whether a figure is where along the abscissa something is."""
+    last = steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
+    return last in PLACES
+
+
+def is_smooth(steps: Sequence[Step]) -> bool:
+    """Whether a figure stands still for good once it does: no extreme, and no place of one."""
+    last = steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
+    return last in ("mean", "rms")

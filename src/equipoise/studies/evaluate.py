@@ -1,40 +1,52 @@
-"""From numbers to figures: the one function that every part of a study calls."""
+"""From numbers to figures: the one function that every part of a study calls.
+
+Figures of an analysis come from compiled loops, planting figures of many designs from one curve;
+the general route builds each machine, runs the commands and reads the paths.  It takes every output
+of every command, at some milliseconds a design; the other routes take what they can of it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Protocol
+from math import isfinite, nan, remainder
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 import numpy as np
 
-from equipoise.codegen.figures import COMPUTED, NOT_COMPUTED
-from equipoise.errors import EquipoiseError
+from equipoise.codegen.figures import (
+    CHANGE_POINT,
+    COMPUTED,
+    MOST_ANGLES,
+    NO_ASSEMBLY,
+    NO_FIGURE,
+    NO_FULL_TURN,
+    NO_MACHINE,
+    NOT_COMPUTED,
+    NOT_STILL,
+)
+from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.model import Machine
+from equipoise.studies.commands import (
+    ANGLES,
+    COMMANDS,
+    Request,
+    analyzed,
+    find_outputs,
+    is_place,
+    is_smooth,
+)
+from equipoise.studies.figures import Step, read, scale
+from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:
     from equipoise.codegen.figures import Figure
-    from equipoise.mechanism.model import Machine
-    from equipoise.studies.study import Output, Study
+    from equipoise.handheld.model import Tool
+    from equipoise.studies.design_space import Model, Output
+    from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]
-
-
-@dataclass(frozen=True, eq=False)
-class Outcome:
-    """What was computed of some designs (P).
-
-    figures : (P, m) in SI units, one column an output; NaN where a design failed.
-    reason : (P,) uint8, a key of `REASONS`; 0 where all figures are there.
-    """
-
-    figures: Array
-    reason: Array
-
-
-class Evaluator(Protocol):
-    """Computes designs given as values (P, d) in SI units, one column a varied number."""
-
-    def __call__(self, values: Array) -> Outcome: ...
 
 
 class Quick(Protocol):
@@ -55,14 +67,12 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     ------
     ModelError : an output cannot be computed of any design.
     """
-    from equipoise.studies.general import general
-
     quick = _quick(study, threads)
     columns = [] if quick is None else quick[1]
     others = [output for k, output in enumerate(study.outputs) if k not in columns]
     if quick is None:
-        return general(study, study.outputs)
-    return Routes(study, quick[0], columns, general(study, others) if others else None)
+        return one_by_one(study, study.outputs)
+    return Routes(study, quick[0], columns, one_by_one(study, others) if others else None)
 
 
 class Routes:
@@ -107,9 +117,7 @@ class Routes:
 
     def _one_by_one(self, values: Array) -> Outcome:
         """Designs that differ too much from the model for a loop: other turns of a geared link."""
-        from equipoise.studies.general import general
-
-        return general(self.study, self.study.outputs)(values)
+        return one_by_one(self.study, self.study.outputs)(values)
 
 
 def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
@@ -144,3 +152,209 @@ def _figure(output: Output) -> Figure | None:
     from equipoise.codegen.figures import figure_of
 
     return figure_of(output.value) if output.of == "analyze" else None
+
+
+Values = Mapping[str, Any]
+
+AT_ONCE = 64
+"""Designs of which all commands are run before the next ones are made."""
+STANDING = (NO_ASSEMBLY, NO_FULL_TURN, CHANGE_POINT)
+"""Reasons for which a linkage does not turn, so that no further command is asked."""
+MOST_SAMPLES = 2**19
+"""Crank angles in a whole cycle, of however many turns, that are still tried."""
+FAINT = 1e-9
+"""Share of the largest signal beside it below which a signal is rounding."""
+
+
+def one_by_one(study: Study, outputs: Sequence[Output]) -> Evaluator:
+    """The general route to some outputs of a study, in their order; errors as `check_outputs`."""
+    return _OneByOne(
+        study.model, study.paths, find_outputs(study, outputs), study.angles, study.tolerance
+    )
+
+
+@dataclass(frozen=True)
+class _OneByOne:
+    model: Model
+    paths: tuple[str, ...]
+    asked: tuple[Request, ...]
+    angles: int | None
+    tolerance: float
+
+    def __call__(self, values: Array) -> Outcome:
+        """Compute designs (P, d), some at a time."""
+        count = sum(len(one.columns) for one in self.asked)
+        outcome = Outcome(np.full((len(values), count), nan), np.zeros(len(values), np.uint8))
+        with np.errstate(all="ignore"):
+            for begin in range(0, len(values), AT_ONCE):
+                some = slice(begin, begin + AT_ONCE)
+                self.fill(outcome.figures[some], outcome.reason[some], values[some])
+        return outcome
+
+    def fill(self, figures: Array, reason: Array, values: Array) -> None:
+        """Fill figures (P, m) and reasons (P,) of a few designs, one command after the other."""
+        models: dict[int, Machine | Tool] = {}
+        for k, row in enumerate(values.tolist()):
+            made = self.made(row)
+            if isinstance(made, int):
+                reason[k] = made
+            else:
+                models[k] = made
+        for asked in self.asked:
+            going = {k: model for k, model in models.items() if reason[k] not in STANDING}
+            if asked.command == "planted":
+                failed = _together(going, asked, figures)
+            else:
+                failed = {k: self.ask(model, asked, figures[k]) for k, model in going.items()}
+            for k, why in failed.items():
+                reason[k] = reason[k] or why
+
+    def made(self, row: Sequence[float]) -> Machine | Tool | int:
+        """One design, or why it is none."""
+        try:
+            model = self.model.machine(dict(zip(self.paths, row, strict=True)))
+        except EquipoiseError:
+            return NO_MACHINE
+        try:
+            _assembled(model)
+        except EquipoiseError as error:
+            return NO_MACHINE if isinstance(error, ModelError) else reason_of(error, model)
+        return model
+
+    def ask(self, model: Machine | Tool, asked: Request, figures: Array) -> int:
+        """Fill the figures (m,) that one command gives; returns why some are missing."""
+        try:
+            found, still = _figures_of(model, asked, self.angles, self.tolerance)
+        except EquipoiseError as error:
+            if isinstance(error, ModelError):  # of a machine that is one: it lacks what is asked
+                return NO_FIGURE if asked.command == "plant" else NOT_COMPUTED
+            return reason_of(error, model)
+        except (ArithmeticError, np.linalg.LinAlgError):  # numbers beyond all bounds
+            return NOT_COMPUTED
+        if not still:
+            return NOT_STILL
+        figures[list(asked.columns)] = [one if isfinite(one) else nan for one in found]
+        return COMPUTED if all(map(isfinite, found)) else NO_FIGURE
+
+
+def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
+    """Fill the figures of planting fingers; returns why some are missing, by design."""
+    from equipoise.studies.evaluate import planting_figures
+
+    failed, turning = {}, {}
+    for k, machine in models.items():
+        try:
+            assemble(machine).cycle  # noqa: B018
+        except EquipoiseError as error:
+            failed[k] = reason_of(error, machine)
+        else:
+            turning[k] = machine
+    if turning:
+        found = planting_figures([*turning.values()], asked.steps)
+        figures[np.ix_([*turning], asked.columns)] = np.where(np.isfinite(found), found, nan)
+        there = np.all(np.isfinite(found), axis=1)
+        failed |= {k: COMPUTED if one else NO_FIGURE for k, one in zip(turning, there, strict=True)}
+    return failed
+
+
+def reason_of(error: EquipoiseError, model: Machine | Tool) -> int:
+    """Why a design cannot be computed, a key of `REASONS`."""
+    if isinstance(error, RangeError):
+        return NO_FULL_TURN if error.ranges else NO_ASSEMBLY
+    if isinstance(error, ChangePointError):
+        return CHANGE_POINT
+    if isinstance(error, MotionError) and not getattr(model, "gears", ()):
+        return NO_FULL_TURN  # where Newton's method ends on the way round
+    return NOT_COMPUTED
+
+
+def _assembled(model: Machine | Tool) -> None:
+    from equipoise.mechanism.model import Machine
+
+    if isinstance(model, Machine):
+        assemble(model)
+
+
+# -- figures of one machine ------------------------------------------------------------------------
+
+
+def _figures_of(
+    model: Machine | Tool, asked: Request, angles: int | None, tolerance: float
+) -> tuple[list[float], bool]:
+    """Figures, and whether they stand still."""
+    if asked.command != "analyze":
+        values = COMMANDS[asked.command](model, asked.wanted)
+        return [read(values, steps) for steps in asked.steps], True
+    machine = cast("Machine", model)
+    values = analyzed(machine, angles or ANGLES, asked.wanted)
+    found = [read(values, steps) for steps in asked.steps]
+    if angles is not None:
+        return found, True
+    number, calm = ANGLES, 0
+    needed = 1 if all(is_smooth(one) for one in asked.steps) else 2
+    most = min(MOST_ANGLES, MOST_SAMPLES // values.get("turns", 1))
+    while 2 * number <= most:
+        number *= 2
+        values = analyzed(machine, number, asked.wanted)
+        before, found = found, [read(values, steps) for steps in asked.steps]
+        calm = calm + 1 if _still(values, asked.steps, before, found, tolerance) else 0
+        if calm == needed:
+            return found, True
+    return found, False
+
+
+def _still(
+    values: Values,
+    steps: Sequence[tuple[Step, ...]],
+    before: Sequence[float],
+    now: Sequence[float],
+    tolerance: float,
+) -> bool:
+    """Whether figures have kept, within a share of the RMS of the signal that each is of."""
+    for one, old, new in zip(steps, before, now, strict=True):
+        change = abs(new - old)
+        if is_place(one):
+            change = abs(remainder(change, 2 * np.pi * values.get("turns", 1)))
+        if change == 0 or not (isfinite(old) and isfinite(new)):
+            continue  # what is missing will not come with further crank angles
+        size = scale(values, one)
+        if change > tolerance * size and change > tolerance * FAINT * _beside(values, one):
+            return False
+    return True
+
+
+def _beside(values: Values, steps: Sequence[Step]) -> float:
+    """RMS of the largest signal in the same table, of which others may be the rounding."""
+    table = values["summary"] if steps[0] in ("summary", "by_order") else values.get(str(steps[0]))
+    return max(_sizes(table), default=0.0)
+
+
+def _sizes(table: Any) -> Iterator[float]:
+    if isinstance(table, Mapping):
+        if isinstance(table.get("rms"), float):
+            yield table["rms"]
+            return
+        for one in table.values():
+            yield from _sizes(one)
+    elif isinstance(table, np.ndarray):
+        yield float(np.sqrt(np.mean(np.square(table))))
+
+
+def planting_figures(machines: Sequence[Machine], steps: Sequence[Sequence[Step]]) -> Array:
+    """Figures (P, m) of machines of one build whose cranks turn fully; NaN where one is missing."""
+    from equipoise.mechanism.tip import TipCurve
+    from equipoise.planting.figures import tip_figures
+    from equipoise.planting.stroke import TOUCH, soil_crossings
+
+    curve = TipCurve(machines)
+    entry, leave = soil_crossings(curve)
+    lowest, highest = curve.lowest[0], curve.highest[0]
+    touch = TOUCH * (highest - lowest)
+    plants = (curve.surface > lowest + touch) & (curve.surface < highest - touch)
+    plants &= curve.speed[:, 0] != 0
+    names = [".".join(map(str, one)) for one in steps]
+    wanted = {str(one[0]) for one in steps}
+    found = tip_figures(curve, entry, leave, wanted=wanted)
+    columns = [found.get(name, np.full(len(machines), np.nan)) for name in names]
+    table: Array = np.where(plants[:, None], np.stack(columns, axis=1), np.nan)
+    return table

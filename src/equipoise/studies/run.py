@@ -1,29 +1,54 @@
-"""A study from its first design to its last, into a store."""
+"""A study from its first design to its last, into a store that is made for it."""
 
 from __future__ import annotations
 
 import os
 import pickle
+import shutil
+import warnings
 from collections.abc import Callable, Mapping
 from contextlib import closing
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from json import dumps
+from math import nan
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.cluster import Cluster
-from equipoise.studies.evaluate import Evaluator, evaluator
-from equipoise.studies.executors import Pool, Processes, StoppedError, Task, Threads, computed
-from equipoise.studies.making import create, versions
-from equipoise.studies.progress import Progress, Tally
-from equipoise.studies.sampling import samples
-from equipoise.studies.store import NUMBERS, Block, Store, open_store, reason
-from equipoise.studies.study import SLOW_CHUNK
+from equipoise.quantities import SI
+from equipoise.studies.design_space import Choices
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.executors import (
+    Cluster,
+    Pool,
+    Processes,
+    StoppedError,
+    Task,
+    Threads,
+    computed,
+)
+from equipoise.studies.extras import needed
+from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
+from equipoise.studies.store import (
+    LAYOUT,
+    NUMBERS,
+    REASON,
+    UNKNOWN,
+    ZSTD,
+    Store,
+    as_usage_error,
+    brief,
+    open_store,
+    versions,
+)
+from equipoise.studies.study import SLOW_CHUNK, samples
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
 
-Told = Callable[[Progress], None]
+OnProgress = Callable[[Progress], None]
 """Is called at the beginning, and with every chunk that is stored."""
 SHARED, SLOW_SHARED = 16, 64
 """Chunks of a small study, so that every worker has some: of compiled, and of slow designs."""
@@ -31,13 +56,13 @@ LEAST_CHUNK = 8192
 """Compiled designs, fewer of which cost more time each."""
 
 
-def sweep(
+def run_study(
     study: Study,
     path: str | os.PathLike[str],
     *,
     workers: int | None = None,
     cluster: str | None = None,
-    progress: Told | None = None,
+    progress: OnProgress | None = None,
 ) -> Store:
     """Compute all designs of a study, and store them.
 
@@ -57,7 +82,7 @@ def sweep(
     """
     route = Route.of(study)
     with closing(route.pool(workers, cluster)) as pool:
-        store = create(path, study, route.chunk, route.engine)
+        store = create_store(path, study, route.chunk, route.engine)
         _fill(store, study, pool, progress)
     return store
 
@@ -68,7 +93,7 @@ def resume(
     *,
     workers: int | None = None,
     cluster: str | None = None,
-    progress: Told | None = None,
+    progress: OnProgress | None = None,
 ) -> Store:
     """Compute what is missing in a store; the same bytes as if nothing had ever stopped.
 
@@ -77,11 +102,11 @@ def resume(
     Parameters
     ----------
     restore : makes the study of its texts; `equipoise.schema.studies.restore`.
-    workers, cluster, progress : as in `sweep`.
+    workers, cluster, progress : as in `run_study`.
 
     Raises
     ------
-    UsageError : there is no store, or other versions made it; or as in `sweep`.
+    UsageError : there is no store, or other versions made it; or as in `run_study`.
     """
     store = open_store(path, write=True)
     study = restore(store.texts)
@@ -96,7 +121,7 @@ def resume(
     return store
 
 
-def _fill(store: Store, study: Study, pool: Pool, progress: Told | None) -> None:
+def _fill(store: Store, study: Study, pool: Pool, progress: OnProgress | None) -> None:
     """Compute and store what is missing."""
     with store.writing():
         tally, missing = _counted(store, study), store.missing()
@@ -124,7 +149,7 @@ def _store(store: Store, designs: range, block: Block) -> None:
                 f"{store.path}: the folder has gone, and what was stored with it; sweep anew"
             ) from error
         raise StoppedError(
-            f"designs cannot be written ({reason(error)}); make room or mend that"
+            f"designs cannot be written ({brief(error)}); make room or mend that"
         ) from error
 
 
@@ -214,3 +239,86 @@ def _loaded(packed: bytes) -> tuple[Study, Evaluator]:
     """A study and what computes it, made once in a process."""
     study: Study = pickle.loads(packed)
     return study, evaluator(study, threads=1)  # other threads have chunks of their own
+
+
+def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine: str) -> Store:
+    """Make a store without designs.
+
+    chunk : designs that are computed and stored together.
+    engine : name of what computes them.
+
+    Raises
+    ------
+    UsageError : there is something at `path`, or the folder cannot be made.
+    """
+    target = Path(path)
+    if os.path.lexists(target):
+        raise UsageError(
+            f"{target}: is there already; choose another name, or go on with a store by: "
+            f"equipoise resume {target}"
+        )
+    # Made beside its place, so that a store is a whole one from the moment it is there.
+    begun = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        with as_usage_error(target, "the store cannot be made", "choose another place or name"):
+            target.parent.mkdir(parents=True, exist_ok=True)
+            _make_arrays(begun, study, chunk, engine)
+            os.rename(begun, target)
+    finally:
+        shutil.rmtree(begun, ignore_errors=True)
+    return open_store(target, write=True)
+
+
+def _make_arrays(folder: Path, study: Study, chunk: int, engine: str) -> None:
+    zarr = needed("zarr", "a store")
+    group = zarr.create_group(folder, zarr_format=3, attributes=_about(study, chunk, engine))
+
+    def add(name: str, kind: str, none: float, compressed: bool, attributes: Any) -> None:
+        group.create_array(
+            name,
+            shape=(study.size,),
+            chunks=(chunk,),
+            dtype=kind,
+            fill_value=none,
+            compressors=zarr.codecs.ZstdCodec(level=ZSTD) if compressed else None,
+            dimension_names=("design",),
+            attributes=attributes,
+        )
+        (folder / name / "c").mkdir()
+
+    for one in study.vary:
+        # All but those that repeat are random in most of their digits: compressing them by a
+        # tenth would take as long again as storing them.
+        repeated = study.sampling.method == "grid" or isinstance(one.spread, Choices)
+        add(one.path, "float64", nan, repeated, _unit(one.dimension))
+    for output in study.outputs:
+        add(output.name, "float64", nan, False, _unit(output.dimension))
+    meanings = {**REASONS, UNKNOWN: "not computed yet"}
+    flags = {
+        "flag_values": list(meanings),
+        "flag_meanings": " ".join(words.replace(" ", "_") for words in meanings.values()),
+    }
+    add(REASON, "uint8", UNKNOWN, True, flags)
+    with warnings.catch_warnings():  # that not every reader knows of a list of all arrays
+        warnings.simplefilter("ignore")
+        zarr.consolidate_metadata(folder)
+
+
+def _unit(dimension: str | None) -> dict[str, str]:
+    return {"units": SI[dimension]} if dimension else {}
+
+
+def _about(study: Study, chunk: int, engine: str) -> dict[str, Any]:
+    return {
+        "equipoise_store": LAYOUT,
+        "title": study.title,
+        "method": study.sampling.method,
+        "seed": study.sampling.seed,
+        "chunk": chunk,
+        "engine": engine,
+        "numbers": list(study.paths),
+        "outputs": list(study.names),
+        # Texts, because other formats than Zarr hold nothing else.
+        "versions": dumps(versions()),
+        "study": dumps(study.texts, ensure_ascii=False),
+    }

@@ -17,12 +17,12 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
-from equipoise.studies.best import kept, why_none
-from equipoise.studies.breeding import breeder, settled, values_of
-from equipoise.studies.evaluate import Evaluator, evaluator
-from equipoise.studies.seen import Seen, Volumes
-from equipoise.studies.spread import Choices, Range
-from equipoise.studies.study import Make, Study
+from equipoise.studies.design_space import Choices, Make, Range
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution, values_of
+from equipoise.studies.outcomes import Evaluator, kept
+from equipoise.studies.selection import why_none
+from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -33,7 +33,7 @@ Array = np.ndarray[Any, Any]
 POPULATION, GENERATIONS = 100, 200
 LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
 
-Told = Callable[[int, int, int, int], None]
+OnGeneration = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""
 
 
@@ -96,7 +96,7 @@ def search_designs(
     population: int = POPULATION,
     generations: int = GENERATIONS,
     seed: int | None = None,
-    progress: Told | None = None,
+    progress: OnGeneration | None = None,
     compute: Evaluator | None = None,
 ) -> Searched:
     """Look for the best designs of a study.
@@ -110,7 +110,7 @@ def search_designs(
     population, generations : designs in a generation, and the most generations; the search ends
         before where the front stands still.
     seed : of the random numbers, that of the study where None; the same gives the same result.
-    progress : see `Told`.
+    progress : see `OnGeneration`.
     compute : computes designs instead of the study's own evaluator.
 
     Raises
@@ -121,14 +121,14 @@ def search_designs(
     _check(study)
     _check_size(population, generations)
     seed = study.sampling.seed if seed is None else seed
-    seen = Seen(study, compute or evaluator(study))
-    breeding = breeder(study, population, seed, seen.known)
-    volumes = Volumes()
+    seen = Archive(study, compute or evaluator(study))
+    breeding = evolution(study, population, seed, seen.known)
+    volumes = Hypervolumes()
     for generation in range(1, generations + 1):
         bred = breeding.ask()
         if bred is None:
             break  # there is hardly another design
-        places = settled(study, bred.get("X"))
+        places = canonical(study, bred.get("X"))
         rows = seen.rows(values_of(study, places))
         bred.set("X", places, "F", seen.costs[rows], "G", seen.violations[rows])
         breeding.tell(infills=bred)
@@ -172,7 +172,7 @@ def _check_size(population: int, generations: int) -> None:
 
 
 def _result(
-    study: Study, seen: Seen, volumes: Volumes, told: Array, still: bool, seed: int
+    study: Study, seen: Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
 ) -> Searched:
     counts = np.bincount(seen.outcome.reason, minlength=256)
     if not len(seen.front):

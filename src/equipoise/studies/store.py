@@ -10,20 +10,25 @@ arrays are there.  Nothing in the folder depends on time, or on the order in whi
 from __future__ import annotations
 
 import os
+import platform
+import socket
+import sys
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from json import loads
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import equipoise
 from equipoise.errors import UsageError
 from equipoise.results.result import Result
-from equipoise.studies.evaluate import Outcome
 from equipoise.studies.extras import needed
-from equipoise.studies.lock import locked
+from equipoise.studies.outcomes import Block, Outcome
 
 if TYPE_CHECKING:
     import zarr
@@ -38,14 +43,6 @@ BLOCK, NUMBERS = 65_536, 2**22
 """Designs that are read at once, or fewer where each has many numbers."""
 ZSTD = 1
 """Level at which arrays are compressed, if they are."""
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """Some designs (P), one after the other: values (P, d) in SI units, and what came of them."""
-
-    values: Array
-    outcome: Outcome
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -82,7 +79,7 @@ class Store(Result):
 
     def missing(self) -> list[int]:
         """Chunks that are not stored, in order."""
-        with told(self.path, "cannot be read", DAMAGED):
+        with as_usage_error(self.path, "cannot be read", DAMAGED):
             done = set.intersection(*(_files(self._folder(name)) for name in self.arrays))
         return [chunk for chunk in range(self.chunks) if chunk not in done]
 
@@ -96,7 +93,7 @@ class Store(Result):
         values = np.empty((len(designs), len(self.numbers)))
         figures = np.empty((len(designs), len(self.outputs)))
         part = slice(designs.start, designs.stop)
-        with told(self.path, "cannot be read", DAMAGED):
+        with as_usage_error(self.path, "cannot be read", DAMAGED):
             for table, names in ((values, self.numbers), (figures, self.outputs)):
                 for column, name in enumerate(names):
                     table[:, column] = self.arrays[name][part]
@@ -121,7 +118,7 @@ class Store(Result):
         UsageError : another process is writing, or nobody can.
         """
         with ExitStack() as held:
-            with told(self.path, "cannot be written", "make it writable"):
+            with as_usage_error(self.path, "cannot be written", "make it writable"):
                 held.enter_context(locked(self.path))
                 for name in self.arrays:
                     for left_over in self._folder(name).glob("*.partial"):
@@ -177,6 +174,19 @@ def _files(folder: Path) -> set[int]:
         return set()
 
 
+@cache
+def versions() -> dict[str, str]:
+    """What the last digit of a figure may depend on."""
+    found = {"equipoise": equipoise.__version__}
+    for library in ("numpy", "scipy", "numba"):
+        try:
+            found[library] = version(library)
+        except PackageNotFoundError:
+            found[library] = "none"
+    python = ".".join(map(str, sys.version_info[:2]))
+    return {**found, "python": python, "processor": platform.machine()}
+
+
 def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
     """Open a store; nothing but names and sizes is read.
 
@@ -197,7 +207,7 @@ def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
             return _opened(folder, group)
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise UsageError(
-            f"{folder}: is no store of Equipoise ({reason(error)}); give the folder that "
+            f"{folder}: is no store of Equipoise ({brief(error)}); give the folder that "
             "equipoise sweep has made"
         ) from error
     raise UsageError(
@@ -225,15 +235,73 @@ def _opened(folder: Path, group: Any) -> Store:
 
 
 @contextmanager
-def told(path: Path, what: str, advice: str) -> Iterator[None]:
+def as_usage_error(path: Path, what: str, advice: str) -> Iterator[None]:
     """Make one sentence of what the system says."""
     try:
         yield
     except (OSError, ValueError) as error:
-        raise UsageError(f"{path}: {what} ({reason(error)}); {advice}") from error
+        raise UsageError(f"{path}: {what} ({brief(error)}); {advice}") from error
 
 
-def reason(error: Exception) -> str:
+def brief(error: Exception) -> str:
     """Say briefly what went wrong."""
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     return said.splitlines()[0].rstrip(".").lower() if said else type(error).__name__
+
+
+LOCK_FILE = ".lock"
+"""Of the file; empty while nobody holds it."""
+
+if sys.platform == "win32":
+    import msvcrt
+
+    BEHIND = 1_000_000
+    """What is locked: a byte behind the text, which others could not read otherwise."""
+
+    def _take(descriptor: int) -> None:
+        os.lseek(descriptor, BEHIND, os.SEEK_SET)
+        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+else:
+    import fcntl
+
+    def _take(descriptor: int) -> None:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a store.
+
+    Raises
+    ------
+    UsageError : another process has it; the sentence names it.
+    OSError : the folder cannot be written into, or its disk knows no locks.
+    """
+    # Files opened by Python are not handed down to processes that are started meanwhile.
+    descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT, 0o666)
+    try:
+        try:
+            _take(descriptor)
+        except (BlockingIOError, PermissionError) as error:
+            raise UsageError(
+                f"{folder}: {_holder(folder)} is writing into this store; wait until it is done, "
+                "or stop it"
+            ) from error
+        with suppress(OSError):  # of a full disk, which will be told of where it matters
+            os.ftruncate(descriptor, 0)
+            os.lseek(descriptor, 0, os.SEEK_SET)
+            os.write(descriptor, f"process {os.getpid()} on {socket.gethostname()}".encode())
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                os.ftruncate(descriptor, 0)
+    finally:
+        os.close(descriptor)
+
+
+def _holder(folder: Path) -> str:
+    try:
+        return (folder / LOCK_FILE).read_text("utf-8") or "another process"
+    except (OSError, ValueError):
+        return "another process"

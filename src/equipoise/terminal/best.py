@@ -9,8 +9,8 @@ from equipoise.terminal.designs import columns_of, designs_table, limits, wanted
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.best import Best
-    from equipoise.studies.study import Output
+    from equipoise.studies.design_space import Output
+    from equipoise.studies.selection import Best
 
 
 def print_best(

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.studies.evaluate import Outcome, evaluator
-from equipoise.studies.spread import Choices, Normal, Range
+from equipoise.studies.design_space import Choices, Normal, Range
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Outcome
 from equipoise.terminal.tables import Row, number, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.spread import Spread
+    from equipoise.studies.design_space import Spread
     from equipoise.studies.study import Study
 
 Units = Mapping[str, "Unit"]

@@ -11,7 +11,7 @@ from equipoise.terminal.tables import number, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.study import Make, Output
+    from equipoise.studies.design_space import Make, Output
 
 Array = np.ndarray[Any, Any]
 

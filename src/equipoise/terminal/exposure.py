@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from equipoise.exposure.daily import DAY, WorkingTimes
-from equipoise.exposure.directive import ACTION, LIMIT
-from equipoise.exposure.japan import LONGEST, limit_time
+from equipoise.exposure.daily import ACTION, DAY, LIMIT, LONGEST, WorkingTimes, limit_time
 from equipoise.terminal.tables import Row, number, table
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure, Verdict
-    from equipoise.exposure.weighted import Weighted
+    from equipoise.exposure.weighting import Weighted
 
 Tools = Sequence[tuple[str, float]]
 """Names, and vibration total values in m/s2."""

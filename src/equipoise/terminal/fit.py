@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import dimension_of
 from equipoise.terminal.planting import EXTREMES, PATH, SOIL
 from equipoise.terminal.tables import Row, table
 from equipoise.terminal.units import Units

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, cast
 
-from equipoise.planting.moments import finger_base
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import dimension_of
+from equipoise.planting.stroke import finger_base
 from equipoise.terminal.tables import Row, number, table
 from equipoise.terminal.units import Units
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.studies.front import spread
+from equipoise.studies.selection import far_apart
 from equipoise.terminal.designs import columns_of, designs_table, limits, wanted
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def print_searched(
 
 def _front(found: Searched, units: Mapping[str, Unit], own: tuple[Array, Array] | None) -> str:
     columns = [study_column(found, name) for name in found.objectives]
-    shown = spread(np.column_stack(columns), MOST)
+    shown = far_apart(np.column_stack(columns), MOST)
     labels = [str(number) for number in shown]
     values, figures = found.values[shown], found.figures[shown]
     if own is not None:

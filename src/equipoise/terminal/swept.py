@@ -8,14 +8,14 @@ from shlex import quote
 from typing import TYPE_CHECKING
 
 from equipoise.schema.files import printable
+from equipoise.studies.design_space import Output
 from equipoise.terminal.best import best_table
 from equipoise.terminal.tables import Row, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.best import Best
+    from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Output
 
 
 BEST = "the best designs; --out writes one as a model file"

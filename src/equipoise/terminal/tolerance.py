@@ -6,15 +6,14 @@ from collections.abc import Iterator, Mapping, Sequence
 from math import isnan
 from typing import TYPE_CHECKING
 
-from equipoise.studies.spread import Normal, Uniform
+from equipoise.studies.design_space import Normal, Uniform
 from equipoise.terminal.designs import labelled
 from equipoise.terminal.tables import Row, number, percent, table
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.scatter import Scatter
-    from equipoise.studies.tolerance import Cause, Tolerances
-    from equipoise.studies.variance import Estimate
+    from equipoise.studies.tolerances import Cause, Tolerances
+    from equipoise.studies.variance import Estimate, Scatter
 
 Units = Mapping[str, "Unit"]
 LITTLE = 0.01

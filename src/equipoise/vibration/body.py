@@ -1,4 +1,14 @@
-"""The support as a rigid body on mounts: small motion, rest, and points that turn with it."""
+"""The support as a rigid body on mounts: small motion, rest, and points that turn with it.
+
+Six coordinates: displacement of the reference point along x, y, z and rotation about x, y, z, in
+the order of `FREEDOMS`.  A force f at a point b is the generalized force (f, (b - r) x f); a
+displacement along n of that point is read by the row (n, (b - r) x n).  How the support can move
+picks coordinates out of the six at the very end.
+
+Points of a planar support that turns: what a gauge reads there, and what a mount does there.
+
+Places and rates are arrays (3, ...) along surge, heave and pitch; rotation is not small.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,17 @@
-"""The exact equations of a machine on a planar support, (37) to (45), and followed in time."""
+"""The exact equations of a machine on a planar support, (37) to (45), and followed in time.
+
+Free bodies added up by Lagrange's equations; `vibration.linkages` has the sums S, J, H, E.  With
+Z the reference point, phi the support's rotation, theta the crank angle in the support's axes,
+s = exp(i phi) S and likewise s', s'', of the linkages and the support together:
+
+    m Z.. + i phi.. s + theta.. s' = F + phi.^2 s - 2 i phi. theta. s' - theta.^2 s''
+    s x Z.. + J phi.. + H theta.. = M - J' theta. phi. - H' theta.^2
+    s' . Z.. + H phi.. + E theta.. = T + g . s' - E' theta.^2 / 2 + J' phi.^2 / 2
+
+F and M are weight, mounts and loads, T the drive's torque and that of loads and springs.  The
+independent variable is the angle that the crank has turned, so that linkages are solved at the
+nodes once and never in between.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,10 @@
-"""Steady response at one speed: which model answers, and continuation along a range of speeds."""
+"""Steady response at one speed: which model answers, and continuation along a range of speeds.
+
+Exact response along a range of speeds, each started from its neighbour.
+
+Where mounts let go, a machine may have two steady states at one speed: run up slowly it stays on
+one of them, run down on the other.  So the range is then gone through both ways.
+"""
 
 from __future__ import annotations
 

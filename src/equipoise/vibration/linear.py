@@ -1,4 +1,14 @@
-"""Linear response: what linkages do to the support, and its small motion under it, by orders."""
+"""Linear response: what linkages do to the support, and its small motion under it, by orders.
+
+What the linkages do to the support, in each of the paper's steps and as a whole.
+
+Steps of Yamashita, Ichikawa and Mori, from the plainest: (59) ``linear``, the shaking force at the
+drive's pivot alone; (57) ``torque``, with the torque that the drive takes from the support;
+``moment``, the whole force and moment of all joints on the frame.  In the first two the linkage's
+mass rides at the drive's pivot, in the third it is spread as it is in the mean over a turn.
+
+(K - (n w)^2 M + i n w C) q_n = W_n for every order n at the crank's speed w.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,21 @@
-"""The linkages on a support as one: sums at a crank angle, and joint forces on a moving base."""
+"""The linkages on a support as one: sums at a crank angle, and joint forces on a moving base.
+
+Written for the support's own axes, from its reference point.  With p the place of a link's centre
+of mass and alpha the link's angle there, a prime for the derivative by crank angle, and sums over
+the links of all rows:
+
+    first     S = sum m p                        with S', S''
+    inertia   J = sum m |p|^2 + I                with J'
+    spin      H = sum m p x p' + I alpha'        with H'
+    drive     E = sum m |p'|^2 + I alpha'^2      with E'
+
+Kinetic energy, momentum and moment of momentum on any moving support follow from these alone.
+
+Joint forces of a machine whose frame moves: what the links' inertia asks for then.
+
+Everything is written in the support's axes, so that the pass over the joints is the same as on
+solid ground.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +26,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import MassError
+from equipoise.mechanism.applied import load_demands, spring_demands
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.kernels import cross, dot
-from equipoise.mechanism.loads import load_demands, spring_demands
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import Demand, Pass, reactions

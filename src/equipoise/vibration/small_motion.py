@@ -1,4 +1,13 @@
-"""Small motion of the support: by orders, and with the torque it takes from the drive (54)."""
+"""Small motion of the support: by orders, and with the torque it takes from the drive (54).
+
+Equation (54): small motion of the support with the torque that its motion takes from the drive.
+
+    M q.. + C q. + K q = W(theta) - T_r on pitch,   T_r = sum s'(theta) . a_A
+
+W is force and torque on a support that stands still, as in (57), and a_A the acceleration of each
+row's drive pivot, on a support that is not taken as turned, (53).  Its coefficients change with the
+crank angle, so that it is no linear equation with constant coefficients.
+"""
 
 from __future__ import annotations
 

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.exposure.bands import (
+from equipoise.exposure.weighting import (
     EDGES,
     MIDDLES,
     NOMINAL,
     band_factors,
     exact_middles,
+    factor,
     rms_in_bands,
 )
-from equipoise.exposure.weighting import factor
 
 
 def test_middles_edges_and_names_belong_together() -> None:

@@ -9,8 +9,7 @@ from typing import Any
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.exposure.daily import Task, WorkingTimes, daily_exposure
-from equipoise.exposure.iso_22867 import equivalent
+from equipoise.exposure.daily import Task, WorkingTimes, daily_exposure, equivalent
 
 HOUR = 3600.0
 DAY = (Task("mowing", 4.0, 2 * HOUR), Task("trimming", 8.0, HOUR))

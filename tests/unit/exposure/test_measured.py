@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.exposure.bands import MIDDLES, NOMINAL
-from equipoise.exposure.measured import weigh_orders, weigh_signal, weigh_spectrum
-from equipoise.exposure.weighting import factor
+from equipoise.exposure.spectra import weigh_orders, weigh_signal, weigh_spectrum
+from equipoise.exposure.weighting import MIDDLES, NOMINAL, factor
 
 
 def test_lines_count_with_their_factors() -> None:

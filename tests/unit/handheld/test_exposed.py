@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.exposure.measured import weigh_signal
+from equipoise.exposure.spectra import weigh_signal
 from equipoise.exposure.weighting import weighting
 from equipoise.handheld.exposed import expose_tool, grips, weighted_squares, working_speed
 from equipoise.handheld.model import Excitation, Hand, Operation, Station, Tool, Work

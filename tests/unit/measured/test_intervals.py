@@ -10,7 +10,7 @@ from scipy.signal import lfilter
 
 import equipoise as eq
 from equipoise.measured.decay import Decay, identify_decay
-from equipoise.measured.swings import line_of_swings
+from equipoise.measured.fits import line_of_swings
 from equipoise.measured.turning import find_turns
 from unit.measured.samples import OMEGA, simulated
 

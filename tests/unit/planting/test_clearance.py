@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.tip import TipCurve, surface_of
-from equipoise.planting.clearance import clearances, distance
-from equipoise.planting.moments import soil_crossings
+from equipoise.planting.figures import clearances, distance
+from equipoise.planting.stroke import soil_crossings
 from unit.planting.build import Array, block, cycle, planetary, spinner, twice
 
 MACHINES: dict[str, Any] = {

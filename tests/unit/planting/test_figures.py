@@ -11,9 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.figures import figures
-from equipoise.planting.moments import soil_crossings
-from equipoise.planting.names import TURNING, dimension_of
+from equipoise.planting.figures import tip_figures
+from equipoise.planting.goals import TURNING, dimension_of
+from equipoise.planting.stroke import soil_crossings
 from equipoise.planting.summary import PlantingFigures, plant
 from unit.planting.build import apart
 
@@ -46,7 +46,7 @@ def alone(name: str) -> list[PlantingFigures]:
 
 def stack(name: str, wanted: Any = None) -> dict[str, Any]:
     curve = TipCurve(designs(name))
-    return figures(curve, *soil_crossings(curve), wanted=wanted)
+    return tip_figures(curve, *soil_crossings(curve), wanted=wanted)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -89,7 +89,7 @@ def test_designs_that_do_not_enter_or_leave_have_no_crossings() -> None:
     assert np.isnan(entry[:2]).all()
     assert np.isnan(leave[:2]).all()
     assert apart(entry[2], plant(good)["entry.crank_angle"]) < 1e-13
-    found = figures(curve, entry, leave)
+    found = tip_figures(curve, entry, leave)
     assert np.isfinite(found["curve.height"]).all()
     assert np.isnan(found["entry.x"][:2]).all()
     assert found["soil.crank_travel"][2] == pytest.approx(plant(good)["soil.crank_travel"])

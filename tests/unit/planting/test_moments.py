@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.planting.stroke import direction
 from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.planting.vectors import direction
 from unit.planting.build import (
     EXAMPLES,
     TURN,

@@ -11,8 +11,7 @@ import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.linkage import Linkage
 from equipoise.planting.designs import Designs
-from equipoise.planting.goals import Goal
-from equipoise.planting.judge import Problem
+from equipoise.planting.goals import Goal, Problem
 from equipoise.planting.search import Fit, fit_planting
 
 FIGURES_OF_A = (

@@ -10,8 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.planting.table import table
+from equipoise.planting.summary import PlantingFigures, plant, table
 from unit.planting.build import TURN, planetary, spinner, twice
 
 MACHINES: dict[str, Any] = {

@@ -9,8 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil
-from equipoise.planting.summary import plant
-from equipoise.planting.torque import soil_forces
+from equipoise.planting.summary import plant, soil_forces
 from unit.planting.build import EXAMPLES, planetary, twice
 
 SOIL = Soil(resistance=5.0, per_depth=400.0)

@@ -10,8 +10,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.stroke import Visit, visits
 from equipoise.planting.summary import plant
-from equipoise.planting.visits import Visit, visits
 from unit.planting.build import (
     EXAMPLES,
     TURN,

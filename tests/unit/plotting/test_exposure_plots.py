@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from equipoise.exposure.bands import NOMINAL
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
-from equipoise.exposure.measured import weigh_spectrum
-from equipoise.exposure.weighted import Weighted
+from equipoise.exposure.spectra import weigh_spectrum
+from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.plotting.exposure import drawings
 from equipoise.plotting.style import render, styled
 from unit.plotting.samples import texts, words

@@ -15,7 +15,7 @@ from scipy.interpolate import RectBivariateSpline
 import equipoise as eq
 from equipoise.plotting.landscape import drawings, told
 from equipoise.plotting.style import STRESS, render
-from equipoise.studies.landscape import Landscape
+from equipoise.studies.objective_map import Landscape
 from unit.plotting.samples import texts, words
 
 

@@ -14,9 +14,9 @@ import equipoise as eq
 from equipoise.plotting.studies import best_drawings, searched_drawings, tolerance_drawings
 from equipoise.plotting.style import FAINT, render
 from equipoise.schema.study_units import units_of
-from equipoise.studies.best import Best
 from equipoise.studies.search import Searched
-from equipoise.studies.tolerance import Tolerances
+from equipoise.studies.selection import Best
+from equipoise.studies.tolerances import Tolerances
 from unit.plotting.samples import texts, words
 
 pytest.importorskip("pymoo")

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 
-from equipoise.exposure.iso_5349 import partial_exposure
+from equipoise.exposure.daily import partial_exposure
 from equipoise.exposure.weighting import factor
 from equipoise.handheld.design import Before, ToolDesign
 from equipoise.handheld.design_plan import KEYS

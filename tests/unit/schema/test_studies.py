@@ -14,9 +14,16 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
 from equipoise.schema.studies import load_study, restore
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study
+from equipoise.studies.design_space import (
+    Choices,
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Uniform,
+)
+from equipoise.studies.study import Study, samples
 from unit.schema.samples import FOUR_BAR
 
 WHOLE = """

@@ -9,8 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.planting.goals import Goal
-from equipoise.planting.judge import figure_names
+from equipoise.planting.goals import Goal, figure_names
 from equipoise.schema.targets import Targets, read_targets
 
 KNOWN = figure_names(eq.load("kim-chung-a"))

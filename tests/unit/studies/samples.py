@@ -7,8 +7,17 @@ from functools import cache
 from typing import Any
 
 from equipoise.schema.template import Template
-from equipoise.studies.spread import Normal, Range, Spread, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
+from equipoise.studies.design_space import (
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Spread,
+    Uniform,
+    Vary,
+)
+from equipoise.studies.study import Study
 
 MASS, LENGTH, SPEED = "links.crank.mass", "links.coupler.points.C.x", "drive.speed"
 PATHS = (MASS, LENGTH, SPEED, "links.rocker.mass", "links.crank.inertia")

@@ -12,13 +12,11 @@ import pytest
 
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
-from equipoise.studies.best import best
-from equipoise.studies.evaluate import Outcome
-from equipoise.studies.front import front, spread
-from equipoise.studies.making import create
-from equipoise.studies.spread import Range
-from equipoise.studies.store import Block, Store
-from equipoise.studies.study import Make, Output
+from equipoise.studies.design_space import Make, Output, Range
+from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.run import create_store
+from equipoise.studies.selection import best, far_apart, non_dominated
+from equipoise.studies.store import Store
 from unit.studies.samples import LENGTH, MASS, study
 
 Array = np.ndarray[Any, Any]
@@ -48,7 +46,7 @@ def stored(
     """A store with these designs in it; only the first chunks where `upto` says so."""
     count = len(block.values)
     given = study(Range(0.1, 0.2), Range(0.05, 0.1), designs=count, outputs=outputs, chunk=chunk)
-    store = create(folder / f"store-{chunk}", given, chunk, "test")
+    store = create_store(folder / f"store-{chunk}", given, chunk, "test")
     for number in range(store.chunks if upto < 0 else upto):
         part = store.designs(number)
         some = slice(part.start, part.stop)
@@ -206,12 +204,12 @@ def test_nothing_is_stored(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [0, 1, 2, 200])
 def test_fronts(kinds: int, count: int) -> None:
     costs = np.random.default_rng(kinds).integers(0, 9, (count, kinds)).astype(float)
-    found = front(costs).tolist()
+    found = non_dominated(costs).tolist()
     assert found == (undominated(costs)[:1] if kinds == 1 else undominated(costs))
 
 
 def test_places_far_apart() -> None:
     costs = np.array([[0.0, 1e3], [0.01, 990.0], [0.5, 500.0], [0.52, 490.0], [1.0, 0.0]])
-    assert spread(costs, 3).tolist() == [0, 2, 4]
-    assert spread(costs, 5).tolist() == [0, 1, 2, 3, 4]
-    assert spread(costs[:, :1] * 0 + 1, 2).tolist() == [0, 1]
+    assert far_apart(costs, 3).tolist() == [0, 2, 4]
+    assert far_apart(costs, 5).tolist() == [0, 1, 2, 3, 4]
+    assert far_apart(costs[:, :1] * 0 + 1, 2).tolist() == [0, 1]

@@ -20,12 +20,11 @@ import psutil
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.studies import cluster, executors
-from equipoise.studies.cluster import Cluster
-from equipoise.studies.executors import Processes, StoppedError, Threads, computed
-from equipoise.studies.sampling import samples
-from equipoise.studies.store import Block
-from equipoise.studies.study import Sampling
+from equipoise.studies import executors
+from equipoise.studies.design_space import Sampling
+from equipoise.studies.executors import Cluster, Processes, StoppedError, Threads, computed
+from equipoise.studies.outcomes import Block
+from equipoise.studies.study import samples
 from support import studies
 from support.studies import Formulas, Orders, short_study
 
@@ -211,8 +210,8 @@ def test_a_cluster_computes_every_chunk_also_if_a_worker_is_killed_at_work(
 def test_workers_with_other_versions_are_refused(
     address: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    here = cluster.versions()
-    monkeypatch.setattr(cluster, "versions", lambda: {**here, "numpy": "1.0"})
+    here = executors.versions()
+    monkeypatch.setattr(executors, "versions", lambda: {**here, "numpy": "1.0"})
     told = f"the worker on {socket.gethostname()} has numpy {here['numpy']}, and whoever .* has 1.0"
     with (
         closing(Cluster(Orders(STUDY, tmp_path).task, address)) as pool,
@@ -236,12 +235,12 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
     (tmp_path / "equipoise" / "__init__.py").write_text(
         'raise ModuleNotFoundError("No module named equipoise", name="equipoise")'
     )
-    monkeypatch.setattr(cluster, "JOIN", 0.2)
+    monkeypatch.setattr(executors, "JOIN", 0.2)
     task = Orders(STUDY, tmp_path).task
     with scheduler(tmp_path) as (address, process):
         with pytest.raises(StoppedError, match="has no workers; start some by: dask worker tcp"):
             Cluster(task, address)
-        monkeypatch.setattr(cluster, "JOIN", 20)
+        monkeypatch.setattr(executors, "JOIN", 20)
         with worker(address, tmp_path), closing(Cluster(task, address)) as pool:
             with pytest.raises(StoppedError, match="a worker of the cluster has no equipoise; ins"):
                 list(computed(pool, CHUNKS))
@@ -254,7 +253,7 @@ def test_a_cluster_that_lacks_equipoise_or_goes_is_told(
 def test_no_scheduler_is_told_in_a_sentence(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr(cluster, "ANSWER", 0.5)
+    monkeypatch.setattr(executors, "ANSWER", 0.5)
     task = Orders(STUDY, tmp_path).task
     level = logging.getLogger("distributed").level
     with socket.create_server(("127.0.0.1", 0)) as silent:

@@ -14,10 +14,11 @@ import pytest
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.studies.export import export
-from equipoise.studies.making import create
-from equipoise.studies.sampling import samples
-from equipoise.studies.store import Block, Store
+from equipoise.studies.outcomes import Block
+from equipoise.studies.run import create_store
+from equipoise.studies.store import Store
+from equipoise.studies.study import samples
+from equipoise.studies.table_files import export
 from support.studies import LENGTH, MASS, SPEED, Formulas, short_study
 
 STUDY = short_study(250)
@@ -25,7 +26,7 @@ COLUMNS = ["design", LENGTH, MASS, SPEED, "area", "momentum", "energy", "reason"
 
 
 def store_of(path: Path, chunks: tuple[int, ...] = (0, 1, 2)) -> Store:
-    store = create(path, STUDY, 100, "numba")
+    store = create_store(path, STUDY, 100, "numba")
     for chunk in chunks:
         designs = store.designs(chunk)
         values = samples(STUDY, designs.start, len(designs))
@@ -108,11 +109,11 @@ def test_many_designs_are_written_a_block_at_a_time(
 
 
 def test_names_with_quotes_and_commas_stand_in_the_header(tmp_path: Path) -> None:
-    from equipoise.studies.study import Output
+    from equipoise.studies.design_space import Output
 
     name = 'joint_forces."A, b".rms'
     study = short_study(5, outputs=(Output(name, dimension="force"),))
-    export(create(tmp_path / "s", study, 5, "numba"), tmp_path / "d.csv")
+    export(create_store(tmp_path / "s", study, 5, "numba"), tmp_path / "d.csv")
     assert list(pandas.read_csv(tmp_path / "d.csv"))[4] == f"{name} [N]"
 
 

@@ -13,16 +13,16 @@ import pytest
 import equipoise as eq
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import ModelError, UsageError
-from equipoise.results.analysis import columns, unit_of
+from equipoise.quantities import SI
+from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
-from equipoise.studies.asking import check_outputs
+from equipoise.studies.commands import check_outputs
+from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
 from equipoise.studies.dimensions import dimension_of
-from equipoise.studies.evaluate import Outcome
+from equipoise.studies.evaluate import one_by_one
 from equipoise.studies.figures import read, resolve, scale
-from equipoise.studies.general import general
-from equipoise.studies.spread import Range
-from equipoise.studies.study import Command, Output, Sampling, Study, Vary
-from equipoise.studies.units import SI
+from equipoise.studies.outcomes import Outcome
+from equipoise.studies.study import Study
 from surface.running import equipoise, example_text, succeeded
 from unit.studies.samples import template
 
@@ -143,7 +143,7 @@ def asked(of: Command, *paths: str) -> list[Output]:
 def computed(given: Study, *values: float) -> Outcome:
     """Designs of one varied number; those of the model where none is given."""
     own = [given.model.number(path)[0] for path in given.paths]
-    return general(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
+    return one_by_one(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
 
 
 def printed(values: Any, path: str) -> float:
@@ -406,15 +406,14 @@ def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:
 def test_dimensions_of_an_analysis(name: str) -> None:
     """The units of the CSV file and of the summary are those of the dimensions."""
     analysis = eq.analyze(eq.load(name), 90)
-    for column, _ in columns(analysis):
+    for column in (one.name for one in analysis.outputs.arrays):
         if column not in ("shaking_force.x", "shaking_force.y"):  # those of the summary go first
             dimension = dimension_of(analysis.machine, "analyze", f"{column}.rms")
             assert dimension is not None
-            assert SI[dimension] == unit_of(column).replace("^2", "^2"), column
+            assert SI[dimension] == unit_of(column), column
     for signal in analysis.summary:
         dimension = dimension_of(analysis.machine, "analyze", f"summary.{signal}.peak")
-        torque = signal.endswith(("moment", "torque"))
-        assert dimension == ("torque" if torque else "force"), signal
+        assert dimension == analysis.outputs[signal].dimension, signal
         assert dimension_of(analysis.machine, "analyze", f"{signal}.max_at") == "angle"
 
 

@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError
-from equipoise.studies.landscape import Landscape, landscape
+from equipoise.studies.objective_map import Landscape, landscape
 
 RIPPLE = eq.Objective("shaking_force.y", "ripple")
 """U of Yamashita, Ichikawa and Mori (63), times the mass."""

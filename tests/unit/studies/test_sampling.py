@@ -13,9 +13,8 @@ from scipy import stats
 from scipy.stats import qmc
 
 from equipoise.errors import UsageError
-from equipoise.studies.sampling import samples, unit_samples, values_at
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Study
+from equipoise.studies.design_space import Choices, Correlation, Normal, Range, Uniform
+from equipoise.studies.study import Study, samples, unit_samples, values_at
 from unit.studies.samples import correlated, study
 
 RANDOM = ("sobol", "latin-hypercube", "monte-carlo")

@@ -12,12 +12,12 @@ import pytest
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_MACHINE
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.model import Machine
-from equipoise.studies.best import kept
-from equipoise.studies.evaluate import Evaluator, Outcome, evaluator
-from equipoise.studies.front import front
+from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, kept
 from equipoise.studies.search import search_designs
-from equipoise.studies.spread import Choices, Normal, Range
-from equipoise.studies.study import Correlation, Make, Output, Study, Vary
+from equipoise.studies.selection import non_dominated
+from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 
 Array = np.ndarray[Any, Any]
@@ -260,7 +260,7 @@ def test_a_four_bar_against_every_design() -> None:
     every = np.stack(np.meshgrid(lengths, lengths, indexing="ij"), axis=-1).reshape(-1, 2)
     outcome = compute(every)
     good = np.flatnonzero(np.all(kept(outputs, outcome.figures), axis=1) & (outcome.reason == 0))
-    wanted = good[front(outcome.figures[good, :2] * (1, -1))]
+    wanted = good[non_dominated(outcome.figures[good, :2] * (1, -1))]
     assert 3 < len(wanted) < len(good) < len(every)
 
     found = search_designs(some, compute=compute, population=20)

@@ -16,13 +16,13 @@ import zarr
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
+from equipoise.quantities import SI
 from equipoise.quantities.units import KINDS
-from equipoise.studies.making import create, versions
-from equipoise.studies.sampling import samples
-from equipoise.studies.spread import Range
-from equipoise.studies.store import UNKNOWN, Block, Store, open_store
-from equipoise.studies.study import Output, Sampling, Vary
-from equipoise.studies.units import SI
+from equipoise.studies.design_space import Output, Range, Sampling, Vary
+from equipoise.studies.outcomes import Block
+from equipoise.studies.run import create_store
+from equipoise.studies.store import UNKNOWN, Store, open_store, versions
+from equipoise.studies.study import samples
 from support.studies import LENGTH, MASS, SPEED, Formulas, contents, restore, short_study
 
 STUDY = short_study(250)
@@ -35,7 +35,7 @@ def block_of(store: Store, chunk: int) -> Block:
 
 
 def filled(path: Path, *chunks: int) -> Store:
-    store = create(path, STUDY, STUDY.chunk, "compiled")
+    store = create_store(path, STUDY, STUDY.chunk, "compiled")
     for chunk in chunks:
         store.write(store.designs(chunk), block_of(store, chunk))
     return store
@@ -60,7 +60,7 @@ def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_pa
 
 def test_many_designs_are_read_some_chunks_at_a_time(tmp_path: Path) -> None:
     study = short_study(140_000, 30_000)
-    store = create(tmp_path / "s", study, 30_000, "compiled")
+    store = create_store(tmp_path / "s", study, 30_000, "compiled")
     assert [(start, len(block.values)) for start, block in store.blocks()] == [
         (0, 60_000),
         (60_000, 60_000),
@@ -113,14 +113,14 @@ def test_only_what_repeats_is_compressed(tmp_path: Path) -> None:
         sampling=Sampling("grid"),
         vary=(Vary(LENGTH, Range(0.06, 0.08, 3)), Vary(MASS, Range(0.1, 0.2, 40))),
     )
-    arrays = create(tmp_path / "grid", grid, 100, "compiled").arrays
+    arrays = create_store(tmp_path / "grid", grid, 100, "compiled").arrays
     assert [bool(array.compressors) for array in arrays.values()] == [1, 1, 0, 0, 0, 1]
 
 
 def test_names_of_outputs_may_have_any_signs(tmp_path: Path) -> None:
     names = ['joint_forces."A, b".rms', "Länge [1]", "__x", "a: b*?", "c"]
     study = short_study(50, outputs=tuple(Output(name) for name in names))
-    create(tmp_path / "s", study, 50, "compiled")
+    create_store(tmp_path / "s", study, 50, "compiled")
     assert open_store(tmp_path / "s").outputs == tuple(names)
     assert set(names) < set(xarray.open_zarr(tmp_path / "s"))
 
@@ -158,16 +158,16 @@ def test_what_a_killed_process_left_half_written_is_cleared_away(tmp_path: Path)
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "s").mkdir()
     with pytest.raises(UsageError, match=r"is there already; .* equipoise resume "):
-        create(tmp_path / "s", STUDY, 100, "compiled")
+        create_store(tmp_path / "s", STUDY, 100, "compiled")
     assert contents(tmp_path) == {}
 
 
 def test_a_store_that_cannot_be_made_leaves_nothing(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(UsageError, match=r"the store cannot be made \((not a directory|file ex)"):
-        create(tmp_path / "file" / "s", STUDY, 100, "compiled")
+        create_store(tmp_path / "file" / "s", STUDY, 100, "compiled")
     with pytest.raises(UsageError, match=r"the store cannot be made \(file name too long\)"):
-        create(tmp_path / "s", short_study(outputs=(Output("ä" * 150),)), 100, "compiled")
+        create_store(tmp_path / "s", short_study(outputs=(Output("ä" * 150),)), 100, "compiled")
     assert [path.name for path in tmp_path.iterdir()] == ["file"]
 
 
@@ -228,7 +228,7 @@ def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) ->
 HOLD = """
 import sys, time
 from pathlib import Path
-from equipoise.studies.lock import locked
+from equipoise.studies.store import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)

@@ -13,8 +13,17 @@ import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Sampling, Study, Vary
+from equipoise.studies.design_space import (
+    Choices,
+    Correlation,
+    Normal,
+    Output,
+    Range,
+    Sampling,
+    Uniform,
+    Vary,
+)
+from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, SPEED, correlated, study, template
 
 GRID = {"method": "grid", "designs": None}

@@ -13,10 +13,10 @@ from scipy.stats import norm
 import equipoise as eq
 from equipoise.codegen.figures import NO_ASSEMBLY
 from equipoise.errors import ModelError, UsageError
-from equipoise.studies.evaluate import Outcome
-from equipoise.studies.spread import Choices, Normal, Range, Uniform
-from equipoise.studies.study import Correlation, Output, Study
-from equipoise.studies.tolerance import rows_of, tolerance
+from equipoise.studies.design_space import Choices, Correlation, Normal, Output, Range, Uniform
+from equipoise.studies.outcomes import Outcome
+from equipoise.studies.study import Study
+from equipoise.studies.tolerances import rows_of, tolerance
 from equipoise.studies.variance import causes_of, tables
 from unit.studies.samples import LENGTH, MASS, SPEED, study
 

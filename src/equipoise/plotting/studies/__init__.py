@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.best import Best
     from equipoise.studies.search import Searched
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.studies.selection import Best
+    from equipoise.studies.tolerances import Tolerances
 
 Units = Mapping[str, "Unit"]
 Own = tuple["np.ndarray[Any, Any]", "np.ndarray[Any, Any]"]

@@ -26,13 +26,13 @@ from equipoise.plotting.vibration.panels import (
     name_y,
     place,
 )
+from equipoise.studies.design_space import Make
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
-    from equipoise.studies.study import Make
 
 Array = np.ndarray[Any, Any]
 

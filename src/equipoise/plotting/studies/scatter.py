@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from equipoise.schema.study_units import Unit
-    from equipoise.studies.scatter import Scatter
-    from equipoise.studies.tolerance import Tolerances
+    from equipoise.studies.tolerances import Tolerances
+    from equipoise.studies.variance import Scatter
 
 ROW = 2.15
 """Inches: height of a row of panels."""

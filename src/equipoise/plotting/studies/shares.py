@@ -25,7 +25,7 @@ from equipoise.plotting.vibration.panels import (
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from equipoise.studies.tolerance import Cause, Tolerances
+    from equipoise.studies.tolerances import Cause, Tolerances
 
 LEFT, TOP, BOTTOM = 2.6, 0.62, 0.5
 """Inches: margins; at the left stand the paths."""

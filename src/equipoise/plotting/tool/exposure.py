@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from equipoise.exposure.directive import ACTION, LIMIT
-from equipoise.exposure.iso_5349 import EIGHT_HOURS
+from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
 from equipoise.i18n import say, to_say
 from equipoise.plotting.labels import Labels

@@ -1,0 +1,202 @@
+"""What charts over crank angle share: the axis, whole cycles, extremes, hodographs, words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from equipoise import signals
+from equipoise.figures.style import short
+from equipoise.i18n import say
+from equipoise.quantities import Dimension
+from equipoise.results.charts import DEGREES, RPM, Axis, Curve, Mark, Panel, shown
+
+Array = np.ndarray[Any, Any]
+
+ROOM = 0.17
+"""Share of what is drawn that stays free above and below for the numbers at extremes."""
+VARIES = 1e-9
+"""Share of a signal below which what varies is rounding."""
+STEPS = (30, 60, 90, 180, 360, 720, 1440, 3600)
+QUARTERS, FEW_TURNS = 90, 3
+"""Degrees between crank angles that are numbered; turns from which they are further apart."""
+ALIKE = 0.015
+"""Over the size of a hodograph: dots nearer to each other share their number."""
+MOST_PANELS = 10
+"""In one picture of small axes."""
+
+GAUGES: dict[tuple[str, bool], tuple[Dimension, tuple[str, str, str]]] = {
+    ("displacement", False): ("length", ("mm", "um", "m")),
+    ("velocity", False): ("speed", ("mm/s", "um/s", "m/s")),
+    ("acceleration", False): ("acceleration", ("m/s^2", "mm/s^2", "m/s^2")),
+    ("displacement", True): ("angle", ("mrad", "urad", "rad")),
+    ("velocity", True): ("angular speed", ("mrad/s", "urad/s", "rad/s")),
+    ("acceleration", True): ("angular acceleration", ("rad/s^2", "mrad/s^2", "rad/s^2")),
+    ("force", False): ("force", ("N", "mN", "kN")),
+    ("force", True): ("torque", ("N m", "mN m", "kN m")),
+}
+"""What is read of a support, whether it is a rotation -> dimension, and units that suit it."""
+
+
+def read_axis(label: str, quantity: str, rotation: bool, values: Any, **rest: Any) -> Axis:
+    """An axis of something that is read of a support, in the unit that suits values (SI)."""
+    dimension, usual = GAUGES[quantity, rotation]
+    return Axis.of(label, dimension, values, usual, **rest)
+
+
+# -- the axis --------------------------------------------------------------------------------------
+
+
+def crank_axis(drive: str, speed: float, turns: int, with_motor: bool = False) -> Axis:
+    """Angle of the drive link over the cycle; time where a motor lets the speed vary."""
+    if with_motor:
+        label = say("time, in degrees: 360° last as long as a turn of the crank in the mean")
+    else:
+        label = say("crank angle: angle of {link} in the frame", link=short(drive))
+    if speed < 0:
+        label += "  " + say("(turns clockwise: time runs from right to left)")
+    return Axis(label, DEGREES, "crank", 0.0, 2 * pi * turns)
+
+
+def angle_step(turns: int) -> int:
+    """Degrees between crank angles that are told along a path."""
+    return next((step for step in STEPS if 360 * turns / step < 13), 360 * turns)
+
+
+def closed(theta: Array, values: Array, period: float) -> tuple[Array, Array]:
+    """A cycle of samples (N,), with the first of them again at its end."""
+    return np.append(theta, period), np.append(values, values[0])
+
+
+# -- words -----------------------------------------------------------------------------------------
+
+
+def told_speed(speed: float) -> str:
+    """A crank speed in words."""
+    values = {"rpm": shown(abs(speed) * RPM.factor), "rate": shown(abs(speed))}
+    if speed < 0:
+        return say("{rpm} rpm ({rate} rad/s, clockwise)", **values)
+    return say("{rpm} rpm ({rate} rad/s)", **values)
+
+
+def degrees_told(angle: float) -> str:
+    """An angle in rad as degrees."""
+    return f"{np.degrees(angle):.1f}°".replace("-", "\N{MINUS SIGN}")
+
+
+def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
+    """Which of several pictures it is, in words."""
+    if len(names) == len(every):
+        return ""
+    first = every.index(names[0]) + 1
+    last = first + len(names) - 1
+    return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
+
+
+def groups(names: Sequence[str], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[str]]]:
+    """Names by so many for each picture, with what is added to the name of the picture."""
+    for number, start in enumerate(range(0, len(names), most), 1):
+        yield f"-{number}" if number > 1 else "", names[start : start + most]
+
+
+# -- signals ---------------------------------------------------------------------------------------
+
+
+def varies(values: Array) -> bool:
+    """Whether a signal changes by more than rounding."""
+    return bool(np.ptp(values) > VARIES * np.max(np.abs(values)))
+
+
+def extremes(
+    axis: Axis,
+    values: Array,
+    places: Sequence[tuple[float, float]],
+    role: str,
+    angles: bool = False,
+) -> tuple[Mark, ...]:
+    """Marks at extremes of a signal (N,), none where it does not vary.
+
+    places : crank angles (rad) and values.  angles : whether the crank angles are told too.
+    """
+    if not varies(values):
+        return ()
+    middle = float(np.mean(values))
+    found = []
+    for angle, value in places:
+        text = axis.told(value)
+        if angles:
+            text = say("{value} at {angle}", value=text, angle=degrees_told(angle))
+        found.append(Mark(angle, value, text, role, 90.0 if value > middle else -90.0))
+    return tuple(found)
+
+
+def sampled_extremes(theta: Array, values: Array) -> list[tuple[float, float]]:
+    """The largest and the smallest of samples (N,): crank angle, rad, and value."""
+    told = signals.figures(theta, values)
+    return [(told.max_at, told.max), (told.min_at, told.min)]
+
+
+def compared(
+    x: Axis,
+    label: str,
+    dimension: Dimension | None,
+    drawn: Mapping[str, tuple[Array, Array]],
+    angles: bool = False,
+    low: float | None = None,
+    **rest: Any,
+) -> Panel:
+    """Signals of one quantity by their roles over crank angle, with the extremes of each.
+
+    drawn : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
+    rest : of the panel.
+    """
+    every = np.concatenate([values for _, values in drawn.values()])
+    axis = Axis.of(label, dimension, every, room=ROOM, low=low)
+    marks: list[Mark] = []
+    for role, (theta, values) in reversed(drawn.items()):
+        marks += extremes(axis, values, sampled_extremes(theta, values), role, angles)
+    curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in drawn.items())
+    if not np.any(every):
+        rest["message"] = say("zero at every crank angle")
+    return Panel(x, axis, curves, tuple(marks), **rest)
+
+
+# -- ends of arrows --------------------------------------------------------------------------------
+
+
+def told_angles(angles: Array) -> dict[int, int]:
+    """A few crank angles (deg), and which of `angles` (N,), a whole cycle in rad, each is."""
+    turns = round(float(angles[-1] + angles[1] - angles[0]) / (2 * np.pi))
+    step = QUARTERS if turns < FEW_TURNS else angle_step(turns)
+    each = len(angles) / (360 * turns)
+    return {angle: round(angle * each) for angle in range(0, 360 * turns, step)}
+
+
+def numbers(told: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
+    """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
+    apart: dict[int, int] = {}
+    for angle, k in told.items():
+        if all(abs(values[k] - values[other]) > ALIKE * size for other in apart.values()):
+            apart[angle] = k
+    middle = complex(np.mean(values))
+    return tuple(
+        Mark(
+            float(values[k].real),
+            float(values[k].imag),
+            f"{angle}",
+            role,
+            float(np.degrees(np.angle(values[k] - middle))),
+            optional=True,
+            near=5.0,
+        )
+        for angle, k in apart.items()
+    )
+
+
+def extent(*parts: Array) -> float:
+    """The larger side of the box that holds places (complex)."""
+    every = np.concatenate([np.ravel(part) for part in parts])
+    return max(float(np.ptp(every.real)), float(np.ptp(every.imag)))

@@ -1,0 +1,392 @@
+"""Where everything of a chart goes on its sheet: heading, legends, panels, words around them.
+
+Every room is as large as what stands in it, so that nothing is cut and nothing lies on anything
+else; no number here is the place of a thing, only its distance from the next.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.figures.metrics import lines_of, set_in, width_of
+from equipoise.figures.panel import LEAD, MIDDLE, View, draw, flag_height, frame
+from equipoise.figures.scales import Scale, ends_of, ticks_of
+from equipoise.figures.sheet import Sheet, Signs, Stroke, Words
+from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, Look, look_of
+from equipoise.results.charts import Chart, Panel
+
+Array = np.ndarray[Any, Any]
+
+WIDE = 518.4
+"""Points: width of every picture."""
+EDGE, GAP, BELOW = 10.0, 14.0, 12.0
+"""Points: free at the edges, between columns, and between rows of panels."""
+LINE, KEY, SAMPLE, APART = 12.0, 13.5, 20.0, 14.0
+"""Points: height of a line of words and of a legend; width of a sample; between two of them."""
+HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
+"""Height of one of so many panels above each other; the last of more."""
+LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
+"""Height of panels of one scale at least and at most; free in them around what is drawn, points
+or, in small ones, a share."""
+LIKE = 3.0
+"""How much larger one panel's values may be than another's of the same kind on one scale."""
+MOST_LINES = 2
+"""Lines of a heading."""
+
+
+@dataclass(frozen=True)
+class Key:
+    """An entry of a legend: how something looks, and its name."""
+
+    role: str
+    name: str
+    kind: str
+    dashed: bool = False
+
+    @property
+    def width(self) -> float:
+        """Points."""
+        return SAMPLE + 5 + width_of(self.name, NORMAL)
+
+
+def lay_out(chart: Chart) -> Sheet:
+    """A chart on a sheet."""
+    sheet = Sheet(WIDE, 0.0, chart.title)
+    top = _heading(sheet, chart)
+    keys = [Key(role, name, _kind(role)) for role, name in chart.keys]
+    keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
+    keys = [*dict.fromkeys(keys)]
+    top = _legend(sheet, keys, EDGE, WIDE - EDGE, top) + (5 if keys else 2)
+    top = _panels(sheet, chart, top)
+    if chart.foot:
+        text, size = set_in(chart.foot, WIDE - 2 * EDGE, NORMAL)
+        sheet.add(Words(WIDE / 2 + 14, top + 11, text, size, INK, "middle"), 7)
+        top += 14
+    sheet.height = top + 7
+    return sheet
+
+
+def _heading(sheet: Sheet, chart: Chart) -> float:
+    """The machine, what is shown, and further words; where they end."""
+    room = WIDE - 2 * EDGE
+    title, size = set_in(chart.title, room, LARGE, bold=True)
+    sheet.add(Words(EDGE, 17.0, title, size, INK, bold=True), 7)
+    top = 20.0
+    for text in (chart.what, *chart.words):
+        for line in lines_of(text, room, NORMAL, MOST_LINES):
+            sheet.add(Words(EDGE, top + 9.5, line, NORMAL, INK), 7)
+            top += LINE
+    return top + 5
+
+
+# -- legends ---------------------------------------------------------------------------------------
+
+
+def _kind(role: str) -> str:
+    look = look_of(role)
+    if look.fill and not look.sign:
+        return "patch"
+    return "line"
+
+
+def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
+    """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
+    found = [Key(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
+    if panel.keyed:
+        found = [] if chart_level else found
+    elif not chart_level:
+        return []
+    if chart_level:
+        found += [Key(b.role, b.label, "patch") for b in panel.bars if b.label]
+        found += [Key(a.role, a.label, "patch") for a in panel.areas if a.label]
+        found += [Key(o.role, o.label, "patch") for o in panel.outlines if o.label]
+        found += [Key(line.role, line.label, "line") for line in panel.lines if line.label]
+        found += [Key(m.role, m.label, "sign") for m in panel.marks if m.label]
+        found += [Key(b.role, b.label, "patch") for b in panel.bands if b.label]
+        if panel.surface is not None and panel.surface.lacking:
+            found.append(Key("whole", panel.surface.lacking, "patch"))
+    return [*dict.fromkeys(found)]
+
+
+def rows_of(keys: list[Key], room: float) -> list[list[Key]]:
+    """Entries of a legend in rows."""
+    rows: list[list[Key]] = []
+    left = 0.0
+    for key in keys:
+        wide = key.width + APART
+        if not rows or left < wide - APART:
+            rows.append([])
+            left = room
+        rows[-1].append(key)
+        left -= wide
+    return rows
+
+
+def _legend(sheet: Sheet, keys: list[Key], left: float, right: float, top: float) -> float:
+    """Draw entries below each other in rows; where they end."""
+    for row in rows_of(keys, right - left):
+        x = left
+        for key in row:
+            _sample(sheet, key, x, top + KEY / 2)
+            text, size = set_in(key.name, right - x - SAMPLE - 5, NORMAL)
+            y = top + KEY / 2 + MIDDLE * NORMAL
+            sheet.add(Words(x + SAMPLE + 5, y, text, size, INK), 7)
+            x += key.width + APART
+        top += KEY
+    return top
+
+
+def _sample(sheet: Sheet, key: Key, x: float, y: float) -> None:
+    look = look_of(key.role, key.dashed)
+    if key.kind == "patch":
+        fill = look.fill or look.color
+        corners = np.array([(x + 3, y - 4), (x + 17, y - 4), (x + 17, y + 4), (x + 3, y + 4)])
+        sheet.add(Stroke((corners,), fill=fill, opacity=look.opacity, closed=True), 6)
+        return
+    if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
+        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
+        ends = np.array([(x, y), (x + SAMPLE, y)])
+        sheet.add(Stroke((ends,), look.color, look.width, dashes), 6)
+    if look.sign or key.kind == "sign":
+        sheet.add(_key_sign(look, x + SAMPLE / 2, y), 6.1)
+
+
+def _key_sign(look: Look, x: float, y: float) -> Signs:
+    face = look.fill or ("#ffffff" if look.hollow else look.color)
+    sign, size = (look.sign, look.size) if look.sign else ("o", 4.0)
+    size = 3.0 if sign == "." else size
+    return Signs(np.array([(x, y)]), sign, size, look.color, face, max(look.width, 1.0))
+
+
+# -- panels ----------------------------------------------------------------------------------------
+
+
+@dataclass(eq=False)
+class Cell:
+    """A panel and the room it needs, points: beside, above and below its axes."""
+
+    panel: Panel
+    x_ends: tuple[float, float]
+    y_ends: tuple[float, float]
+    height: float
+    numbered: bool = True
+    left: float = 0.0
+    right: float = 0.0
+    above: float = 0.0
+    below: float = 0.0
+    keys: tuple[Key, ...] = ()
+    beside: bool = False
+    """Whether its legend stands on the line of its title."""
+    least_span: float = 0.0
+    """That the values of panels of one scale, side by side, are drawn as if they had."""
+
+
+def _panels(sheet: Sheet, chart: Chart, top: float) -> float:
+    columns = min(chart.columns, len(chart.panels))
+    rows = [chart.panels[k : k + columns] for k in range(0, len(chart.panels), columns)]
+    usual = HIGH[min(len(rows), max(HIGH))]
+    cells = [_cell(panel, panel.height or usual) for panel in chart.panels]
+    _share(cells)
+    inner = (WIDE - 2 * EDGE - (columns - 1) * GAP) / columns
+    for number, cell in enumerate(cells):
+        later = cells[number + columns :: columns]
+        cell.numbered = not (chart.stacked and any(_same_x(cell, one) for one in later[:1]))
+        _sides(cell)
+    for column in range(columns):
+        left = max(cell.left for cell in cells[column::columns])
+        right = max(cell.right for cell in cells[column::columns])
+        for cell in cells[column::columns]:
+            cell.left, cell.right = left, right
+            _settle(cell, inner - left - right, small=columns > 1)
+            _above(cell, inner - left - right)
+    for number in range(0, len(cells), columns):
+        row = cells[number : number + columns]
+        above = max(cell.above for cell in row)
+        height = max(cell.height for cell in row)
+        for column, cell in enumerate(row):
+            x = EDGE + column * (inner + GAP)
+            _draw(sheet, cell, x, top + above, inner)
+        last = number + columns >= len(cells)
+        top += above + height + max(cell.below for cell in row) + (0 if last else BELOW)
+    return top
+
+
+def _same_x(one: Cell, other: Cell) -> bool:
+    alike = one.panel.x.text == other.panel.x.text and one.panel.x.scale == other.panel.x.scale
+    return alike and bool(np.allclose(one.x_ends, other.x_ends)) and not one.panel.equal
+
+
+def _cell(panel: Panel, height: float) -> Cell:
+    curves = panel.curves
+    x = [curve.x for curve in curves] + [area.x for area in panel.areas]
+    y: list[Any] = [curve.y for curve in curves] + [area.high for area in panel.areas]
+    y += [area.low for area in panel.areas]
+    for bars in panel.bars:
+        half = np.asarray(bars.width, float) / 2
+        along, up = np.concatenate([bars.at - half, bars.at + half]), [*bars.size, 0.0]
+        x.append(along if bars.across == "x" else up)
+        y.append(up if bars.across == "x" else along)
+    x += [[mark.x] for mark in panel.marks]
+    y += [[mark.y] for mark in panel.marks]
+    for ends in panel.arrows:
+        x.append([ends.tail.real, ends.head.real])
+        y.append([ends.tail.imag, ends.head.imag])
+    for outline in panel.outlines:
+        x.append(outline.places.real)
+        y.append(outline.places.imag)
+    if panel.surface is not None:
+        x.append(panel.surface.x)
+        y.append(panel.surface.y)
+    if panel.rings or (panel.equal and panel.zero):
+        x.append([0.0])
+        y.append([0.0])
+    return Cell(panel, ends_of(panel.x, x), ends_of(panel.y, y), height)
+
+
+def _share(cells: list[Cell]) -> None:
+    """One scale for panels of one quantity, where each still fills a good part of its axes."""
+    groups: dict[tuple[str, float | None, bool], list[Cell]] = {}
+    for cell in cells:
+        axis = cell.panel.y
+        if axis.scale == "linear" and axis.unit.unit and axis.high is None:
+            groups.setdefault((axis.text, axis.low, cell.panel.equal), []).append(cell)
+    for group in groups.values():
+        spans = [_span(cell) for cell in group]
+        if max(spans) > LIKE * min(spans):
+            continue
+        if group[0].panel.equal:
+            for cell in group:
+                cell.least_span = max(spans)
+            continue
+        ends = (min(c.y_ends[0] for c in group), max(c.y_ends[1] for c in group))
+        if ends[1] - ends[0] <= LIKE * min(spans):
+            for cell in group:
+                cell.y_ends = ends
+
+
+def _span(cell: Cell) -> float:
+    """Of the values in a panel; of one scale the larger of both axes."""
+    x, y = (ends[1] - ends[0] for ends in (cell.x_ends, cell.y_ends))
+    return max(x, y) if cell.panel.equal else y
+
+
+def _sides(cell: Cell) -> None:
+    """What stands at the left, at the right and below of the axes."""
+    panel = cell.panel
+    if panel.bare:
+        cell.below = LINE * len(panel.x.label.split("\n")) + 4 if panel.x.label else 4.0
+        return
+    y = Scale(panel.y, *cell.y_ends, cell.height, 0.0)
+    numbers = [text for _, text in ticks_of(y, upright=True)] or [""]
+    if panel.equal:
+        numbers.append("−0000")
+    wide = max(width_of(text, SMALL) for text in numbers)
+    cell.left = 7 + wide + (15 if panel.y.label else 2)
+    if panel.left:
+        cell.left = max(cell.left, 10 + max(width_of(text, NORMAL) for text in panel.left))
+    if panel.flag_words:
+        cell.left = max(cell.left, 10 + max(width_of(text, SMALL) for text in panel.flag_words))
+    cell.right = 8.0
+    if panel.asides:
+        cell.right = LEAD + 4 + max(width_of(aside.text, SMALL) for aside in panel.asides)
+    if panel.right:
+        cell.right = 10 + max(width_of(text, NORMAL) for text in panel.right)
+    if panel.right_axis is not None:
+        texts = [text for _, text in panel.right_axis.ticks or ()]
+        cell.right = 24 + max((width_of(text, SMALL) for text in texts), default=0.0)
+    cell.below = 4.0
+    if cell.numbered:
+        cell.below = 14.0 + (LINE if panel.x.label else 0.0)
+
+
+def _settle(cell: Cell, width: float, small: bool) -> None:
+    """Ends of axes of one scale, so that they hold what is drawn with room for its words."""
+    if not cell.panel.equal:
+        return
+    x, y = (np.array(ends) for ends in (cell.x_ends, cell.y_ends))
+    fixed = cell.panel.height
+    if small and not fixed:
+        room = SMALL_ROOM * width
+        point = max(np.ptp(x), np.ptp(y), cell.least_span) / (width - 2 * room) or 1.0
+        cell.height = width
+    else:
+        high = fixed or MOST
+        point = max(np.ptp(x) / (width - 2 * ROOM), np.ptp(y) / (high - 2 * ROOM)) or 1.0
+        cell.height = fixed or min(max(np.ptp(y) / point + 2 * ROOM, LEAST), MOST)
+    middle_x, middle_y = float(np.mean(x)), float(np.mean(y))
+    half_x, half_y = point * width / 2, point * cell.height / 2
+    cell.x_ends = (middle_x - half_x, middle_x + half_x)
+    cell.y_ends = (middle_y - half_y, middle_y + half_y)
+
+
+def _above(cell: Cell, width: float) -> None:
+    """What stands above the axes: words at lines, a title, a legend."""
+    panel = cell.panel
+    cell.keys = tuple(keys_of(panel, chart_level=False))
+    cell.above = flag_height(panel, width)
+    head = width_of(panel.title, NORMAL) + width_of(panel.remark, SMALL) + 24
+    rows = rows_of([*cell.keys], width)
+    cell.beside = len(rows) == 1 and sum(k.width + APART for k in cell.keys) + head < width
+    if panel.title or panel.remark or cell.beside:
+        cell.above += LINE + 1
+    if cell.keys and not cell.beside:
+        cell.above += KEY * len(rows) + 2
+
+
+def _draw(sheet: Sheet, cell: Cell, left: float, top: float, inner: float) -> None:
+    """A panel whose axes begin at some height, in its room from the left."""
+    panel = cell.panel
+    start, end = left + cell.left, left + inner - cell.right
+    x = Scale(panel.x, *cell.x_ends, start, end)
+    y = Scale(panel.y, *cell.y_ends, top + cell.height, top)
+    view = View(panel, x, y, sheet)
+    draw(view)
+    above = top - flag_height(panel, end - start)
+    if cell.keys and cell.beside:
+        wide = sum(key.width + APART for key in cell.keys) - APART
+        _legend(sheet, [*cell.keys], end - wide, end + 1, above - KEY - 0.5)
+        above -= LINE + 1
+    elif cell.keys:
+        rows = rows_of([*cell.keys], end - start)
+        _legend(sheet, [*cell.keys], start, end, above - KEY * len(rows) - 2)
+        above -= KEY * len(rows) + 2
+        _titles(sheet, panel, start, end, above)
+        above = 0.0
+    if above:
+        _titles(sheet, panel, start, end, above if not cell.beside else above + LINE + 1)
+    if panel.bare:
+        for number, text in enumerate(panel.x.label.split("\n") if panel.x.label else ()):
+            y_foot = top + cell.height + 10 + LINE * number
+            sheet.add(Words((start + end) / 2, y_foot, text, SMALL, INK, "middle"), 7)
+        return
+    frame(view, cell.numbered)
+    _name_axes(sheet, cell, view, left)
+
+
+def _titles(sheet: Sheet, panel: Panel, start: float, end: float, foot: float) -> None:
+    remark = set_in(panel.remark, end - start, SMALL)[0]
+    room = end - start - (width_of(remark, SMALL) + 8 if remark else 0)
+    title, size = set_in(panel.title, room, NORMAL)
+    if title:
+        sheet.add(Words(start, foot - 4, title, size, INK), 7)
+    if remark:
+        sheet.add(Words(end, foot - 4, remark, SMALL, LINES, "end"), 7)
+
+
+def _name_axes(sheet: Sheet, cell: Cell, view: View, left: float) -> None:
+    panel = cell.panel
+    start, top, end, bottom = view.box
+    if panel.y.label:
+        text, size = set_in(panel.y.text, cell.height + 16, NORMAL)
+        where = (left + 9, (top + bottom) / 2)
+        sheet.add(Words(*where, text, size, INK, "middle", turned=True), 7)
+    if panel.x.label and cell.numbered:
+        text, size = set_in(panel.x.text, end - start + 40, NORMAL)
+        sheet.add(Words((start + end) / 2, bottom + 23.5, text, size, INK, "middle"), 7)
+    if panel.right_axis is not None:
+        where = (end + cell.right - 4, (top + bottom) / 2)
+        words = Words(*where, panel.right_axis.text, NORMAL, INK, "middle", turned=True)
+        sheet.add(words, 7)

@@ -1,0 +1,175 @@
+"""A sheet as a figure of Matplotlib, for PNG, PDF and notebooks; nothing else knows Matplotlib."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from io import BytesIO
+from threading import RLock
+from typing import Any, Literal
+
+import matplotlib
+import numpy as np
+from matplotlib import font_manager
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
+
+from equipoise.figures.metrics import box_of
+from equipoise.figures.sheet import Item, Sheet, Signs, Stroke, Words
+from equipoise.figures.style import PAPER
+from equipoise.figures.vector import BACK, SHAPES
+
+Kind = Literal["svg", "png", "pdf"]
+
+PARAMETERS: Any = {
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],
+    "lines.solid_joinstyle": "round",
+    "lines.scale_dashes": False,
+    "text.parse_math": False,
+    "figure.dpi": 144,
+    "savefig.dpi": "figure",
+    "text.hinting": "no_hinting",
+    "svg.hashsalt": "equipoise",
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+}
+"""Texts stay texts in PDF; none of them is read as a formula."""
+METADATA: dict[str, dict[str, None]] = {
+    "svg": {"Date": None, "Creator": None},
+    "png": {"Software": None},
+    "pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+}
+OTHER_SCRIPTS = (
+    "Noto Sans CJK JP",
+    "Noto Sans CJK KR",
+    "Noto Sans CJK SC",
+    "Noto Sans JP",
+    "Noto Sans KR",
+    "Source Han Sans",
+    "Hiragino Sans",
+    "Apple SD Gothic Neo",
+    "Yu Gothic",
+    "Malgun Gothic",
+    "IPAexGothic",
+    "NanumGothic",
+    "WenQuanYi Zen Hei",
+)
+"""Fonts, where a computer has them, for signs that Matplotlib's own font lacks."""
+
+_painting = RLock()
+
+
+@cache
+def _families() -> list[str]:
+    installed = {font.name for font in font_manager.fontManager.ttflist}
+    return ["DejaVu Sans", *(name for name in OTHER_SCRIPTS if name in installed), "sans-serif"]
+
+
+@contextmanager
+def _settings() -> Iterator[None]:
+    """Everything inside looks the same whatever the user's Matplotlib is set to.
+
+    Matplotlib's settings belong to the whole process, so one thread paints at a time.
+    """
+    with _painting, matplotlib.rc_context(), warnings.catch_warnings():
+        matplotlib.rcdefaults()
+        matplotlib.rcParams.update(PARAMETERS)
+        matplotlib.rcParams["font.family"] = _families()
+        warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
+        yield
+
+
+def figure_of(sheet: Sheet) -> Figure:
+    """A sheet as a figure, one unit of whose axes is a point."""
+    with _settings():
+        figure = Figure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
+        FigureCanvasAgg(figure)
+        axes = figure.add_axes((0, 0, 1, 1))
+        axes.set_axis_off()
+        axes.set_xlim(0, sheet.width)
+        axes.set_ylim(sheet.height, 0)
+        for order, item in enumerate(sheet.items):
+            _paint(axes, item, order)
+    return figure
+
+
+def painted(sheet: Sheet, kind: Kind) -> bytes:
+    """A sheet as a file of Matplotlib."""
+    figure, file = figure_of(sheet), BytesIO()
+    with _settings():
+        figure.savefig(file, format=kind, metadata=METADATA[kind])
+    return file.getvalue()
+
+
+def _paint(axes: Axes, item: Item, order: int) -> None:
+    artist: Any
+    if isinstance(item, Words):
+        _write(axes, item, order)
+        return
+    if isinstance(item, Signs) and item.shape in SHAPES:
+        outlines = tuple(place + item.size * np.array(SHAPES[item.shape]) for place in item.places)
+        item = Stroke(outlines, item.edge, item.width, fill=item.face, closed=True, clip=item.clip)
+    if isinstance(item, Signs):
+        artist = Line2D(*item.places.T, linestyle="none", marker=item.shape, zorder=order)
+        wide = 2 * item.size if item.shape == "." else item.size
+        artist.set(markersize=wide, markeredgecolor=item.edge, markerfacecolor=item.face)
+        artist.set(markeredgewidth=0 if item.shape == "." else item.width)
+    else:
+        look: Any = {"zorder": order, "joinstyle": "round", "capstyle": "butt"}
+        look |= {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
+        look |= {"linewidth": item.width if item.color else 0.0}
+        if item.dashes:
+            look["linestyle"] = (0, item.dashes)
+        if item.opacity < 1:
+            look["alpha"] = item.opacity
+        artist = PathPatch(_path(item), **look)
+    axes.add_artist(artist)
+    if item.clip is not None:
+        left, top, right, bottom = item.clip
+        box = Rectangle((left, top), right - left, bottom - top, transform=axes.transData)
+        artist.set_clip_path(box)
+    else:
+        artist.set_clip_on(False)
+
+
+def _path(stroke: Stroke) -> Path:
+    parts = []
+    for line in stroke.lines:
+        codes = np.full(len(line), Path.LINETO, Path.code_type)
+        codes[0] = Path.MOVETO
+        if stroke.closed:
+            codes = np.append(codes, np.array([Path.CLOSEPOLY], Path.code_type))
+        corners = np.vstack([line, line[:1]]) if stroke.closed else line
+        parts.append(Path(corners, codes))
+    return Path.make_compound_path(*parts)
+
+
+def _write(axes: Axes, words: Words, order: int) -> None:
+    if words.backed:
+        left, top, right, bottom = box_of(words)
+        look: Any = {"facecolor": PAPER, "alpha": BACK, "linewidth": 0, "zorder": order}
+        axes.add_artist(Rectangle((left - 1, top + 0.5), right - left + 2, bottom - top, **look))
+    anchors = {"start": "left", "middle": "center", "end": "right"}
+    place: Any = {"ha": anchors[words.anchor], "va": "baseline"}
+    if words.turned:
+        upright = {"start": "bottom", "middle": "center", "end": "top"}
+        place = {"ha": "right", "va": upright[words.anchor], "rotation": 90}
+        x = words.x + 0.22 * words.size
+    else:
+        x = words.x
+    axes.text(
+        x,
+        words.y,
+        words.text,
+        fontsize=words.size,
+        color=words.color,
+        fontweight="bold" if words.bold else "normal",
+        zorder=order + 0.5,
+        **place,
+    )

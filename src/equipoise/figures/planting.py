@@ -1,0 +1,251 @@
+"""The charts of a planting machine: ratios, motion of the tip, torque and joints."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.crank import (
+    ROOM,
+    closed,
+    crank_axis,
+    degrees_told,
+    extremes,
+    sampled_extremes,
+)
+from equipoise.figures.joints import named
+from equipoise.figures.style import free_name, short
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.instants import largest, smallest
+from equipoise.quantities import Dimension
+from equipoise.results.charts import Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.dynamics import Forces, JointForce
+    from equipoise.planting.summary import PlantingFigures
+
+Array = np.ndarray[Any, Any]
+Extremes = Sequence[tuple[float, float]]
+
+SHADED = to_say("shaded: tip in the soil")
+EVENTS = {"entry": to_say("entry"), "lowest": to_say("lowest"), "exit": to_say("exit")}
+QUANTITIES: dict[str, tuple[str, str, Dimension, str]] = {
+    "velocity": (
+        to_say("Velocity of the tip {tip} relative to the machine"),
+        to_say("velocity"),
+        "speed",
+        "speed",
+    ),
+    "acceleration": (
+        to_say("Acceleration of the tip {tip} relative to the machine"),
+        to_say("acceleration"),
+        "acceleration",
+        "acceleration",
+    ),
+}
+"""Name -> title, label, dimension, and what the figures call its size."""
+PARTS = {
+    "": ("", ""),
+    "-x": (to_say("part along x"), " x"),
+    "-y": (to_say("part along y"), " y"),
+}
+
+
+def charts(figures: PlantingFigures) -> dict[str, Chart]:
+    """Every chart of a planting machine by name.
+
+    ``ratio-LINK`` for each link but the drive; ``velocity``, ``velocity-x``, ``velocity-y`` and the
+    same of ``acceleration``; ``torque`` and ``joints`` where there are forces in the soil.
+    """
+    machine = figures.machine
+    drawn: dict[str, Chart] = {}
+    for link in machine.links:
+        if link != machine.drive.link:
+            name = free_name(f"ratio-{link}", drawn)
+            drawn[name] = ratio(figures, link).named(name)
+    drawn |= {chart.name: chart for chart in tips(figures)}
+    if figures.forces is not None:
+        drawn["torque"] = torque(figures)
+        drawn["joints"] = joints(figures)
+    return drawn
+
+
+# -- over crank angle, with the stay in the soil ---------------------------------------------------
+
+
+def soil_spans(figures: PlantingFigures) -> list[tuple[float, float]]:
+    """Stays in the soil as rising crank angles within one cycle, rad."""
+    spans = []
+    for visit in figures.visits:
+        ends = (visit.entry, visit.exit)
+        low, high = ends if figures["speed"] > 0 else ends[::-1]
+        if low <= high:
+            spans.append((low, high))
+        else:
+            spans += [(low, figures.curve.period), (0.0, high)]
+    return spans
+
+
+def stay_panel(
+    figures: PlantingFigures, y: Axis, curves: Sequence[Curve], marks: Sequence[Mark], **rest: Any
+) -> Panel:
+    """Signals over crank angle, with the stay in the soil shaded and its events."""
+    at = {name: figures[f"{name}.crank_angle"] for name in EVENTS}
+    return Panel(
+        crank_axis(figures.machine.drive.link, figures["speed"], figures.curve.turns),
+        y,
+        tuple(curves),
+        tuple(marks),
+        tuple(Band(low, high, "soil") for low, high in soil_spans(figures)),
+        tuple(Line(angle, name) for name, angle in at.items()),
+        **rest,
+    )
+
+
+def _flags(figures: PlantingFigures) -> tuple[Flag, ...]:
+    """What the events are, and when."""
+    at = {name: figures[f"{name}.crank_angle"] for name in EVENTS}
+    return tuple(
+        Flag(at[name], (say(text), degrees_told(at[name]))) for name, text in EVENTS.items()
+    )
+
+
+def _chart(
+    figures: PlantingFigures, name: str, what: str, y: Axis, values: Array, places: Extremes
+) -> Chart:
+    """One signal (N,) of the curve's crank angles."""
+    curve = figures.curve
+    line = Curve(*closed(curve.theta, values, curve.period))
+    marks = extremes(y, values, places, "main", angles=True)
+    panel = stay_panel(figures, y, [line], marks, flags=_flags(figures))
+    return Chart(name, figures.machine.title, f"{what}; {say(SHADED)}", (panel,))
+
+
+def ratio(figures: PlantingFigures, link: str) -> Chart:
+    """Angular velocity of a link over that of the drive."""
+    curve = figures.curve
+    rates = curve.family.rates(curve.grid.state, link)[0][0]
+    places = [
+        (figures[f"ratio.{link}.{which}_at"], figures[f"ratio.{link}.{which}"])
+        for which in ("max", "min")
+    ]
+    drive = figures.machine.drive.link
+    what = say(
+        "Angular velocity of {link} over that of {drive}", link=short(link), drive=short(drive)
+    )
+    label = say(
+        "angular velocity ratio, {link} / {drive}", link=short(link, 14), drive=short(drive, 14)
+    )
+    return _chart(figures, f"ratio-{link}", what, Axis(label, room=ROOM), rates, places)
+
+
+def tips(figures: PlantingFigures) -> Iterator[Chart]:
+    """Velocity and acceleration of the tip relative to the machine, and their parts."""
+    for name, (title, label, dimension, _) in QUANTITIES.items():
+        for part, (told, suffix) in PARTS.items():
+            values = tip_values(figures, name, part)
+            what = say(title, tip=short(figures.planting.tip))
+            what += f", {say(told)}" if told else ""
+            y = Axis.of(f"{say(label)}{suffix}", dimension, values, room=ROOM)
+            places = [*_extremes(figures, name, part)]
+            yield _chart(figures, name + part, what, y, values, places)
+
+
+def tip_values(figures: PlantingFigures, name: str, part: str = "") -> Array:
+    """Velocity or acceleration of the tip, m/s or m/s2: its size, or its part "-x" or "-y"."""
+    return np.asarray(_component(_vector(figures, name, figures.curve.theta[None]), part)[0])
+
+
+def _extremes(figures: PlantingFigures, name: str, part: str) -> Iterator[tuple[float, float]]:
+    """Crank angle and value of the largest and the smallest value."""
+    if not part:
+        key = QUANTITIES[name][3]
+        for which in ("max", "min"):
+            found = f"{which}_{key}"
+            yield figures[f"{found}.crank_angle"], figures[f"{found}.value"]
+        return
+
+    def signal(theta: Array) -> Array:
+        return _component(_vector(figures, name, theta), part)
+
+    def slope(theta: Array) -> Array:
+        return _component(_vector(figures, name, theta, 1), part)
+
+    curve = figures.curve
+    for find in (largest, smallest):
+        value, at = find(signal, slope, curve.theta, signal(curve.grid.theta))
+        yield float(np.mod(at[0], curve.period)), float(value[0])
+
+
+def _vector(figures: PlantingFigures, name: str, theta: Array, order: int = 0) -> Array:
+    """Velocity or acceleration of the tip, or its derivative by crank angle, (1, K), complex."""
+    curve = figures.curve
+    tip = curve.at(theta)
+    rates = (tip.place_1, tip.place_2, curve.place_3(theta) if order and name != "velocity" else 0)
+    if name == "velocity":
+        velocity: Array = rates[order] * curve.speed
+        return velocity
+    change = figures.machine.drive.acceleration
+    acceleration: Array = rates[order + 1] * curve.speed**2 + rates[order] * change
+    return acceleration
+
+
+def _component(vector: Array, part: str) -> Array:
+    sizes: dict[str, Array] = {"": np.abs(vector), "-x": vector.real, "-y": vector.imag}
+    return sizes[part]
+
+
+# -- in the air and in the soil --------------------------------------------------------------------
+
+
+def torque(figures: PlantingFigures) -> Chart:
+    """Torque that the drive has to give, in the air and in the soil."""
+    found = figures.forces
+    assert found is not None
+    pair = {"air": found.in_air.drive_torque, "soil signal": found.in_soil.drive_torque}
+    y = Axis.of(say("drive torque"), "torque", [*pair.values()], room=ROOM)
+    panel = _air_and_soil(figures, y, pair, both=True, flags=_flags(figures))
+    drive = short(figures.machine.drive.link)
+    what = f"{say('Torque of the drive on {link}', link=drive)}; {say(SHADED)}"
+    return Chart("torque", figures.machine.title, what, (panel,))
+
+
+def joints(figures: PlantingFigures) -> Chart:
+    """Size of the force in every joint, each with axes of its own."""
+    found = figures.forces
+    assert found is not None
+    air, soil = _joints(found.in_air), _joints(found.in_soil)
+    panels = []
+    for name, joint in soil.items():
+        pair = {"air": air[name].size, "soil signal": joint.size}
+        y = Axis.of(say("force"), "force", [*pair.values()], room=ROOM, low=0.0)
+        panels.append(_air_and_soil(figures, y, pair, title=named(name, joint), height=74.0))
+    what = f"{say('Force in each joint')}; {say(SHADED)}"
+    return Chart("joints", figures.machine.title, what, tuple(panels), columns=min(2, len(panels)))
+
+
+def _air_and_soil(
+    figures: PlantingFigures, y: Axis, pair: Mapping[str, Array], both: bool = False, **rest: Any
+) -> Panel:
+    """Signals (N,) in the air and in the soil; of both all extremes, or of the soil the largest."""
+    assert figures.forces is not None
+    angles = figures.forces.motion.crank_angle
+    names = {"air": say("in the air"), "soil signal": say("in the soil")}
+    marks: list[Mark] = []
+    for role, values in reversed(pair.items()):
+        places = sampled_extremes(angles, values)
+        if both:
+            marks += extremes(y, values, places, role, angles=True)
+        elif role == "soil signal":
+            marks += extremes(y, values, places[:1], role)
+    period = figures.curve.period
+    curves = [
+        Curve(*closed(angles, values, period), names[role], role) for role, values in pair.items()
+    ]
+    return stay_panel(figures, y, curves, marks, **rest)
+
+
+def _joints(forces: Forces) -> dict[str, JointForce]:
+    return {**forces.joints, **forces.gears}

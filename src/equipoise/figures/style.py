@@ -1,0 +1,171 @@
+"""How what charts are made of looks: colours, widths, dashes and signs by role."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+INK, LINES, FAINT, PALE = "#1a1a1a", "#595959", "#a6a6a6", "#d9d9d9"
+MAIN, STRESS = "#0060a8", "#c8500a"
+"""Blue and vermilion keep apart for the colour-blind; in grey, width and dashes tell them apart."""
+SOIL, STUBBLE, EARTH = "#efe4d2", "#dccbb0", "#7a5c33"
+"""Below the surface: fill, hatching, and the surface itself."""
+GRID, PAPER = "#e6e6e6", "#ffffff"
+
+SMALL, NORMAL, LARGE = 7.5, 8.5, 10.5
+"""Sizes of type, points."""
+
+
+@dataclass(frozen=True)
+class Look:
+    """How something is drawn.
+
+    dashes : lengths over the width.  sign : a marker, as Matplotlib calls it, of so many points.
+    hollow : whether the sign is white inside.  fill : of an area, with so much opacity.
+    spaced : whether only a few places of a curve have the sign.  order : what is higher lies above.
+    """
+
+    color: str = MAIN
+    width: float = 1.6
+    dashes: tuple[float, ...] = ()
+    sign: str = ""
+    size: float = 4.0
+    hollow: bool = False
+    fill: str = ""
+    opacity: float = 1.0
+    spaced: bool = False
+    order: float = 3.0
+
+    @property
+    def ink(self) -> str:
+        """Colour of words about it."""
+        return self.color or LINES
+
+
+LONG, MEDIUM, DOTS, DOT_DASH = (5.0, 2.0), (4.0, 2.0), (1.5, 1.5), (5.0, 2.0, 1.0, 2.0)
+KINDS = (
+    (MAIN, "o"),
+    (STRESS, "s"),
+    (INK, "^"),
+    ("#008a6a", "D"),
+    ("#a3478f", "v"),
+    ("#8a6d00", "P"),
+)
+"""Colour and sign of several curves that are told apart; what is beyond is thin."""
+
+LOOKS: dict[str, Look] = {
+    "main": Look(),
+    "ink": Look(INK),
+    "lines": Look(LINES, 0.9),
+    "strong": Look(INK, 1.8),
+    "stress": Look(STRESS, 1.6, order=3.4),
+    "faint": Look(FAINT, 0.9, order=2),
+    "thin": Look(MAIN, 1.0),
+    "zero": Look(FAINT, 0.8, order=1),
+    # rows, and before and after: the thin line lies on the strong one, so that both are seen
+    "one": Look(LINES, 0.9, order=3.1),
+    "all": Look(MAIN, 1.9),
+    "before": Look(LINES, 0.9, order=3.1),
+    "after": Look(MAIN, 1.9),
+    "unchanged": Look(LINES, 1.3),
+    "bar before": Look(LINES, fill=FAINT),
+    "bar after": Look(MAIN, fill=MAIN),
+    "pale bar": Look(LINES, fill=PALE),
+    # several signals of one quantity
+    "several 1": Look(MAIN),
+    "several 2": Look(STRESS, dashes=(5, 1.6)),
+    "several 3": Look(INK, dashes=(6, 1.6, 1.2, 1.6)),
+    "several 4": Look(EARTH, dashes=(1.3, 1.1)),
+    "several 5": Look(LINES, dashes=(10, 3)),
+    "air": Look(LINES, dashes=(4, 1.6)),
+    "soil signal": Look(STRESS),
+    # lines and shades
+    "mean": Look(LINES, 0.9, LONG, order=2),
+    "entry": Look(LINES, 0.9, LONG, order=2),
+    "lowest": Look(LINES, 0.9, DOT_DASH, order=2),
+    "exit": Look(LINES, 0.9, DOTS, order=2),
+    "soil": Look("", fill=SOIL, order=0.1),
+    "off": Look("", fill=PALE, order=0.1),
+    "forbidden": Look("", fill=PALE, opacity=0.55, order=0.1),
+    "quiet band": Look("", fill="#ededed", order=0.1),
+    "loud band": Look("", fill="#d3d3d3", order=0.2),
+    "loud": Look(LINES, 0.8, MEDIUM, order=1.5),
+    "quiet": Look(FAINT, 0.5, (1.5, 2), order=1.4),
+    "natural": Look(FAINT, 0.8, (1.5, 2), order=1.5),
+    "not stable": Look(INK, 1.5, (2.2, 1.3)),
+    "work": Look(LINES, 0.9, DOT_DASH, order=1.7),
+    "station line": Look(FAINT, 0.6, order=1),
+    "action": Look(INK, 1.2, (1, 2.4), order=2.2),
+    "limit": Look(INK, 1.6, (1, 1), order=2.2),
+    "action value": Look(LINES, 1.0, (3.7, 1.6), order=2),
+    "limit value": Look(LINES, 1.0, order=2),
+    "now": Look(INK, 1.0, DOTS, order=2),
+    # modes and orders
+    "mode": Look(MAIN, 1.4),
+    "order": Look(LINES, 0.8, order=2),
+    "meeting": Look(STRESS, 1.3, sign="o", size=7, hollow=True, order=4),
+    "shape": Look(MAIN, 1.5),
+    "other end": Look(FAINT, 1.0, MEDIUM, order=2),
+    "node": Look(STRESS, 1.4, sign="x", size=5, order=5),
+    "hand": Look(LINES, 1.0, sign="s", size=4.5, order=4, fill=INK),
+    "harness or ground": Look(LINES, 1.0, sign="^", size=5, hollow=True, order=4),
+    "station": Look(LINES, 1.0, sign="o", size=4.5, hollow=True, order=4),
+    "quiet speed": Look(LINES, 1.0, sign="v", size=5.5, order=5),
+    # clouds
+    "designs": Look(MAIN, 0.0, sign="o", size=4.5),
+    "own": Look(INK, 1.0, sign="D", size=6.5, hollow=True, order=4),
+    "best": Look(MAIN, 1.6, sign="o", size=4.5),
+    "least": Look(STRESS, 1.0, sign="P", size=9, order=6),
+    "model": Look(INK, 1.2, order=4),
+    "bound": Look(STRESS, 1.6, (4, 1.6), order=4),
+    "machines": Look(MAIN, fill=MAIN),
+    "outside": Look(FAINT, fill=FAINT),
+    "part": Look(MAIN, fill=MAIN, order=3.2),
+    "whole": Look(PALE, fill=PALE, order=2),
+    "samples": Look(FAINT, 0.0, sign=".", size=2.2, order=2),
+    "fit": Look(MAIN, 0.9),
+    "turning": Look(STRESS, 1.0, sign="o", size=4, hollow=True, order=4),
+    "zeros": Look(STRESS, 1.0, sign="o", size=5, hollow=True, order=4),
+    "even": Look(LINES, 0.8, MEDIUM, order=1),
+    "task": Look(MAIN, 1.0, sign="o", size=5, hollow=True, order=5),
+    "day": Look(STRESS, 1.6, sign="D", size=5, order=6),
+    "unweighted": Look(FAINT, 1.0, fill=FAINT, opacity=0.5),
+    "weighted": Look(MAIN, 1.0, fill=MAIN, opacity=0.5, order=3.1),
+    "dial": Look(FAINT, 0.8, order=1),
+    "stand": Look(LINES, 0.9, sign="stand", size=10, hollow=True, order=2.5),
+    "point": Look(MAIN, 1.0, sign="o", size=2.6),
+    "pivot": Look(LINES, 1.0, sign="o", size=3),
+    "mean size": Look(LINES, 0.9, LONG, order=2),
+}
+"""Role -> look."""
+LOOKS |= {
+    f"kind {number}": Look(color, 1.5, sign=sign, size=4.5, hollow=True, spaced=True, order=order)
+    for number, ((color, sign), order) in enumerate(
+        zip(KINDS, (3.9, 3.8, 3.7, 3.6, 3.5, 3.4), strict=True)
+    )
+}
+LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
+LOOKS |= {
+    f"quiet speed {number}": replace(LOOKS["quiet speed"], color=color)
+    for number, (color, _) in enumerate(KINDS)
+}
+
+
+def look_of(role: str, dashed: bool = False) -> Look:
+    """The look of a role; dashed ones have no signs."""
+    look = LOOKS[role]
+    return replace(look, dashes=MEDIUM, sign="") if dashed else look
+
+
+def short(name: str, most: int = 24) -> str:
+    """A name that may be long."""
+    return name if len(name) <= most else f"{name[: most - 1]}…"
+
+
+def free_name(name: str, taken: Iterable[str]) -> str:
+    """A name that is none yet, of signs that every file system takes."""
+    name = "".join("_" if sign in '/\\:*?"<>|' else sign for sign in name)[:60].rstrip(". ")
+    number = 1
+    while (f"{name}-{number}" if number > 1 else name).lower() in map(str.lower, taken):
+        number += 1
+    return f"{name}-{number}" if number > 1 else name

@@ -1,0 +1,145 @@
+"""A sheet as an SVG document: texts stay texts, and the same sheet gives the same bytes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from html import escape
+from typing import Any
+
+import numpy as np
+
+from equipoise.figures.metrics import box_of
+from equipoise.figures.sheet import Box, Item, Sheet, Signs, Stroke, Words
+from equipoise.figures.style import PAPER
+
+Array = np.ndarray[Any, Any]
+
+FONTS = "DejaVu Sans, Verdana, sans-serif"
+BACK = 0.7
+"""Opacity of the ground behind texts on a drawing."""
+SHAPES: dict[str, tuple[tuple[float, float], ...]] = {
+    "s": ((-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)),
+    "D": ((0, -0.7), (0.7, 0), (0, 0.7), (-0.7, 0)),
+    "^": ((0, -0.5), (0.5, 0.5), (-0.5, 0.5)),
+    "v": ((0, 0.5), (0.5, -0.5), (-0.5, -0.5)),
+    "P": (
+        *((-0.17, -0.5), (0.17, -0.5), (0.17, -0.17), (0.5, -0.17), (0.5, 0.17), (0.17, 0.17)),
+        *((0.17, 0.5), (-0.17, 0.5), (-0.17, 0.17), (-0.5, 0.17), (-0.5, -0.17), (-0.17, -0.17)),
+    ),
+    "stand": ((0.0, 0.0), (0.5, 0.87), (-0.5, 0.87)),
+}
+"""Markers of width 1 around 0."""
+
+
+def svg_of(sheet: Sheet) -> str:
+    """The whole document."""
+    width, height = _number(sheet.width), _number(sheet.height)
+    clips: dict[Box, str] = {}
+    parts = [_clipped(item, clips, text) for item in sheet.items for text in _drawn(item)]
+    boxes = "".join(
+        f'<clipPath id="{name}"><rect {_rectangle(box)}/></clipPath>' for box, name in clips.items()
+    )
+    defined = f"<defs>{boxes}</defs>\n" if boxes else ""
+    return (
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}pt" height="{height}pt" '
+        f'viewBox="0 0 {width} {height}" font-family="{FONTS}">\n{defined}'
+        f'<rect width="{width}" height="{height}" fill="{PAPER}"/>\n'
+        + "\n".join(parts)
+        + "\n</svg>\n"
+    )
+
+
+def _clipped(item: Item, clips: dict[Box, str], text: str) -> str:
+    clip = getattr(item, "clip", None)
+    if clip is None:
+        return text
+    name = clips.setdefault(clip, f"c{len(clips) + 1}")
+    return text.replace(" ", f' clip-path="url(#{name})" ', 1)
+
+
+def _drawn(item: Item) -> Iterator[str]:
+    if isinstance(item, Words):
+        yield from _words(item)
+    elif isinstance(item, Signs):
+        yield _signs(item)
+    else:
+        yield _stroke(item)
+
+
+def _words(words: Words) -> Iterator[str]:
+    if words.backed:
+        left, top, right, bottom = box_of(words)
+        box = _rectangle((left - 1, top + 0.5, right + 1, bottom))
+        yield f'<rect {box} fill="{PAPER}" fill-opacity="{BACK}"/>'
+    look = f'font-size="{_number(words.size)}" fill="{words.color}"'
+    look += ' font-weight="bold"' if words.bold else ""
+    look += f' text-anchor="{words.anchor}"' if words.anchor != "start" else ""
+    place = f'x="{_number(words.x)}" y="{_number(words.y)}"'
+    if words.turned:
+        place = f'transform="translate({_number(words.x)} {_number(words.y)}) rotate(-90)"'
+    yield f"<text {place} {look}>{escape(words.text, quote=False)}</text>"
+
+
+def _stroke(stroke: Stroke) -> str:
+    end = "Z" if stroke.closed else ""
+    path = "".join(f"{_path(line)}{end}" for line in stroke.lines)
+    look = f'fill="{stroke.fill or "none"}"'
+    if stroke.fill and len(stroke.lines) > 1:
+        look += ' fill-rule="evenodd"'
+    if stroke.opacity < 1:
+        look += f' fill-opacity="{_number(stroke.opacity, 2)}"'
+    if stroke.color:
+        look += f' stroke="{stroke.color}" stroke-width="{_number(stroke.width)}"'
+        look += ' stroke-linejoin="round"'
+    if stroke.dashes:
+        dashes = " ".join(_number(dash) for dash in stroke.dashes)
+        look += f' stroke-dasharray="{dashes}"'
+    return f'<path d="{path}" {look}/>'
+
+
+def _path(line: Array) -> str:
+    """Straight lines, each step told from the one before it."""
+    tenths = np.round(10 * line).astype(int)
+    steps = np.diff(tenths, axis=0)
+    steps = steps[np.any(steps != 0, axis=1)]
+    x, y = tenths[0].tolist()
+    rest = " ".join(f"{a / 10:g},{b / 10:g}" for a, b in steps.tolist())
+    return f"M{x / 10:g},{y / 10:g}l{rest}" if rest else f"M{x / 10:g},{y / 10:g}h0"
+
+
+def _signs(signs: Signs) -> str:
+    places, size = signs.places, signs.size
+    if signs.shape == ".":
+        path = "".join(f"M{_number(x)},{_number(y)}h0" for x, y in places.tolist())
+        line = f'stroke="{signs.edge}" stroke-width="{_number(size)}" stroke-linecap="round"'
+        return f'<path d="{path}" fill="none" {line}/>'
+    look = f'fill="{signs.face}" stroke="{signs.edge}" stroke-width="{_number(signs.width)}"'
+    if signs.shape == "o":
+        radius = _number(size / 2)
+        arc = f"a{radius},{radius} 0 1,0"
+        path = "".join(
+            f"M{_number(x - size / 2)},{_number(y)}{arc} {_number(size)},0{arc} {_number(-size)},0"
+            for x, y in places.tolist()
+        )
+    elif signs.shape == "x":
+        whole = _number(size)
+        cross = f"l{whole},{whole}m-{whole},0l{whole},-{whole}"
+        path = "".join(
+            f"M{_number(x - size / 2)},{_number(y - size / 2)}{cross}" for x, y in places.tolist()
+        )
+    else:
+        outline = size * np.array(SHAPES[signs.shape])
+        path = "".join(f"{_path(place + outline)}Z" for place in places)
+    return f'<path d="{path}" {look}/>'
+
+
+def _rectangle(box: Box) -> str:
+    left, top, right, bottom = box
+    return (
+        f'x="{_number(left)}" y="{_number(top)}" '
+        f'width="{_number(right - left)}" height="{_number(bottom - top)}"'
+    )
+
+
+def _number(value: float, digits: int = 1) -> str:
+    return f"{round(value, digits) + 0.0:g}"

@@ -1,0 +1,228 @@
+"""Constants of a decay, by the line of half-swings and by least squares on the whole record.
+
+The line of half-swings: each height against the one before it.
+
+Heights h_k of successive half-swings, peak to valley and valley to peak, lie on h_(k+1) = n h_k + m
+with n = exp(-sigma pi / beta) and m = -2 d (1 + n).  Two heights share the turning point between
+them, so an error there shows in both, and in the abscissa as well as in the ordinate; a plain
+regression of ordinates would find n too small.  So the heights are not the measured values here:
+the turning points are, each with an error of its own, and the line is the one whose exact turning
+points come closest to them in least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.measured.estimate import Constants, student
+from equipoise.measured.record import Record, Swinging, reaches
+from equipoise.measured.turning import Turns
+
+Array = np.ndarray[Any, Any]
+
+LEAST_SCATTER = 1e-4
+"""Of the first half-swing, and of the half-period: what the polynomials may miss without noise."""
+
+
+def line_of_swings(turns: Turns, confidence: float) -> Constants:
+    """Constants from the straight line, and from the times at which half-swings are half done.
+
+    Three half-swings have exactly one line, so there are no intervals.
+    """
+    spacing, spacing_variance = _spacing(turns)
+    found, covariance = _line(turns)
+    loss, friction = found[2:]
+    damped = np.pi / spacing
+    free = len(turns.time) - len(found)
+    if free == 0:
+        return Constants(damped, loss, friction, None, np.nan)
+    both = np.zeros((3, 3))
+    both[0, 0] = (damped / spacing) ** 2 * spacing_variance
+    both[1:, 1:] = covariance[2:, 2:]
+    return Constants(damped, loss, friction, both, student(confidence, free))
+
+
+def _spacing(turns: Turns) -> tuple[float, float]:
+    """Half-period, s, and its variance: slope of the times over their numbers, weighted."""
+    count = np.arange(len(turns.passed))
+    weight = 1 / turns.passed_spread**2
+    mean = np.average(count, weights=weight)
+    away = count - mean
+    square = float(np.sum(weight * away**2))
+    slope = float(np.sum(weight * away * turns.passed) / square)
+    left = turns.passed - np.average(turns.passed, weights=weight) - slope * away
+    least = (LEAST_SCATTER * slope) ** 2 * float(np.mean(weight))
+    scatter = max(float(np.sum(weight * left**2)) / (len(count) - 2), least)
+    return slope, scatter / square
+
+
+def _line(turns: Turns) -> tuple[Array, Array]:
+    """Centre, first amplitude, -ln n, d; and their covariance from the scatter of turns."""
+    from scipy.optimize import least_squares
+
+    number = np.arange(len(turns.time))
+    sense = turns.side * np.where(number % 2 == 0, 1.0, -1.0)
+    heights, spread = turns.heights, turns.spread / np.mean(turns.spread)
+    scale = float(heights[0])
+
+    def left(p: Array) -> Array:
+        reach = reaches(number, p[1], p[2], p[3])
+        expected = p[0] + sense * (reach + p[3])
+        return np.asarray((turns.displacement / scale - expected) / spread)
+
+    unit = np.array([scale, scale, 1.0, scale])
+    tried = [
+        least_squares(left, guess / unit, "3-point", x_scale="jac") for guess in _guesses(turns)
+    ]
+    done = min(tried, key=lambda one: one.cost)
+    free = len(number) - 4
+    scatter = max(2 * done.cost / free, LEAST_SCATTER**2) if free else 0.0
+    covariance = scatter * np.linalg.pinv(done.jac.T @ done.jac)
+    return np.array(done.x * unit), np.array(covariance * np.outer(unit, unit))
+
+
+def _guesses(turns: Turns) -> list[Array]:
+    """The same with all of the decay viscous, with all of it Coulomb friction, with half of each.
+
+    One of them leads to the line even where noise hides which of the two it is.
+    """
+    heights = turns.heights
+    loss = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+    friction = float(heights[0] - heights[-1]) / (len(heights) - 1) / 4
+    guesses = []
+    for share in (1.0, 0.0, 0.5):
+        ratio = np.exp(-share * loss)
+        amplitude = float(heights[0]) / (1 + ratio) + (1 - share) * friction
+        center = turns.displacement[0] - turns.side * amplitude
+        guesses.append(np.array([center, amplitude, share * loss, (1 - share) * friction]))
+    return guesses
+
+
+MOST, PER_HALF_SWING = 20_000, 64
+"""Points that are fitted; but so many in a half-swing at least."""
+UNKNOWNS = 6
+
+
+@dataclass(frozen=True, eq=False)
+class WholeFit:
+    """The motion that comes closest to the samples.
+
+    constants : of that motion.  motion : the motion itself.
+    time, residual : (M,) of the points fitted, s and m or rad; means of several samples where
+        there were too many.
+    per_point : samples in each of them.
+    correlated : over how many points the residual is correlated; 1 where not at all.
+    """
+
+    constants: Constants
+    motion: Swinging
+    time: Array
+    residual: Array
+    per_point: int
+    correlated: float
+
+    @property
+    def rms(self) -> float:
+        """Of the residual."""
+        return float(np.sqrt(np.mean(self.residual**2)))
+
+
+def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) -> WholeFit:
+    """Fit the samples from the first to the last turning point.
+
+    Intervals.  The covariance is that of white residuals times the number of points over which the
+    residual is correlated, 1 + 2 (rho_1 + rho_2 + ...) up to the first rho below zero; Student's t
+    counts so many points fewer.  White noise is hardly changed by it; noise of long waves, drift
+    and what the model does not describe widen the intervals.
+
+    Raises
+    ------
+    UsageError : no motion fits.
+    """
+    from scipy.optimize import least_squares
+
+    time, values, per_point = _window(record, turns)
+    zero, scale = float(turns.time[1]), float(turns.heights[0])
+    unit = np.array([line.damped**-1, scale, scale, line.damped, line.damped, scale])
+
+    def motion(p: Array) -> Swinging:
+        turned, amplitude, center, damped, rate, friction = (p * unit).tolist()
+        return Swinging(zero + turned, -turns.side, amplitude, center, damped, rate, friction)
+
+    def left(p: Array) -> Array:
+        return (motion(p).displacement(time) - values) / scale
+
+    tried = [
+        least_squares(left, guess / unit, "3-point", x_scale="jac", max_nfev=200)
+        for guess in _first_guesses(turns, line)
+    ]
+    done = min((one for one in tried if one.success), key=lambda one: one.cost, default=tried[0])
+    found = motion(done.x)
+    if not done.success or not found.damped > 0:
+        raise UsageError("no damped vibration fits the whole record; give a record of a free decay")
+    residual = scale * done.fun
+    correlated = _correlated(residual)
+    free = len(time) / correlated - UNKNOWNS
+    covariance = correlated * 2 * done.cost / max(len(time) - UNKNOWNS, 1)
+    matrix = covariance * np.linalg.pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
+    constants = _constants(found, matrix, student(confidence, max(free, 1.0)))
+    return WholeFit(constants, found, time, residual, per_point, correlated)
+
+
+def _first_guesses(turns: Turns, line: Constants) -> list[Array]:
+    """Turning point 1: its time since that found, amplitude, centre; beta, sigma, d.
+
+    From the line, and with all of the decay viscous, should noise have led the line astray.
+    """
+    heights = turns.heights
+    viscous = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+    guesses = []
+    for loss, friction in ((line.loss, line.friction), (viscous, 0.0)):
+        amplitude = float(heights[1]) / (1 + np.exp(-loss)) + friction
+        center = turns.displacement[1] + turns.side * amplitude
+        rate = line.damped * loss / np.pi
+        guesses.append(np.array([0.0, amplitude, center, line.damped, rate, friction]))
+    return guesses
+
+
+def _constants(motion: Swinging, covariance: Array, factor: float) -> Constants:
+    """With -ln n = pi sigma / beta in place of sigma."""
+    change = np.zeros((3, UNKNOWNS))
+    change[0, 3] = change[2, 5] = 1.0
+    change[1, 3], change[1, 4] = -motion.loss / motion.damped, np.pi / motion.damped
+    three = change @ covariance @ change.T
+    return Constants(motion.damped, motion.loss, motion.friction, three, factor)
+
+
+def _window(record: Record, turns: Turns) -> tuple[Array, Array, int]:
+    """Samples that are fitted, or means of them, and how many make one."""
+    half = float(np.median(np.diff(turns.time)))
+    first, last = turns.time[0] + 0.02 * half, turns.time[-1]
+    part = slice(np.searchsorted(record.time, first), np.searchsorted(record.time, last, "right"))
+    time, values = record.time[part], record.displacement[part]
+    most = max(MOST, PER_HALF_SWING * len(turns.heights))
+    step = -(-len(time) // most)
+    if step == 1:
+        return time, values, 1
+    whole = len(time) // step * step
+    groups = time[:whole].reshape(-1, step)
+    close = np.ptp(groups, axis=1) < half / PER_HALF_SWING * 2  # no gap in the record
+    means = values[:whole].reshape(-1, step).mean(axis=1)
+    return groups.mean(axis=1)[close], means[close], step
+
+
+def _correlated(residual: Array) -> float:
+    """Over how many points a residual (M,) is correlated; 1 if it is white."""
+    count = len(residual)
+    spectrum = np.fft.rfft(residual, 2 * count)
+    products = np.fft.irfft(np.abs(spectrum) ** 2)[:count]
+    if not products[0] > 0:
+        return 1.0
+    rho = products / products[0]
+    below = np.flatnonzero(rho <= 0)
+    stop = int(below[0]) if below.size else count
+    return float(max(1.0, 1 + 2 * np.sum(rho[1:stop])))

@@ -1,0 +1,193 @@
+"""What an engineer reads off a linkage: of a four-bar its class and type, of any what looks odd."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from math import acos, asin, degrees, isclose, pi, sqrt
+
+from equipoise.mechanism import kernels
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.linkage import Linkage, assemble
+from equipoise.mechanism.model import FRAME, Machine, size_of
+from equipoise.mechanism.steps import Call, Group
+
+TYPES = {
+    "frame": "double-crank (drag link)",
+    "crank": "crank-rocker",
+    "coupler": "double-rocker",
+    "rocker": "rocker-crank",
+}
+"""Type of a Grashof four-bar by its shortest link."""
+
+
+@dataclass(frozen=True)
+class FourBar:
+    """The four-bar of drive link, coupler, rocker and frame.
+
+    Attributes
+    ----------
+    a, b, c, d : lengths of frame, crank, coupler and rocker, m, named as by Yamashita, Ichikawa
+        and Mori.
+    grashof : "Grashof", "non-Grashof" or "change point": shortest plus longest length less than,
+        greater than or equal to the sum of the other two.
+    type : by the shortest link; "triple-rocker" for a non-Grashof four-bar.
+    transmission_min, transmission_max : extremes of the angle between coupler and rocker, rad.
+    swing : angle through which the rocker swings, rad; None unless a crank-rocker.
+    time_ratio : time of the rocker's slower swing over that of the faster, at constant crank
+        speed; None unless a crank-rocker.
+    condition_5 : the crank can turn and the rocker is determined at every crank angle: the paper's
+        |E_c / R_c| <= 1, |E_a / R_a| <= 1 and a != b.
+    condition_6 : it stays on its branch: a + b != c + d and b + c != a + d.
+    """
+
+    crank: str
+    coupler: str
+    rocker: str
+    a: float
+    b: float
+    c: float
+    d: float
+    grashof: str
+    type: str
+    transmission_min: float | None
+    transmission_max: float | None
+    swing: float | None
+    time_ratio: float | None
+    condition_5: bool
+    condition_6: bool
+
+
+def four_bar(machine: Machine) -> FourBar | None:
+    """Describe the four-bar at the crank of a machine, or return None if there is none."""
+    linkage = assemble(machine)
+    for group in linkage.groups:
+        names = _members(linkage, group)
+        if names is not None:
+            return _describe(linkage, *names)
+    return None
+
+
+def _members(linkage: Linkage, group: Group) -> tuple[str, str, str, str, str] | None:
+    """Coupler, rocker, crank pin, inner pin and rocker pivot of a dyad between drive and frame."""
+    if not any(isinstance(s, Call) and s.kernel is kernels.rrr for s in group.motion):
+        return None
+    first, second, inner = group.reactions
+    drive = linkage.machine.drive.link
+    if first.by == FRAME:
+        first, second = second, first
+    if (first.by, second.by) != (drive, FRAME):
+        return None
+    return first.on, second.on, first.at, inner.at, second.at
+
+
+def _describe(
+    linkage: Linkage, coupler: str, rocker: str, crank_pin: str, pin: str, pivot: str
+) -> FourBar:
+    machine, drive = linkage.machine, linkage.machine.drive.link
+    a = _distance(machine, FRAME, linkage.pivot, pivot)
+    b = _distance(machine, drive, linkage.pivot, crank_pin)
+    c = _distance(machine, coupler, crank_pin, pin)
+    d = _distance(machine, rocker, pivot, pin)
+    grashof, kind = _class(a, b, c, d)
+    turns = _condition_5(a, b, c, d)
+    low, high = _transmission(a, b, c, d) if turns else (None, None)
+    swing, ratio = _swing(a, b, c, d) if turns and kind == "crank-rocker" else (None, None)
+    apart = not (isclose(a + b, c + d) or isclose(b + c, a + d))
+    lengths = (a, b, c, d)
+    names = (drive, coupler, rocker)
+    return FourBar(*names, *lengths, grashof, kind, low, high, swing, ratio, turns, apart)
+
+
+def _distance(machine: Machine, body: str, one: str, other: str) -> float:
+    points = machine.points_of(body)
+    return abs(complex(*points[one]) - complex(*points[other]))
+
+
+def _class(a: float, b: float, c: float, d: float) -> tuple[str, str]:
+    lengths = {"frame": a, "crank": b, "coupler": c, "rocker": d}
+    shortest = min(lengths, key=lengths.__getitem__)
+    outer = min(lengths.values()) + max(lengths.values())
+    inner = a + b + c + d - outer
+    if isclose(outer, inner, rel_tol=1e-12):
+        return "change point", "change-point linkage"
+    if outer < inner:
+        return "Grashof", TYPES[shortest]
+    return "non-Grashof", "triple-rocker"
+
+
+def _condition_5(a: float, b: float, c: float, d: float) -> bool:
+    """Conditions (5) of Yamashita, Ichikawa and Mori.
+
+    |E_c / R_c| and |E_a / R_a| are convex or monotonic in the distance from crank pin to rocker
+    pivot, so their largest values lie at its extremes |a - b| and a + b.
+    """
+    if isclose(a, b):
+        return False
+    for s in (abs(a - b), a + b):
+        e_c = s * s + c * c - d * d
+        e_a = 2 * c * c - 2 * d * d - e_c
+        if abs(e_c) > 2 * c * s * (1 + 1e-12) or abs(e_a) > 2 * d * s * (1 + 1e-12):
+            return False
+    return True
+
+
+def _transmission(a: float, b: float, c: float, d: float) -> tuple[float, float]:
+    """Extremes lie where the crank is in line with the frame."""
+    low, high = (_opposite(c, d, s) for s in (abs(a - b), a + b))
+    return low, high
+
+
+def _swing(a: float, b: float, c: float, d: float) -> tuple[float, float]:
+    """The rocker turns back where crank and coupler are in line, stretched or folded."""
+    stretched, folded = b + c, abs(c - b)
+    swing = _opposite(a, d, stretched) - _opposite(a, d, folded)
+    lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
+    return abs(swing), (pi + lag) / (pi - lag)
+
+
+def _opposite(one: float, other: float, opposite: float) -> float:
+    """Angle of a triangle between two sides, from the side opposite."""
+    cosine = (one * one + other * other - opposite * opposite) / (2 * one * other)
+    return acos(min(1.0, max(-1.0, cosine)))
+
+
+POOR_TRANSMISSION = 30.0
+"""Degrees from stretched or folded below which force is transmitted badly."""
+
+WIDE_INERTIA = 5.0
+"""Radius of gyration over size of the link above which a slip of units is likely."""
+
+
+def remarks(linkage: Linkage) -> Iterator[str]:
+    """Things worth a second look, each one sentence; none of them keeps a model from running."""
+    machine = linkage.machine
+    if missing := massless(machine):
+        yield missing
+    for joint, (number, angle) in linkage.cycle.weakest.items():
+        transmission = degrees(asin(sqrt(min(number, 1.0))))
+        if transmission < POOR_TRANSMISSION:
+            yield (
+                f"the dyad at {joint} comes within {transmission:.1f} deg of its dead position, at "
+                f"crank angle {degrees(angle):.1f} deg; joint forces are large there"
+            )
+    for name, link in machine.links.items():
+        size = size_of(link.points)
+        if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
+            continue
+        gyration = sqrt(link.inertia / link.mass)
+        if gyration > WIDE_INERTIA * size:
+            yield (
+                f"links.{name}.inertia gives a radius of gyration of {gyration * 1e3:.4g} mm, for "
+                f"a link of {size * 1e3:.4g} mm; check its unit"
+            )
+        x, y = link.center_of_mass
+        px, py = next(iter(link.points.values()))
+        if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
+            yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
+    lone = [point for point in machine.frame if point not in linkage.joints.pins]
+    used = {slider.through for slider in machine.sliders if slider.on == FRAME}
+    used |= {spring.to for spring in machine.springs}
+    for point in lone:
+        if point not in used:
+            yield f"frame.points.{point} is not used by any joint or spring"

@@ -1,0 +1,270 @@
+"""Instants of a stroke: visits to the soil, release, pick-up, and how the tip moves then."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.family import column
+from equipoise.mechanism.instants import crossings, roots
+from equipoise.mechanism.tip import TipCurve
+
+Array = np.ndarray[Any, Any]
+Figures = dict[str, Array]
+"""Figures by dotted name; (P,), one value for each machine."""
+
+
+def in_time(curve: TipCurve, theta: Array, order: int) -> Any:
+    """Velocity (order 1) or acceleration (2) of the tip relative to the machine, complex."""
+    tip = curve.at(theta)
+    if order == 1:
+        return tip.place_1 * curve.speed
+    return tip.place_2 * curve.speed**2 + tip.place_1 * acceleration_of_drive(curve)
+
+
+def in_time_slope(curve: TipCurve, theta: Array, order: int) -> Any:
+    """Derivative of `in_time` by crank angle."""
+    bend = curve.at(theta).place_2
+    if order == 1:
+        return bend * curve.speed
+    return curve.place_3(theta) * curve.speed**2 + bend * acceleration_of_drive(curve)
+
+
+def acceleration_of_drive(curve: TipCurve) -> Array:
+    """Acceleration of the crank, rad/s2, (P, 1)."""
+    return column(machine.drive.acceleration for machine in curve.machines)
+
+
+def ground_drive(curve: TipCurve) -> Array:
+    """Way of the machine along x by crank angle, m, (P, 1)."""
+    return curve.forward / curve.speed
+
+
+def while_driving(curve: TipCurve) -> Array:
+    """1 for a machine that drives, NaN for one at rest, which has no figures over ground; (P,)."""
+    return np.where(curve.forward[:, 0] != 0, 1.0, np.nan)
+
+
+def direction(vector: Array) -> Array:
+    """Direction of vectors from x, rad, above -pi; of one along x, no rounding turns it round."""
+    level = np.abs(vector.imag) <= 1e-12 * np.abs(vector.real)
+    return np.angle(np.where(level, vector.real + 0j, vector))
+
+
+def wrapped(curve: TipCurve, theta: Array) -> Array:
+    """Crank angles within one cycle, from 0."""
+    inside = np.mod(theta, curve.period)
+    return np.where(inside > curve.period - 1e-12, 0.0, inside)
+
+
+TOUCH = 1e-12
+"""Share of the path's height within which the tip touches the surface and does not pass it."""
+
+
+@dataclass(frozen=True)
+class Visit:
+    """A stay of the tip in the soil.
+
+    entry, exit : crank angles, rad, running on in the sense of the drive from within one cycle.
+    deepest : crank angle of the lowest point in between, rad.  depth : of that, m.
+    """
+
+    entry: float
+    exit: float
+    deepest: float
+    depth: float
+
+
+def visits(curve: TipCurve) -> tuple[Visit, ...]:
+    """Every stay in the soil in one cycle, the deepest first.
+
+    Raises
+    ------
+    ModelError : the tip never reaches the soil, or never leaves it.
+    """
+    level = float(curve.surface[0])
+    _check_reach(curve, level)
+    sense = float(np.sign(curve.speed[0, 0]))
+    nodes = curve.level_nodes()
+    angles = crossings(lambda theta: curve.height(theta) - level, nodes)
+    falls = curve.rise(angles[None])[0] * sense < 0
+    entries, exits = (
+        np.sort(np.mod(sense * angles[side], curve.period)) for side in (falls, ~falls)
+    )
+    found = []
+    for entry in entries:
+        leave = _next(exits, entry, curve.period)
+        theta, depth = _deepest(curve, nodes, sense * entry, sense * leave, level)
+        found.append(Visit(sense * entry, sense * leave, theta, depth))
+    return tuple(sorted(found, key=lambda visit: -visit.depth))
+
+
+def _next(ways: Array, way: float, period: float) -> float:
+    """The first of some ways after another, in this cycle or the next."""
+    return float(np.min(np.where(ways > way, ways, ways + period)))
+
+
+def _deepest(
+    curve: TipCurve, nodes: Array, entry: float, leave: float, level: float
+) -> tuple[float, float]:
+    """Crank angle of the lowest point between entry and exit, and its depth."""
+    low, high = min(entry, leave), max(entry, leave)
+    inside = nodes + curve.period * np.ceil((low - nodes) / curve.period)
+    inside = inside[inside < high]
+    heights = curve.height(inside[None])[0]
+    k = int(np.argmin(heights))
+    return float(wrapped(curve, inside[k])), float(level - heights[k])
+
+
+def _check_reach(curve: TipCurve, level: float) -> None:
+    lowest, highest = float(curve.lowest[0][0]), float(curve.highest[0][0])
+    touch = TOUCH * (highest - lowest)
+    tip, given = curve.planting.tip, curve.planting.depth
+    if level <= lowest + touch:
+        raise ModelError(
+            "planting.surface",
+            f"got {_mm(level)}; the tip {tip} never reaches the soil, its lowest point is at "
+            f"{_mm(lowest)}; give a surface above that",
+        )
+    if level >= highest - touch:
+        key, value = ("surface", level) if given is None else ("depth", given)
+        right = (
+            f"it is at {_mm(highest)} at most; give a surface below that"
+            if given is None
+            else f"its path is {_mm(highest - lowest)} high; give a depth below that"
+        )
+        raise ModelError(
+            f"planting.{key}", f"got {_mm(value)}; the tip {tip} never leaves the soil, {right}"
+        )
+
+
+def _mm(metres: float) -> str:
+    return f"{1e3 * metres:.4g} mm"
+
+
+def soil_crossings(curve: TipCurve) -> tuple[Array, Array]:
+    """Crank angles (P,) at which the tip enters the soil before its lowest point, and leaves after.
+
+    They run on in the sense of the drive; NaN where it does not reach the surface or never leaves.
+    """
+    sense = np.sign(curve.speed)
+    count = len(curve.theta)
+    ahead = np.linspace(0.0, curve.period, count + 1)
+    lowest = curve.lowest[1][:, None]
+    nodes = lowest + sense * ahead
+    level = curve.surface[:, None]
+    above = curve.height(nodes) >= level
+    k_leave = np.argmax(above, axis=1)[:, None]
+    k_entry = count - np.argmax(above[:, ::-1], axis=1)[:, None]
+    found = np.any(above, axis=1) & ~above[:, 0]
+    k_leave, k_entry = np.clip(k_leave, 1, count), np.clip(k_entry, 0, count - 1)
+
+    def over(theta: Array) -> Any:
+        return curve.height(theta) - level
+
+    def between(k: Array) -> Array:
+        ends = (np.take_along_axis(nodes, k + step, axis=1) for step in (0, 1))
+        return np.where(found, roots(over, *ends)[:, 0], np.nan)
+
+    return between(k_entry) - sense[:, 0] * curve.period, between(k_leave - 1)
+
+
+def release(curve: TipCurve) -> Array:
+    """Crank angle (P,) at which the seedling is let go."""
+    given = curve.planting.release
+    return curve.lowest[1] if given is None else np.full(curve.count, given)
+
+
+def instant(curve: TipCurve, instant: str, theta: Array) -> Figures:
+    """Place, velocity, acceleration and attitude at crank angles (P,)."""
+    tip = curve.at(theta[:, None])
+    velocity = in_time(curve, theta[:, None], 1)[:, 0]
+    result = {
+        "crank_angle": wrapped(curve, theta),
+        "x": tip.place[:, 0].real,
+        "y": tip.place[:, 0].imag,
+    }
+    for name, vector in (
+        ("velocity", velocity),
+        ("acceleration", in_time(curve, theta[:, None], 2)[:, 0]),
+        ("ground_velocity", velocity + curve.forward[:, 0]),
+    ):
+        result |= {
+            f"{name}.x": vector.real,
+            f"{name}.y": vector.imag,
+            f"{name}.size": np.abs(vector),
+            f"{name}.direction": direction(vector),
+        }
+    base = finger_base(curve)
+    if base is not None:
+        finger = tip.place - curve.point_of(tip.state, base)[0]
+        result["attitude"] = direction(finger[:, 0])
+    return {f"{instant}.{key}": value for key, value in result.items()}
+
+
+def finger_base(curve: TipCurve) -> str | None:
+    """The point from which the finger points to the tip, if the tip's link has one."""
+    if curve.planting.finger_from is not None:
+        return curve.planting.finger_from
+    points = curve.machines[0].links[curve.link].points
+    return next((point for point in points if point != curve.planting.tip), None)
+
+
+class Edge:
+    """The tip beside the tray's edge, of machines that have a tray."""
+
+    def __init__(self, curve: TipCurve) -> None:
+        assert curve.planting.tray is not None
+        self.curve = curve
+        self.start, stop = (complex(*point) for point in curve.planting.tray)
+        self.along = stop - self.start
+
+    def beside(self, theta: Array) -> Any:
+        """A signal with the sign of the side on which the tip is, (P, K)."""
+        return kernels.cross(self.along, self.curve.at(theta).place - self.start)
+
+    def slope(self, theta: Array) -> Any:
+        """Its derivative by crank angle, (P, K)."""
+        return kernels.cross(self.along, self.curve.at(theta).place_1)
+
+    def reached(self, theta: Array) -> Array:
+        """Whether the tip is between both ends, not only on the line through them, (P, K)."""
+        share = kernels.dot(self.along, self.curve.at(theta).place - self.start)
+        inside: Array = np.abs(share / abs(self.along) ** 2 - 0.5) <= 0.5
+        return inside
+
+
+def pick_up(curve: TipCurve, entry: Array) -> Array:
+    """Crank angle (P,) at which the tip last passes the tray's edge before it enters the soil.
+
+    NaN where it never does.
+    """
+    edge = Edge(curve)
+    back = np.linspace(0.0, curve.period, len(curve.theta) + 1)
+    nodes = entry[:, None] - np.sign(curve.speed) * back
+    sides = np.signbit(edge.beside(nodes))
+    passed = sides[:, 1:] != sides[:, :-1]
+    most = max(1, int(np.max(np.sum(passed, axis=1))))
+    first = np.argsort(~passed, axis=1, kind="stable")[:, :most]
+    ends = (np.take_along_axis(nodes, first + step, axis=1) for step in (0, 1))
+    crossing = roots(edge.beside, *ends)
+    meant = np.take_along_axis(passed, first, axis=1) & edge.reached(crossing)
+    last = np.take_along_axis(crossing, np.argmax(meant, axis=1)[:, None], axis=1)[:, 0]
+    return np.where(np.any(meant, axis=1), last, np.nan)
+
+
+def tray_crossings(curve: TipCurve) -> tuple[float, ...]:
+    """Crank angles within one cycle at which the tip of one machine passes the edge, rising."""
+    if curve.planting.tray is None:
+        return ()
+    edge = Edge(curve)
+    ends = np.append(curve.theta, curve.period)
+    nodes = np.unique(np.concatenate([ends, crossings(edge.slope, ends)]))
+    angles = crossings(edge.beside, nodes)
+    if not angles.size:
+        return ()
+    return tuple(float(angle) for angle in angles[edge.reached(angles[None])[0]])

@@ -1,0 +1,272 @@
+"""What varies of a model, how designs are drawn, and what is computed of them: as values.
+
+One number varies in a range, over a list, or by a tolerance; SI units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from math import isfinite
+from numbers import Real
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+
+import numpy as np
+
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.model import Machine
+
+Array = np.ndarray[Any, Any]
+
+MOST_STEPS = 1_000_000
+"""Values of one number on a grid."""
+LEAST, MOST = 2.0**-54, 1 - 2.0**-53
+"""Nearest to 0 and 1 that a place in a spread comes: both ends of a normal one are endless."""
+
+
+@dataclass(frozen=True)
+class Range:
+    """Anything from `low` to `high`, all alike.
+
+    steps : values on a grid, both ends among them; needed there only.
+    whole : whole numbers only, such as those of teeth.
+    """
+
+    tolerance: ClassVar[bool] = False
+    low: float
+    high: float
+    steps: int | None = None
+    whole: bool = False
+
+    def __post_init__(self) -> None:
+        _check_finite((self.low, self.high))
+        if not self.low < self.high:
+            raise UsageError("the first limit must be below the second")
+        if self.whole:
+            _check_whole((self.low, self.high))
+        if self.steps is not None and not 2 <= self.steps <= MOST_STEPS:
+            raise UsageError(f"got {self.steps} steps; give 2 to {MOST_STEPS}")
+
+    @property
+    def levels(self) -> Array:
+        """Values on a grid, (steps,); `UsageError` where their number is not given."""
+        if self.steps is None:
+            raise UsageError("a grid needs the number of steps of the range")
+        levels = np.linspace(self.low, self.high, self.steps)
+        if self.whole and np.any(levels != np.rint(levels)):
+            count = self.high - self.low + 1
+            raise UsageError(
+                f"{self.steps} steps from {self.low:g} to {self.high:g} are no whole numbers; give "
+                f"another number of steps, such as {count:g}"
+            )
+        return levels
+
+    def at(self, u: Array) -> Array:
+        """Values (n,) at places u (n,) between 0 and 1."""
+        if self.whole:
+            whole: Array = np.floor(self.low + (self.high - self.low + 1) * u)
+            return np.minimum(whole, self.high)
+        inside: Array = np.clip(self.low + (self.high - self.low) * u, self.low, self.high)
+        return inside
+
+
+@dataclass(frozen=True)
+class Choices:
+    """One of some values, all alike."""
+
+    tolerance: ClassVar[bool] = False
+    values: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        _check_finite(self.values)
+        object.__setattr__(self, "values", tuple(map(float, self.values)))
+        if not self.values:
+            raise UsageError("the list is empty; give at least one value")
+        if len(set(self.values)) < len(self.values):
+            raise UsageError("the list has a value twice; give each once")
+
+    @property
+    def levels(self) -> Array:
+        """Values on a grid, (n,), in the order in which they are given."""
+        return np.array(self.values)
+
+    def at(self, u: Array) -> Array:
+        """Values (n,) at places u (n,) between 0 and 1."""
+        count = len(self.values)
+        place = np.minimum((np.asarray(u) * count).astype(np.intp), count - 1)
+        chosen: Array = self.levels[place]
+        return chosen
+
+
+@dataclass(frozen=True)
+class Normal:
+    """About `mean` with a standard deviation.
+
+    cut : nothing lies further from the mean than so many deviations; those of the whole curve, so
+        that what is left has a somewhat smaller one.
+    """
+
+    tolerance: ClassVar[bool] = True
+    mean: float
+    deviation: float
+    cut: float | None = None
+
+    def __post_init__(self) -> None:
+        _check_finite((self.mean, self.deviation))
+        if self.deviation <= 0:
+            raise UsageError(f"got a deviation of {self.deviation:g}; give more than 0")
+        if self.cut is not None and not 0 < self.cut < np.inf:
+            raise UsageError(f"got cut = {self.cut:g}; give deviations, more than 0, such as 3")
+
+    @property
+    def levels(self) -> Array:
+        """There are none: `UsageError`."""
+        raise UsageError("a normal spread has no grid; give a range or a list")
+
+    def at(self, u: Array) -> Array:
+        """Values (n,) at places u (n,) between 0 and 1."""
+        from scipy.special import ndtr, ndtri
+
+        low = 0.0 if self.cut is None else ndtr(-self.cut)
+        most = np.inf if self.cut is None else self.cut
+        inside = np.clip(low + (1 - 2 * low) * np.asarray(u), LEAST, MOST)
+        values: Array = self.mean + self.deviation * np.clip(ndtri(inside), -most, most)
+        return values
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Anything within `half_width` of the centre, all alike."""
+
+    tolerance: ClassVar[bool] = True
+    centre: float
+    half_width: float
+
+    def __post_init__(self) -> None:
+        _check_finite((self.centre, self.half_width))
+        if self.half_width <= 0:
+            raise UsageError(f"got a half width of {self.half_width:g}; give more than 0")
+
+    @property
+    def levels(self) -> Array:
+        """There are none: `UsageError`."""
+        raise UsageError("a uniform tolerance has no grid; give a range or a list")
+
+    def at(self, u: Array) -> Array:
+        """Values (n,) at places u (n,) between 0 and 1."""
+        return self.centre + self.half_width * (2 * np.asarray(u) - 1)
+
+
+Spread = Range | Choices | Normal | Uniform
+"""`tolerance` tells whether it is what making a thing leaves open."""
+SPREADS: dict[str, type[Spread]] = {
+    "range": Range,
+    "list": Choices,
+    "normal": Normal,
+    "uniform": Uniform,
+}
+"""Each by the key that gives it in a study file."""
+KEYS = {kind: key for key, kind in SPREADS.items()}
+
+
+def _check_finite(values: Iterable[float]) -> None:
+    for value in values:
+        if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
+            raise UsageError(f"got {value!r}; give finite numbers")
+
+
+def _check_whole(values: Iterable[float]) -> None:
+    for value in values:
+        if not float(value).is_integer():
+            raise UsageError(f"got {value:g}; give whole numbers")
+
+
+Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
+Command = Literal["analyze", "plant", "respond", "balance", "tool"]
+Make = Literal["smallest", "largest"]
+
+
+class Model(Protocol):
+    """A model file in which numbers can be replaced; `equipoise.schema.template.Template`."""
+
+    @property
+    def kind(self) -> Literal["linkage", "tool"]: ...
+
+    def number(self, path: str) -> tuple[float, str | None]:
+        """Number in the file in SI units, and its dimension; None for a plain number.
+
+        An `int` where only whole numbers will do.
+        """
+
+    def base(self) -> Machine | Tool:
+        """The model as its file has it."""
+
+    def machine(self, values: Mapping[str, float]) -> Machine | Tool:
+        """The model with other numbers, by path, in SI units."""
+
+    def texts(self) -> dict[str, str]:
+        """Everything that is needed to have the same model elsewhere."""
+
+
+@dataclass(frozen=True)
+class Vary:
+    """A number of the model that varies.
+
+    path : in the model file, such as ``links.crank.points.B.x``.
+    dimension : of its quantity, None for a plain number; a study has it from its model.
+    """
+
+    path: str
+    spread: Spread
+    dimension: str | None = None
+
+
+@dataclass(frozen=True)
+class Output:
+    """A figure that is computed of every design.
+
+    name : of its column.
+    of : the command that has it.  value : its place in that command's JSON object.
+    dimension : where it is known.
+    at_least, at_most : limits in SI units; a design outside of them is not kept.
+    make : whether it is to become small or large.
+    """
+
+    name: str
+    of: Command = "analyze"
+    value: str = ""
+    dimension: str | None = None
+    at_least: float | None = None
+    at_most: float | None = None
+    make: Make | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "value", self.value or self.name)
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """Two tolerances that go together.
+
+    coefficient : of the normal variables behind both; of two normal spreads it is their own.
+    """
+
+    first: str
+    second: str
+    coefficient: float
+
+
+@dataclass(frozen=True)
+class Sampling:
+    """Which designs are computed.
+
+    designs : their number; None of a grid.
+    seed : of all random numbers.
+    """
+
+    method: Method = "sobol"
+    designs: int | None = None
+    seed: int = 1

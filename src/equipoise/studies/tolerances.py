@@ -1,0 +1,291 @@
+"""What manufacturing tolerances do to the figures of a machine, and which to tighten first.
+
+The scatter of each figure comes from one run over many machines, whose numbers are drawn from their
+tolerances.  Which tolerance causes it comes from a second run of about the same length, see
+`equipoise.studies.variance`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass
+from time import monotonic
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.errors import ModelError, UsageError
+from equipoise.results.result import Result
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Evaluator, Outcome, kept
+from equipoise.studies.selection import why_none
+from equipoise.studies.study import SLOW_CHUNK
+from equipoise.studies.variance import (
+    Effect,
+    Estimate,
+    Scatter,
+    causes_of,
+    effects,
+    scatter_of,
+    share_of,
+    tables,
+)
+
+if TYPE_CHECKING:
+    from equipoise.studies.study import Study
+
+Array = np.ndarray[Any, Any]
+
+QUICK = 0.1
+"""Time after which progress is told, s; more machines are computed together if it takes less."""
+LEAST_ROWS = 32
+"""Rows of A with which causes are told apart."""
+
+OnProgress = Callable[[int, int], None]
+"""Is called with how many machines are computed, and how many there are."""
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One tolerance, or several that are correlated and count as one.
+
+    numbers : paths.
+    effects : by output; those outputs are missing that do not vary, or too often fail.
+    gain : by how much the variance falls if the tolerance is halved, as a share of it, in the mean
+        over the outputs that have limits (over all where none has).
+    halved, removed : share of machines within all limits with half of the tolerance and without it;
+        None where there are no limits.
+    """
+
+    numbers: tuple[str, ...]
+    effects: Mapping[str, Effect]
+    gain: float
+    halved: float | None
+    removed: float | None
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Tolerances(Result):
+    """What the tolerances of a study do.
+
+    designs : machines whose scatter is told.  failures : of these by reason.
+    within : share of them that keep every limit; None where there are none.
+    scatters : by output.
+    causes : what to tighten first comes first.
+    rows : machines in each of the tables by which causes are told apart.
+    unchanged : share of the machines of table A within all limits, beside `halved` and `removed`.
+    computed : machines in all.
+    """
+
+    study: Study
+    designs: int
+    failures: Mapping[str, int]
+    within: Estimate | None
+    scatters: Mapping[str, Scatter]
+    causes: tuple[Cause, ...]
+    rows: int
+    unchanged: float | None
+    computed: int
+    notes: tuple[str, ...]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units."""
+        return {
+            "title": self.study.title,
+            "designs": self.designs,
+            "computed": self.computed,
+            "failures": dict(self.failures),
+            "within": None if self.within is None else asdict(self.within),
+            "outputs": {name: one.to_dict() for name, one in self.scatters.items()},
+            "rows": self.rows,
+            "unchanged": self.unchanged,
+            "tighten": [
+                {
+                    "numbers": list(one.numbers),
+                    "gain": one.gain,
+                    "within_halved": one.halved,
+                    "within_removed": one.removed,
+                    "outputs": {name: asdict(effect) for name, effect in one.effects.items()},
+                }
+                for one in self.causes
+            ],
+            "notes": list(self.notes),
+        }
+
+
+def tolerance(
+    study: Study, *, progress: OnProgress | None = None, compute: Evaluator | None = None
+) -> Tolerances:
+    """What the tolerances of a study do to its outputs, and which to tighten first.
+
+    Parameters
+    ----------
+    study : varies by normal and uniform tolerances; `sampling.designs` machines are drawn for the
+        scatter, and about as many again to tell the tolerances apart.
+    progress : see `OnProgress`.
+    compute : computes designs instead of the study's own evaluator.
+
+    Raises
+    ------
+    ModelError : something varies that is no tolerance, or there are too few designs; `where` is the
+        key of the study.
+    UsageError : no machine can be computed.
+    """
+    _check(study)
+    causes = causes_of(study)
+    rows = rows_of(study.size, len(causes))
+    run = _Run(compute or evaluator(study), min(study.chunk, SLOW_CHUNK), study.chunk, progress)
+    run.total = study.size + rows * (2 + 3 * len(causes))
+    drawn = run.joined(_drawn(study))
+    reasons = np.bincount(drawn.reason, minlength=256)
+    there = np.sum(np.isfinite(drawn.figures), axis=0)
+    if not reasons[COMPUTED] or not np.all(there):
+        raise UsageError(why_none(study.outputs, reasons, np.zeros(len(there))))
+    found = [run.joined([table]) for table in tables(study, rows)]
+    own = np.array([[study.model.number(path)[0] for path in study.paths]], dtype=float)
+    base = run.compute(own).figures[0]
+    told = _causes(study, causes, found)
+    return Tolerances(
+        study=study,
+        designs=study.size,
+        failures={REASONS[k]: int(n) for k, n in enumerate(reasons) if n and k},
+        within=share_of(_kept_all(study, drawn)) if _limited(study) else None,
+        scatters={
+            output.name: scatter_of(output, base[k], drawn.figures[:, k])
+            for k, output in enumerate(study.outputs)
+        },
+        causes=tuple(sorted(told, key=lambda one: -one.gain)),
+        rows=rows,
+        unchanged=_part(study, found[0]),
+        computed=run.done,
+        notes=tuple(_notes(study, told, found)),
+    )
+
+
+def rows_of(designs: int, causes: int) -> int:
+    """Rows of the tables that tell causes apart, with about as many machines as the scatter has."""
+    return int(2 ** ((designs // (2 + 3 * causes)).bit_length() - 1)) if designs else 0
+
+
+def _check(study: Study) -> None:
+    for number, one in enumerate(study.vary, 1):
+        if not one.spread.tolerance:
+            raise ModelError(
+                f"vary[{number}]",
+                f"{one.path} has a range or a list, which is no tolerance; give normal = "
+                "{ deviation = ... } or uniform = { half_width = ... }",
+            )
+    causes = len(causes_of(study))
+    if rows_of(study.size, causes) < LEAST_ROWS:
+        raise ModelError(
+            "sampling.designs",
+            f"got {study.size}; to tell {causes} tolerances apart give "
+            f"{LEAST_ROWS * (2 + 3 * causes)} or more",
+        )
+
+
+# -- running ---------------------------------------------------------------------------------------
+
+
+@dataclass
+class _Run:
+    """Computes machines, and tells how far it is.
+
+    step : machines that are computed together; twice as many while that is quick, up to `most`.
+    """
+
+    compute: Evaluator
+    step: int
+    most: int
+    progress: OnProgress | None
+    total: int = 0
+    done: int = 0
+
+    def joined(self, parts: Iterable[Array]) -> Outcome:
+        """What came of all parts (n, d)."""
+        found = []
+        for part in parts:
+            start = 0
+            while start < len(part):
+                found.append(self.timed(part[start : start + self.step]))
+                start += len(found[-1].reason)
+                self.done += len(found[-1].reason)
+                if self.progress is not None:
+                    self.progress(self.done, self.total)
+        return Outcome(
+            np.concatenate([one.figures for one in found]),
+            np.concatenate([one.reason for one in found]),
+        )
+
+    def timed(self, values: Array) -> Outcome:
+        """What came of some machines."""
+        begin = monotonic()
+        outcome = self.compute(values)
+        if monotonic() - begin < QUICK and 2 * self.step <= self.most:
+            self.step *= 2
+        return outcome
+
+
+def _drawn(study: Study) -> Iterator[Array]:
+    """Machines drawn from the tolerances, part by part."""
+    from equipoise.studies.study import samples
+
+    for start in range(0, study.size, study.chunk):
+        yield samples(study, start, min(study.chunk, study.size - start))
+
+
+# -- reading off -----------------------------------------------------------------------------------
+
+
+def _limited(study: Study) -> list[int]:
+    """Columns of outputs with limits."""
+    given = [(one.at_least, one.at_most) != (None, None) for one in study.outputs]
+    return [k for k, limited in enumerate(given) if limited]
+
+
+def _kept_all(study: Study, outcome: Outcome) -> Array:
+    inside: Array = np.all(kept(study.outputs, outcome.figures)[:, _limited(study)], axis=1)
+    return inside
+
+
+def _part(study: Study, outcome: Outcome) -> float | None:
+    """Share of the machines of a table within all limits."""
+    return float(np.mean(_kept_all(study, outcome))) if _limited(study) else None
+
+
+def _causes(study: Study, causes: Sequence[Sequence[int]], found: Sequence[Outcome]) -> list[Cause]:
+    by_output: dict[str, list[Effect]] = {}
+    for k, output in enumerate(study.outputs):
+        of_output = effects([one.figures[:, k] for one in found], study.sampling.seed)
+        if of_output is not None:
+            by_output[output.name] = of_output
+    counted = [study.names[k] for k in _limited(study)] or list(study.names)
+    told = []
+    for number, columns in enumerate(causes):
+        each = {name: of_output[number] for name, of_output in by_output.items()}
+        gains = [1 - each[name].halved ** 2 for name in counted if name in each]
+        told.append(
+            Cause(
+                numbers=tuple(study.paths[k] for k in columns),
+                effects=each,
+                gain=float(np.mean(gains)) if gains else 0.0,
+                halved=_part(study, found[3 + 3 * number]),
+                removed=_part(study, found[4 + 3 * number]),
+            )
+        )
+    return told
+
+
+def _notes(study: Study, told: Sequence[Cause], found: Sequence[Outcome]) -> Iterator[str]:
+    for k, output in enumerate(study.outputs):
+        if output.name not in told[0].effects:
+            there = [bool(np.any(np.isfinite(one.figures[:, k]))) for one in found]
+            what = "does not vary" if all(there) else "fails too often"
+            yield f"{output.name} {what}, so that no tolerance is named as its cause"
+    failed = float(np.mean([np.mean(one.reason != COMPUTED) for one in found]))
+    if failed > 0:
+        yield (
+            f"{100 * failed:.2g} % of the machines cannot be computed; causes are told apart by "
+            "the others alone"
+        )
