@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
-from equipoise.exposure.daily import DAY, WorkingTimes
-from equipoise.exposure.directive import ACTION, LIMIT
-from equipoise.exposure.japan import LONGEST, limit_time
+from equipoise.exposure.daily import ACTION, DAY, LIMIT, LONGEST, WorkingTimes, limit_time
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
-    from equipoise.exposure.weighted import Weighted
+    from equipoise.exposure.weighting import Weighted
 
 LONGEST_NAME = 40
 WHAT = {

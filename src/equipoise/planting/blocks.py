@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.balancing.naming import joint_named
 from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.planting.moments import finger_base
-from equipoise.planting.names import dimension_of
+from equipoise.planting.goals import dimension_of
+from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 

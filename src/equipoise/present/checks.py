@@ -10,15 +10,15 @@ import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
 from equipoise.studies.blocks import Unit, Units, in_unit, labelled
+from equipoise.studies.design_space import Choices, Normal, Range
 from equipoise.studies.evaluate import Outcome, evaluator
-from equipoise.studies.spread import Choices, Normal, Range
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.motor import Motor
     from equipoise.mechanism.support import Gauge, Mount
-    from equipoise.studies.spread import Spread
+    from equipoise.studies.design_space import Spread
     from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]

@@ -14,18 +14,17 @@ from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.studies.front import spread
-from equipoise.studies.spread import Normal, Uniform
+from equipoise.studies.design_space import Normal, Uniform
+from equipoise.studies.selection import far_apart
 
 if TYPE_CHECKING:
-    from equipoise.studies.best import Best
-    from equipoise.studies.landscape import Landscape
-    from equipoise.studies.scatter import Scatter
+    from equipoise.studies.objective_map import Landscape
     from equipoise.studies.search import Searched
+    from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
     from equipoise.studies.study import Make, Output
-    from equipoise.studies.tolerance import Cause, Tolerances
-    from equipoise.studies.variance import Estimate
+    from equipoise.studies.tolerances import Cause, Tolerances
+    from equipoise.studies.variance import Estimate, Scatter
 
 Array = np.ndarray[Any, Any]
 
@@ -174,7 +173,7 @@ def searched_blocks(
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
     columns = [objective_column(found, name) for name in found.objectives]
-    shown = spread(np.column_stack(columns), MOST)
+    shown = far_apart(np.column_stack(columns), MOST)
     labels = [str(one) for one in shown]
     values, figures = found.values[shown], found.figures[shown]
     if own is not None:
