@@ -42,12 +42,12 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.present.report import check, write_document
+    from equipoise.present.composition import check, write_document
     from equipoise.schema.files import printable
 
     check(paths, language)
+    from equipoise.present.composition import build
     from equipoise.present.findings import find
-    from equipoise.present.report import build
 
     found = find(file, speed=rate)
     with naming(file):
@@ -59,7 +59,7 @@ def report(
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
     """The files that are wanted."""
-    from equipoise.present.report import kind_of
+    from equipoise.present.composition import kind_of
 
     if out is None:
         out = f"{os.path.basename(file).removesuffix('.toml')}-report.html"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import hypot, pi
@@ -67,16 +66,3 @@ class Shaking:
         share = float(values[1] / (np.sum(values) or 1.0))
         x, y = vectors[:, 1]
         return float(np.arctan2(y, x) % pi), share
-
-
-def shares(parts: Mapping[str, Array]) -> dict[str, float]:
-    """Share of each part in the mean square of their sum, the largest first.
-
-    One below 0 works against the others.  parts : signals (N,), real or complex.
-    """
-    whole = np.sum(list(parts.values()), axis=0)
-    square = float(np.mean(np.abs(whole) ** 2)) or 1.0
-    found = {
-        name: float(np.mean((part * np.conj(whole)).real)) / square for name, part in parts.items()
-    }
-    return dict(sorted(found.items(), key=lambda item: -item[1]))

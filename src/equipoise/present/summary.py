@@ -14,8 +14,9 @@ from equipoise.i18n import say
 from equipoise.present.document import Answer, Tile
 from equipoise.present.findings import Findings
 from equipoise.present.remedies import good_already, helps_told
-from equipoise.present.shaking import Shaking, shares
+from equipoise.present.shaking import Shaking
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
+from equipoise.results.tables import shares
 from equipoise.signals import Figures
 
 SMALL = 0.005

@@ -7,11 +7,11 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
-from equipoise.present.report import build, write_report
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.present import pdf as pdf_module
+from equipoise.present.composition import build, write_report
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.html import page
 from equipoise.present.pdf import pdf
