@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from equipoise.exposure.daily import ACTION, DAY, LIMIT, LONGEST, WorkingTimes, limit_time
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
-from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.results.blocks import Block, Cell, Column, Notes, Section, Table, Text, Value
 
 if TYPE_CHECKING:
     from equipoise.exposure.daily import Exposure
@@ -37,7 +37,8 @@ MEANING = {
 
 
 def shortened(name: str) -> str:
-    """A name that leaves room for numbers."""
+    """A name that any terminal can print, and that leaves room for numbers."""
+    name = "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in name)
     return name if len(name) <= LONGEST_NAME else f"{name[: LONGEST_NAME - 3]}..."
 
 
@@ -93,6 +94,17 @@ def times_blocks(tools: Sequence[tuple[str, float]]) -> Iterator[Block]:
     )
     yield Table(say("Total values, and how many hours a day they allow"), columns, rows)
     yield Text(say("There is no daily exposure without a time."))
+
+
+def told_blocks(
+    measured: Sequence[tuple[str, Weighted]],
+    tools: Sequence[tuple[str, float]],
+    day: Exposure | None,
+) -> Iterator[Block | Section]:
+    """What was weighted, by name; then the day, or where no time is told how long one may work."""
+    for name, weighted in measured:
+        yield Section("weighted", shortened(name), tuple(weighted_blocks(weighted)))
+    yield from times_blocks(tools) if day is None else exposure_blocks(day)
 
 
 def exposure_blocks(day: Exposure) -> Iterator[Block]:
