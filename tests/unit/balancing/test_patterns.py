@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.blocks import pattern_blocks
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.patterns import (
     PATTERNS,
@@ -20,7 +21,6 @@ from equipoise.balancing.patterns import (
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
-from equipoise.balancing.blocks import pattern_blocks
 from support.printing import words
 
 MACHINE = eq.load("yamashita-2")
