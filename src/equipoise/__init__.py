@@ -164,7 +164,7 @@ _HOMES = {
     "weigh_orders": "exposure.spectra",
     "weigh_signal": "exposure.spectra",
     "weigh_spectrum": "exposure.spectra",
-    "write_report": "report.writing",
+    "write_report": "present.composition",
 }
 """Public names and where they live; each is imported when it is first used."""
 
