@@ -16,9 +16,9 @@ from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.force_elements import Motor
     from equipoise.mechanism.linkage import Linkage
     from equipoise.mechanism.model import Machine
-    from equipoise.mechanism.motor import Motor
     from equipoise.mechanism.support import Gauge, Mount
 
 
@@ -38,7 +38,7 @@ def print_check(machine: Machine) -> None:
     print(f"the crank turns fully; the motion repeats after {turns}")
     for row in [*_springs(machine), *_drive_train(machine), *_support(machine)]:
         print(row)
-    for remark in [*remarks(linkage), *idle_parts(machine), *_uncarried(machine)]:
+    for remark in [*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)]:
         print(f"note: {remark}")
     print("ready to be analysed")
 

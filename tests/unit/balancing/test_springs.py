@@ -11,7 +11,7 @@ from equipoise.balancing.design_variables import FreeSpring
 from equipoise.balancing.measures import measured
 from equipoise.balancing.program import Program
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
-from equipoise.mechanism.spring import Spring
+from equipoise.mechanism.force_elements import Spring
 from support.machines import make
 from unit.mechanism.build import crank_rocker
 
