@@ -8,13 +8,13 @@ from math import pi
 import equipoise
 from equipoise.i18n import say, speaking, to_say
 from equipoise.report.document import Block, Document, Listing, Paragraph, Points, Section
-from equipoise.report.drawing import drawings
+from equipoise.present.drawing import drawings
 from equipoise.report.effects import balance_blocks, planting_blocks, vibration_blocks
-from equipoise.report.findings import Findings, ToolFindings
+from equipoise.present.findings import Findings, ToolFindings
 from equipoise.report.notes import method_told, noted
 from equipoise.report.numbers import number
-from equipoise.report.sources import sources
-from equipoise.report.summary import answers, check_whole_cycle, tiles
+from equipoise.present.report import sources
+from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.report.tables import (
     force_blocks,
     joint_table,
@@ -22,7 +22,7 @@ from equipoise.report.tables import (
     motion_blocks,
     speed_told,
 )
-from equipoise.report.tool import tool_answers, tool_tiles
+from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.report.tool_tables import design_table, exposure_blocks, mode_blocks, tool_model
 
 TITLES = {

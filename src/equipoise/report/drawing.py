@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 from equipoise.i18n import say
 from equipoise.plotting.style import render, styled
 from equipoise.report.document import Block, Drawing
-from equipoise.report.findings import Findings, ToolFindings
-from equipoise.report.pictures import SECTIONS, each
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.pictures import SECTIONS, each
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

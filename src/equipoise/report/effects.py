@@ -13,8 +13,8 @@ from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import PlantingFigures
 from equipoise.report.changes import told
 from equipoise.report.document import Block, Paragraph, Points, Row, Table
-from equipoise.report.findings import Findings
-from equipoise.report.helps import nothing_told
+from equipoise.present.findings import Findings
+from equipoise.present.remedies import nothing_told
 from equipoise.report.notes import noted
 from equipoise.report.numbers import PER_RPM, about, angle, change, number
 from equipoise.vibration.response import Response

@@ -9,7 +9,7 @@ from equipoise.balancing.naming import objective_named, output_named, scaled, un
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.report.changes import told
-from equipoise.report.findings import Findings
+from equipoise.present.findings import Findings
 from equipoise.report.numbers import brief, capital, change, percent
 
 WORSE, MOST_WORSE = 0.1, 3

@@ -7,7 +7,7 @@ from math import pi
 
 from equipoise.balancing.naming import scaled
 from equipoise.i18n import say
-from equipoise.report.findings import Findings
+from equipoise.present.findings import Findings
 from equipoise.report.numbers import PER_RPM, angle, brief
 
 

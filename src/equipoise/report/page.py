@@ -12,10 +12,10 @@ from markupsafe import Markup
 
 import equipoise
 from equipoise.i18n import say, speaking
-from equipoise.report.build import build
+from equipoise.present.report import build
 from equipoise.report.document import Block, Document
-from equipoise.report.findings import Findings, ToolFindings
-from equipoise.report.inline import colors, inlined
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.inline import colors, inlined
 
 
 def report(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:

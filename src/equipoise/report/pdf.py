@@ -11,10 +11,10 @@ import jinja2
 import equipoise
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.i18n import LANGUAGES, say, speaking
-from equipoise.report.build import build
+from equipoise.present.report import build
 from equipoise.report.document import Document
-from equipoise.report.findings import Findings, ToolFindings
-from equipoise.report.page import text_of
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.html import text_of
 
 if TYPE_CHECKING:
     import typst

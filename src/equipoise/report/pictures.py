@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from equipoise.report.findings import Findings, ToolFindings
+from equipoise.present.findings import Findings, ToolFindings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -45,8 +45,8 @@ def each(
 ) -> Iterator[Picture]:
     """Those of some sections one by one: what only later ones need is not computed before."""
     from equipoise.plotting.style import free_name
-    from equipoise.report.shown import of_linkage
-    from equipoise.report.shown_tool import of_tool
+    from equipoise.present.pictures import of_linkage
+    from equipoise.present.pictures import of_tool
 
     parts = of_tool(found) if isinstance(found, ToolFindings) else of_linkage(found, at)
     taken: dict[str, None] = {}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism.model import Machine
-from equipoise.report.findings import Findings
+from equipoise.present.findings import Findings
 from equipoise.signals import Figures, figures, harmonics
 
 Array = np.ndarray[Any, Any]

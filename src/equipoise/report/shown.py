@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.i18n import to_say
 from equipoise.plotting.style import styled
-from equipoise.report.findings import Findings
+from equipoise.present.findings import Findings
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -7,8 +7,8 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import to_say
-from equipoise.report.findings import ToolFindings
-from equipoise.report.shown import Entry, Part, pages
+from equipoise.present.findings import ToolFindings
+from equipoise.present.pictures import Entry, Part, pages
 
 if TYPE_CHECKING:
     from equipoise.handheld.exposed import ToolExposure

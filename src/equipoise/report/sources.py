@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from equipoise.i18n import say, to_say
-from equipoise.report.findings import Findings, ToolFindings
+from equipoise.present.findings import Findings, ToolFindings
 
 KIM_CHUNG = (
     "Kim, K. U., Chung, C. J.: An analytical method for kinematic analysis of the planting "

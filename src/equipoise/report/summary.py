@@ -12,11 +12,11 @@ from equipoise.balancing.naming import CAUSES, joint_named, objective_named
 from equipoise.errors import UsageError
 from equipoise.i18n import say
 from equipoise.report.document import Answer, Tile
-from equipoise.report.findings import Findings
-from equipoise.report.helps import good_already, helps_told
+from equipoise.present.findings import Findings
+from equipoise.present.remedies import good_already, helps_told
 from equipoise.report.numbers import PER_RPM, angle, brief, change, percent
-from equipoise.report.outcomes import planting_told, vibration_told
-from equipoise.report.shaking import Shaking, shares
+from equipoise.present.summary import planting_told, vibration_told
+from equipoise.present.shaking import Shaking, shares
 from equipoise.signals import Figures
 
 SMALL = 0.005

@@ -13,7 +13,7 @@ from equipoise.mechanism.dynamics import JointForce, SliderForce
 from equipoise.mechanism.model import Machine
 from equipoise.report.document import Block, Points, Row, Table
 from equipoise.report.numbers import PER_RPM, angle, number, percent, place, span
-from equipoise.report.shaking import shares
+from equipoise.present.shaking import shares
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Figures, figures
 

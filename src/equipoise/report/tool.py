@@ -13,7 +13,7 @@ from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.report.document import Answer, Tile
-from equipoise.report.findings import ToolFindings
+from equipoise.present.findings import ToolFindings
 from equipoise.report.numbers import PER_RPM, brief, capital, change, percent
 from equipoise.report.tool_tables import in_units, varied_named
 

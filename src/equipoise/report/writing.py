@@ -46,8 +46,8 @@ def write_report(
     EquipoiseError : a PDF is wanted, and Typst is not installed.
     """
     check(outs, language)
-    from equipoise.report.build import build
-    from equipoise.report.findings import find
+    from equipoise.present.report import build
+    from equipoise.present.findings import find
 
     found = find(path_or_name, speed=speed)
     write_document(build(found, language, command, together=True), outs)
@@ -58,7 +58,7 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
     if language not in LANGUAGES:
         raise UsageError(f"language: got {language!r}; give one of {', '.join(LANGUAGES)}")
     if "pdf" in {kind_of(out) for out in outs}:
-        from equipoise.report.pdf import check_pdf
+        from equipoise.present.pdf import check_pdf
 
         check_pdf(language)
 
@@ -67,11 +67,11 @@ def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -
     """Write a document as each of these files."""
     for out in outs:
         if kind_of(out) == "pdf":
-            from equipoise.report.pdf import pdf
+            from equipoise.present.pdf import pdf
 
             _write(out, pdf(document))
         else:
-            from equipoise.report.page import page
+            from equipoise.present.html import page
 
             _write(out, page(document).encode())
 

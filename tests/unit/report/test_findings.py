@@ -11,8 +11,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.plotting.style import blank
-from equipoise.report.findings import Findings, ToolFindings, find
-from equipoise.report.pictures import SECTIONS, Picture, each, pictures
+from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.pictures import SECTIONS, Picture, each, pictures
 from surface.running import example_text
 
 

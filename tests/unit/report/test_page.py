@@ -10,13 +10,13 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.report import pdf as pdf_module
-from equipoise.report.build import build
-from equipoise.report.findings import ToolFindings, find
-from equipoise.report.page import page
-from equipoise.report.pdf import pdf
-from equipoise.report.pictures import pictures
-from equipoise.report.writing import write_report
+from equipoise.present import pdf as pdf_module
+from equipoise.present.report import build
+from equipoise.present.findings import ToolFindings, find
+from equipoise.present.html import page
+from equipoise.present.pdf import pdf
+from equipoise.present.pictures import pictures
+from equipoise.present.report import write_report
 
 
 class Page(HTMLParser):

@@ -12,14 +12,14 @@ import pytest
 
 import equipoise as eq
 from equipoise.i18n import speaking
-from equipoise.report.build import MODELS
+from equipoise.present.report import MODELS
 from equipoise.report.effects import balance_blocks
-from equipoise.report.findings import find
+from equipoise.present.findings import find
 from equipoise.report.notes import METHODS, SENTENCES, method_told, noted
 from equipoise.report.numbers import brief, change, kept_together, number
-from equipoise.report.pictures import pictures
-from equipoise.report.shaking import Shaking, shares
-from equipoise.report.summary import answers, tiles
+from equipoise.present.pictures import pictures
+from equipoise.present.shaking import Shaking, shares
+from equipoise.present.summary import answers, tiles
 from equipoise.vibration.response import EQUATIONS
 
 
