@@ -48,8 +48,8 @@ def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any],
 
 
 def _report(found: Solved, file: str, language: str) -> str:
+    from equipoise.present.composition import report
     from equipoise.present.findings import Findings
-    from equipoise.present.html import report
 
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
