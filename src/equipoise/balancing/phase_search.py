@@ -31,8 +31,8 @@ from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Objective, Phases
-from equipoise.mechanism.balance_outputs import OF_ROWS
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]

@@ -90,7 +90,7 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
 
 def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
-    found: list[Note | str] = list(idle_parts(machine))
+    found: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
         found.append(
             Note(

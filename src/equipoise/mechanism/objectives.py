@@ -1,19 +1,35 @@
-"""Outputs of a machine that can be made or kept small, and checks of what is asked of them."""
+"""What is to become small, or must not become larger: measures of outputs."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from math import pi
+from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.balance import MEASURES, Limit, Objective
+from equipoise.keys import (
+    Anything,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Number,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    inside,
+    key,
+)
 from equipoise.mechanism.checks import FRAME, positive, unknown
+from equipoise.mechanism.parts import Mechanism
 
-if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine
-
-Quantity = Literal["force", "torque", "length", "angle", "energy"]
+Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
+MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
+"""Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
+area under the absolute value over one turn of the crank."""
+OutputQuantity = Literal["force", "torque", "length", "angle", "energy"]
 
 FORCES = ("shaking_force", "frame_force")
 MOMENTS = ("shaking_moment", "frame_moment", "drive_torque")
@@ -28,15 +44,97 @@ OF_NUMBERS = ("ripple", "peak_to_peak", "area")
 MOST_NUMBERS = 200
 
 
+@declared
+class Objective(Frozen):
+    """What is to become small: a measure of an output."""
+
+    output: str = key(
+        Text(),
+        "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
+        "`frame_force`, `frame_moment`, `joints.NAME`, `gauges.NAME`, `roll_moment`, `yaw_moment`",
+        example="shaking_moment",
+    )
+    measure: Measure = key(
+        Text(MEASURES),
+        "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
+        "`peak_to_peak`: largest minus smallest value; `area`: under the size, over one turn of "
+        "the crank",
+        default="rms",
+    )
+    orders: tuple[float, ...] = key(
+        Listing(Number(), right="a list of numbers such as [1, 2]"),
+        "those that count: events in one turn of the crank, 0 for the mean; all if left out",
+        default=(),
+        example=[1, 2],
+    )
+    about: str | None = key(
+        Text(),
+        "point of the frame about which `shaking_moment` or `frame_moment` is taken; the drive's "
+        "pivot if left out",
+        default=None,
+    )
+    weight: float = key(
+        Number(),
+        "where there are several objectives, each of which counts over its value before",
+        default=1.0,
+        above=0,
+    )
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("angular speed"), right='a list such as ["150 rpm", "240 rpm"]'),
+        "of the crank, at which a gauge is read; the loudest counts; the drive's if left out",
+        default=(),
+        example=["150 rpm", "240 rpm"],
+    )
+
+    @property
+    def name(self) -> str:
+        """How it is called in results, such as ``rms of shaking_force.y``."""
+        words = "area under" if self.measure == "area" else f"{self.measure} of"
+        orders = f" (order {', '.join(f'{order:g}' for order in self.orders)})"
+        about = f" about {self.about}" if self.about else ""
+        if self.speeds:
+            about += f" at {', '.join(f'{speed * 30 / pi:.6g}' for speed in self.speeds)} rpm"
+        name = f"{words} {self.output}{about}{orders if self.orders else ''}"
+        return name.replace("_to_", " to ")
+
+
+@declared
+class Limit(Frozen):
+    """What must not become larger: a measure of an output, whose weight does not count.
+
+    at_most : in SI units.  ratio : over the value before, instead.
+    """
+
+    beside: ClassVar[Keys] = {
+        "at_most": Key(
+            "at_most",
+            Anything(
+                text='give number and unit in quotes, such as "120 N", or a share of the value '
+                'before, such as "80 %"',
+            ),
+            '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
+            example="120 N",
+        )
+    }
+
+    objective: Objective = key(Table(Objective, flat=True))
+    at_most: float | None = inside(Number(), default=None)
+    ratio: float | None = inside(Number(), default=None)
+
+    @property
+    def name(self) -> str:
+        return self.objective.name
+
+
 @dataclass(frozen=True)
 class Output:
     """What an output is: its quantity, and whether it is a vector in the plane."""
 
-    quantity: Quantity
+    quantity: OutputQuantity
     is_vector: bool = False
 
 
-def output_of(name: str, machine: Machine) -> Output:
+def output_of(name: str, machine: Mechanism) -> Output:
     """Look up an output of a machine by its name.
 
     Raises
@@ -58,13 +156,13 @@ def output_of(name: str, machine: Machine) -> Output:
     return Output("force", known[name])
 
 
-def _named(machine: Machine) -> Iterator[str]:
+def _named(machine: Mechanism) -> Iterator[str]:
     yield from (f"{JOINTS}{name}" for name in joint_names(machine))
     gauges = machine.support.gauges if machine.support is not None else ()
     yield from (f"{GAUGES}{name}" for name in gauges)
 
 
-def _gauge(name: str, machine: Machine) -> Output:
+def _gauge(name: str, machine: Mechanism) -> Output:
     gauges = machine.support.gauges if machine.support is not None else {}
     if not gauges:
         raise ModelError("", "there is no gauge; give a support with gauges")
@@ -73,7 +171,7 @@ def _gauge(name: str, machine: Machine) -> Output:
     return Output("length" if gauges[name].axis is None else "angle")
 
 
-def _joint(name: str, machine: Machine) -> Output:
+def _joint(name: str, machine: Mechanism) -> Output:
     joints = joint_names(machine)
     if name in joints:
         return Output("force", True)
@@ -82,15 +180,15 @@ def _joint(name: str, machine: Machine) -> Output:
     raise ModelError("", unknown(name, joints, "joint"))
 
 
-def joint_names(machine: Machine) -> list[str]:
+def joint_names(machine: Mechanism) -> list[str]:
     """Names of pins and sliders, as far as the names in the model tell.
 
     At a pin of several bodies each moving link has one; which of them carries the others is found
     only when the linkage is put together.
     """
     shared: dict[str, list[str]] = {}
-    for body in (FRAME, *machine.links):
-        for point in machine.points_of(body):
+    for body, points in machine.bodies.items():
+        for point in points:
             shared.setdefault(point, []).append(body)
     pins = [point for point, bodies in shared.items() if len(bodies) == 2]
     several = (
@@ -103,7 +201,7 @@ def joint_names(machine: Machine) -> list[str]:
     return [*pins, *several, *(slider.name for slider in machine.sliders)]
 
 
-def quantity_of(objective: Objective, machine: Machine) -> Quantity | None:
+def quantity_of(objective: Objective, machine: Mechanism) -> OutputQuantity | None:
     """What the measure of an output is; None where it has no name (the area under a force).
 
     Raises
@@ -119,7 +217,7 @@ def quantity_of(objective: Objective, machine: Machine) -> Quantity | None:
 # -- checks ----------------------------------------------------------------------------------------
 
 
-def wrong_objective(where: str, objective: Objective, machine: Machine) -> Iterator[ModelError]:
+def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with an output and its measure."""
     try:
         output = output_of(objective.output, machine)
@@ -149,7 +247,7 @@ def _wrong_orders(where: str, orders: tuple[float, ...]) -> Iterator[ModelError]
             yield ModelError(f"{where}.orders[{number}]", f"{order:g} is given twice")
 
 
-def _wrong_about(where: str, objective: Objective, machine: Machine) -> Iterator[ModelError]:
+def _wrong_about(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
     about, key = objective.about, f"{where}.about"
     if about is None:
         return
@@ -181,7 +279,7 @@ def _too_many(where: str, values: Iterable[float]) -> Iterator[ModelError]:
         yield ModelError(where, f"got {count}; at most {MOST_NUMBERS} are computed with")
 
 
-def wrong_limit(where: str, limit: Limit, machine: Machine) -> Iterator[ModelError]:
+def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with what must not become larger."""
     yield from wrong_objective(where, limit.objective, machine)
     if (limit.at_most is None) == (limit.ratio is None):
