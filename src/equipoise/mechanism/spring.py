@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
+from equipoise.keys import Frozen, Text, declared, key
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import SpringChoice
@@ -18,24 +17,24 @@ MOST = 200
 """Far beyond any machine, as in `mechanism.checks`."""
 
 
-@dataclass(frozen=True)
+@declared
 class Spring(Frozen):
-    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`.
+    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
 
-    stiffness : N/m, more than 0.
-    free_length : m, at which it exerts nothing; shorter than this it pushes.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("link", "point", "to"), "text"),
-        **dict.fromkeys(("stiffness", "free_length"), "number"),
-    }
-
-    link: str
-    point: str
-    to: str
-    stiffness: float
-    free_length: float = 0.0
+    link: str = key(Text(), "the link that it pulls", example="rocker")
+    point: str = key(
+        Text(), "its point on the link, not one that is pinned to the frame", example="C"
+    )
+    to: str = key(Text(), "its point on the frame", example="S")
+    stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
+    free_length: float = key(
+        "length",
+        "at which it exerts nothing; shorter it pushes",
+        default=0.0,
+        shown="0 m",
+        at_least=0,
+        why="a length cannot be negative, give 0 or more",
+    )
 
 
 def wrong_springs(machine: Machine) -> Iterator[ModelError]:
@@ -45,7 +44,6 @@ def wrong_springs(machine: Machine) -> Iterator[ModelError]:
         yield ModelError("springs", f"got {count}; at most {MOST} are computed with")
     for number, spring in enumerate(machine.springs, 1):
         yield from wrong_ends(f"springs[{number}]", spring, machine)
-        yield from _wrong_numbers(f"springs[{number}]", spring)
 
 
 def wrong_ends(where: str, spring: Spring | SpringChoice, machine: Machine) -> Iterator[ModelError]:
@@ -64,14 +62,4 @@ def wrong_ends(where: str, spring: Spring | SpringChoice, machine: Machine) -> I
             f"{where}.point",
             f"{spring.point!r} is pinned to the frame, where a spring does nothing; give a point "
             "that moves",
-        )
-
-
-def _wrong_numbers(where: str, spring: Spring) -> Iterator[ModelError]:
-    if spring.stiffness <= 0:
-        yield ModelError(f"{where}.stiffness", f"got {spring.stiffness:g} N/m; give more than 0")
-    if spring.free_length < 0:
-        yield ModelError(
-            f"{where}.free_length",
-            f"got {spring.free_length:g} m; a length cannot be negative, give 0 or more",
         )

@@ -1,4 +1,4 @@
-"""What `equipoise plant --fit` prints: goals and figures before and after."""
+"""What `equipoise plant fit` prints: goals and figures before and after."""
 
 from __future__ import annotations
 
