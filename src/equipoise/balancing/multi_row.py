@@ -143,7 +143,7 @@ class Rows:
         return Periodic(_padded([Periodic.of(one, turns).amplitudes for one in signals]), turns)
 
     def _alike(self, output: str) -> Periodic | None:
-        """A signal (1, K + 1) that does not depend on where its row is, such as the drive torque."""
+        """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
         one = output_of(output, self.machine)
         if one.needs == "rows" or one.about or one.dimension == "force":
             return None

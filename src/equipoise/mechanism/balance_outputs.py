@@ -62,7 +62,8 @@ def balanced_names(machine: Machine) -> list[str]:
     names = [
         one.named(item).removeprefix("rows.")
         for one in DECLARED.values()
-        if not one.reason and (one.needs != "rows" or machine.rows)
+        if not one.reason
+        and (one.needs != "rows" or machine.rows)
         and not (one.is_family and one.part in ("x", "y"))
         for item in one.members(machine)
     ]

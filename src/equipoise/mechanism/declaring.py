@@ -108,6 +108,14 @@ class Declared:
         """Whether its name stands for a vector, of which it is the size."""
         return self.part == "size"
 
+    @property
+    def is_split(self) -> bool:
+        """Whether it can be told by cause and by link: it is linear, and a force of one row.
+
+        Gears are too, on the flank that the whole load decides.
+        """
+        return self.needs == "masses" and (not self.reason or self.name == "gears.{}")
+
     def named(self, item: str) -> str:
         """The name of a member."""
         return self.name.replace("{}", item)
@@ -163,6 +171,21 @@ class Declared:
         assert self.read is not None
         whole = self.read(found, item) if self.is_family else self.read(found)
         return np.asarray(getattr(whole, "value", whole))
+
+
+@dataclass(frozen=True)
+class Found:
+    """What outputs are read of where it is no analysis: a motion, and forces that belong to it.
+
+    forces : such as a `Regressor` or `Split`, whose arrays have more axes before the last.
+    """
+
+    motion: Any
+    forces: Any
+
+    @property
+    def machine(self) -> Any:
+        return self.motion.machine
 
 
 DECLARED: dict[str, Declared] = {}

@@ -14,13 +14,14 @@ from equipoise.mechanism.declaring import (
     DECLARED,
     GROUPS,
     Declared,
+    Found,
     declared,
     declaring,
     matches,
     output,
 )
 
-__all__ = ["DECLARED", "GROUPS", "Declared", "declared", "declaring", "matches", "output"]
+__all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
 """What `declaring` has is had from here, where something is declared."""
 
 FRAME = "frame"

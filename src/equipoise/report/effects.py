@@ -7,7 +7,6 @@ from math import pi
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
-from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import PlantingFigures
@@ -17,6 +16,13 @@ from equipoise.report.findings import Findings
 from equipoise.report.helps import nothing_told
 from equipoise.report.notes import noted
 from equipoise.report.numbers import PER_RPM, about, angle, change, number
+from equipoise.results.naming import (
+    MEASURES,
+    objective_named,
+    output_named,
+    scaled,
+    unit_of_measure,
+)
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import Sweep
 
@@ -231,4 +237,4 @@ def _figure(balanced: Balanced, name: str, count: int) -> tuple[str, float, str]
     label = _headed(output_named(output, count), say(MEASURES[measure]))
     if output.startswith("gauges"):
         return label, *scaled(si_unit(Objective(output), balanced.original))
-    return label, *scaled(unit_of(output, measure))
+    return label, *scaled(unit_of_measure(output, measure))

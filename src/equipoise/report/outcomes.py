@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi
 
-from equipoise.balancing.naming import scaled
 from equipoise.i18n import say
 from equipoise.report.findings import Findings
 from equipoise.report.numbers import PER_RPM, angle, brief
+from equipoise.results.naming import scaled
 
 
 def vibration_told(found: Findings) -> Iterator[str]:

@@ -8,15 +8,16 @@ from math import cos, pi, sin
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.naming import CAUSES, joint_named, objective_named
 from equipoise.errors import UsageError
 from equipoise.i18n import say
+from equipoise.mechanism.outputs import joint_named
 from equipoise.report.document import Answer, Tile
 from equipoise.report.findings import Findings
 from equipoise.report.helps import good_already, helps_told
 from equipoise.report.numbers import PER_RPM, angle, brief, change, percent
 from equipoise.report.outcomes import planting_told, vibration_told
 from equipoise.report.shaking import Shaking, shares
+from equipoise.results.naming import CAUSES, objective_named
 from equipoise.signals import Figures
 
 SMALL = 0.005

@@ -6,15 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from equipoise.balancing.naming import CAUSES, body_named, joint_named, output_named
 from equipoise.i18n import say
 from equipoise.mechanism.assessment import FourBar
 from equipoise.mechanism.dynamics import JointForce, SliderForce
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.report.document import Block, Points, Row, Table
 from equipoise.report.numbers import PER_RPM, angle, number, percent, place, span
 from equipoise.report.shaking import shares
 from equipoise.results.analysis import Analysis
+from equipoise.results.naming import CAUSES, output_named
 from equipoise.signals import Figures, figures
 
 MOST_ORDERS = 8

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.results.naming import output_named
+from equipoise.results.outputs import unit_of
 from equipoise.terminal.tables import Row, angle, number, table
 
 if TYPE_CHECKING:
@@ -21,12 +23,6 @@ KINDS = {"zero": "zero", "sine": "a pure sine of the crank angle"}
 SHOWN = {"kg": ("kg", 1.0), "kg m": ("kg mm", 1e3), "kg m2": ("kg mm2", 1e6)}
 """Unit of a combination, and how many of it make the SI unit."""
 
-OUTPUTS = {
-    "shaking_force.x": ("Shaking force along x", "N"),
-    "shaking_force.y": ("Shaking force along y", "N"),
-    "shaking_moment": ("Shaking moment", "N m"),
-    "drive_torque": ("Drive torque", "N m"),
-}
 CHANGES = {
     "mass": ("kg", 1.0),
     "center_x": ("mm", 1e-3),
@@ -79,7 +75,7 @@ def print_added(added: Added) -> None:
 
 def print_sensitivities(found: Sensitivities, zero: float = 0.0) -> None:
     """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
-    title, unit = OUTPUTS[found.output]
+    title, unit = output_named(found.output).capitalize(), unit_of(found.output)
     print(found.machine.title)
     if zero:
         print(f"crank angles from {angle(zero)} deg")

@@ -11,7 +11,6 @@ from matplotlib.patches import Patch
 
 from equipoise.balancing.effects import SCALARS, VECTORS, Effects
 from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
@@ -26,6 +25,7 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
+from equipoise.results.naming import objective_named
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
