@@ -57,7 +57,7 @@ def orders_figures(found: Balanced) -> Iterator[Figure]:
         read = {name: _read(found, drawn[name]) for name in names}
         last = max(last_order(one) for one in read.values())
         for axes, name in zip(panels, names, strict=True):
-            rotation = output_of(drawn[name].output, found.original).quantity == "torque"
+            rotation = output_of(drawn[name].output, found.original).dimension == "torque"
             name_panel(axes, _named(found, drawn[name]))
             bars(axes, read[name], COLORS, rotation, last)
         name_x(figure, say("order: events in one turn of the crank"))
