@@ -227,7 +227,8 @@ class Present:
     @property
     def frame_moment(self) -> Array:
         start = self.effects._start
-        return start.frame_moment + kernels.cross(start.about - self.about, start.frame_force.value)
+        shift = kernels.cross(start.about - self.about, start.frame_force.value)
+        return np.asarray(start.frame_moment + shift)
 
     @property
     def drive_torque(self) -> Array:

@@ -9,10 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from equipoise.balancing.effects import SCALARS, VECTORS, Effects
+from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.i18n import say
-from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
+from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
 from equipoise.plotting.style import FAINT, LINES, MAIN
@@ -82,8 +82,7 @@ def _is_drawn(found: Balanced, objective: Objective) -> bool:
     output = objective.output
     if output in OF_ROWS:
         return found.phasing is not None
-    name = output.removesuffix(".x").removesuffix(".y")
-    return name in (*VECTORS, *SCALARS) or name.startswith(JOINTS)
+    return not output.startswith(GAUGES)
 
 
 def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tuple[Array, Array]:
