@@ -281,7 +281,7 @@ def animate(
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
-    from equipoise.animation.limits import check_seconds, check_width
+    from equipoise.figures.stage import check_seconds, check_width
     from equipoise.schema.models import load
     from equipoise.schema.output import write
 
@@ -321,17 +321,17 @@ def _kind(out: str) -> str:
 
 def _angles_of(kind: str, seconds: float) -> int:
     """Crank angles in a turn: so many for each frame that paths are smooth."""
-    from equipoise.animation.film import in_a_turn
+    from equipoise.figures.film import in_a_turn
 
     frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
     return frames * ceil(LEAST_ANGLES / frames)
 
 
 def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
-    from equipoise.animation import film
-    from equipoise.animation.svg import animated_svg
-    from equipoise.plotting.stage import Arrow
-    from equipoise.scene import Scene
+    from equipoise.figures import film
+    from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
+    from equipoise.symbols.scene import Scene
 
     scene = Scene.of(found.motion)
     if options["traced"] is None:

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
     INK,

@@ -157,9 +157,9 @@ def _sections(
 
 
 def _animation(found: Findings) -> str:
-    from equipoise.animation.svg import animated_svg
-    from equipoise.plotting.stage import Arrow
-    from equipoise.scene import Scene
+    from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
+    from equipoise.symbols.scene import Scene
 
     analysis = found.analysis
     scene = Scene.of(analysis.motion)

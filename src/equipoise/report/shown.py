@@ -67,7 +67,7 @@ def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
 
 
 def _planting(figures: PlantingFigures) -> Iterator[Entry]:
-    from equipoise.plotting.pathview import path_figure
+    from equipoise.figures.path import path_figure
     from equipoise.plotting.signals import joints_figure, ratio_figure, tip_figures, torque_figure
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
@@ -155,7 +155,7 @@ def _modes(found: Findings) -> Iterator[Entry]:
 
 
 def _balance(balanced: Balanced) -> Iterator[Entry]:
-    from equipoise.plotting.balancing.changes import changes_figure
+    from equipoise.figures.changes import changes_figure
     from equipoise.plotting.balancing.orders import orders_figures
     from equipoise.plotting.balancing.phases import phases_figure, together_figure
 

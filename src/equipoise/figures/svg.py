@@ -10,19 +10,18 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from hashlib import sha256
 from html import escape
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.animation.limits import check_seconds, check_width
+from equipoise.figures.moving import Moving, Part, Stroke, laid_out
+from equipoise.figures.stage import Arrow, Label, Moves, check_seconds, check_width
 from equipoise.i18n import say
-from equipoise.plotting.captions import Label, size_of_type
-from equipoise.plotting.cartoon import DARK, LIGHT, Cartoon, Colors, Part, cartoon
-from equipoise.plotting.shapes import LOOKS, Look, Shape, runs
-from equipoise.plotting.stage import Arrow, Track
+from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, pixels
 
 if TYPE_CHECKING:
-    from equipoise.scene import Scene
+    from equipoise.symbols.scene import Scene
 
 MOST_STEPS = 1500
 """Frames in a cycle, so that the text stays small."""
@@ -43,8 +42,8 @@ def animated_svg(
     """A linkage that moves, the same text on every run.
 
     Several of them fit into one page.  Where the page has colours of its own, it gives them as the
-    custom properties ``--linkage-paper``, ``-ink``, ``-lines``, ``-faint``, ``-pale``, ``-wheel``,
-    ``-main`` and ``-stress``.
+    custom properties ``--linkage-paper``, ``-ink``, ``-lines`` and so on, by the names in
+    `symbols.looks.LIGHT`.
 
     Parameters
     ----------
@@ -61,17 +60,17 @@ def animated_svg(
     """
     check_seconds(seconds)
     check_width(width)
-    drawn = cartoon(scene, traced, frames, width, arrow)
+    drawn = laid_out(scene, traced, frames, width, arrow)
     if drawn.stage.turns * frames > MOST_STEPS:
         frames = max(1, int(MOST_STEPS / drawn.stage.turns))
-        drawn = cartoon(scene, traced, frames, width, arrow)
-    tracks = list({id(part.track): part.track for part in drawn.parts if part.track}.values())
-    numbers = {id(track): number for number, track in enumerate(tracks, 1)}
+        drawn = laid_out(scene, traced, frames, width, arrow)
+    every = list({id(part.moves): part.moves for part in drawn.parts if part.moves}.values())
+    numbers = {id(moves): number for number, moves in enumerate(every, 1)}
     behind, before = (
         "\n".join(_group(part, numbers) for part in parts) for parts in (drawn.behind, drawn.before)
     )
     shapes = "\n".join([behind, *map(_text, drawn.labels), before])
-    moves = [list(_steps(track, drawn.stage.times)) for track in tracks]
+    moves = [list(_steps(one, drawn.stage.times)) for one in every]
     mark = f"e{sha256(repr((shapes, moves, seconds)).encode()).hexdigest()[:8]}"
     lasting = seconds * drawn.stage.turns
     style = "\n".join([*_colors(mark, drawn), *_motions(mark, moves, lasting, drawn.stage.closed)])
@@ -99,55 +98,54 @@ def _description(scene: Scene, traced: Collection[str]) -> str:
 
 
 def _group(part: Part, numbers: dict[int, int]) -> str:
-    shapes = "".join(_shapes(part.shapes))
-    if part.track is None:
-        return f"<g>{shapes}</g>"
-    track = part.track
-    at = f"translate({_xy(track.place[0])})rotate({_short(np.degrees(track.angle[0]))})"
-    if _stretches(track):
-        at += f"scale({_short(track.stretch[0], 4)} 1)"
-    return f'<g class="m m{numbers[id(track)]}" transform="{at}">{shapes}</g>'
+    strokes = "".join(_strokes(part.strokes))
+    if part.moves is None:
+        return f"<g>{strokes}</g>"
+    moves = part.moves
+    at = f"translate({_xy(moves.place[0])})rotate({pixels(np.degrees(moves.angle[0]))})"
+    if _stretches(moves):
+        at += f"scale({pixels(moves.stretch[0], 4)} 1)"
+    return f'<g class="m m{numbers[id(moves)]}" transform="{at}">{strokes}</g>'
 
 
-def _shapes(shapes: tuple[Shape, ...]) -> Iterator[str]:
-    for run in runs(shapes):
-        look = run[0].look
-        if not run[0].radius:
-            yield f'<path class="{look}" d="{"".join(map(_path, run))}"/>'
+def _strokes(strokes: tuple[Stroke, ...]) -> Iterator[str]:
+    for (role, round_), run in groupby(strokes, lambda one: (one.role, one.radius > 0)):
+        if not round_:
+            yield f'<path class="{role}" d="{"".join(map(_path, run))}"/>'
             continue
-        for shape in run:
-            x, y = _short(shape.points[0].real), _short(shape.points[0].imag)
-            yield f'<circle class="{look}" cx="{x}" cy="{y}" r="{_short(shape.radius)}"/>'
+        for one in run:
+            x, y = pixels(one.points[0].real), pixels(one.points[0].imag)
+            yield f'<circle class="{role}" cx="{x}" cy="{y}" r="{pixels(one.radius)}"/>'
 
 
-def _path(shape: Shape) -> str:
-    return f"M{'L'.join(map(_xy, shape.points))}{'Z' if shape.closed else ''}"
+def _path(stroke: Stroke) -> str:
+    return f"M{'L'.join(map(_xy, stroke.points))}{'Z' if stroke.closed else ''}"
 
 
 def _text(label: Label) -> str:
-    x, y = _short(label.place.real), _short(label.place.imag)
+    x, y = pixels(label.place.real), pixels(label.place.imag)
     return (
         f'<text class="{label.color}" x="{x}" y="{y}" text-anchor="{label.anchor}">'
         f"{escape(label.text)}</text>"
     )
 
 
-def _steps(track: Track, times: Any) -> Iterator[str]:
-    """Keyframes of a track."""
-    stretched = _stretches(track)
+def _steps(moves: Moves, times: Any) -> Iterator[str]:
+    """Keyframes of what moves."""
+    stretched = _stretches(moves)
     for time, place, angle, stretch in zip(
-        times, track.place, np.degrees(track.angle), track.stretch, strict=True
+        times, moves.place, np.degrees(moves.angle), moves.stretch, strict=True
     ):
-        x, y = _short(place.real), _short(place.imag)
-        by = f"scale({_short(stretch, 4)},1)" if stretched else ""
+        x, y = pixels(place.real), pixels(place.imag)
+        by = f"scale({pixels(stretch, 4)},1)" if stretched else ""
         yield (
-            f"{_short(100 * time, 3)}%{{transform:translate({x}px,{y}px)"
-            f"rotate({_short(angle)}deg){by}}}"
+            f"{pixels(100 * time, 3)}%{{transform:translate({x}px,{y}px)"
+            f"rotate({pixels(angle)}deg){by}}}"
         )
 
 
-def _stretches(track: Track) -> bool:
-    return bool(np.any(track.stretch != 1))
+def _stretches(moves: Moves) -> bool:
+    return bool(np.any(moves.stretch != 1))
 
 
 def _motions(mark: str, moves: list[list[str]], seconds: float, closed: bool) -> Iterator[str]:
@@ -162,21 +160,21 @@ def _motions(mark: str, moves: list[list[str]], seconds: float, closed: bool) ->
     yield f"@media print{{.{mark} .m{{animation:none}}}}"
 
 
-def _colors(mark: str, drawn: Cartoon) -> Iterator[str]:
+def _colors(mark: str, drawn: Moving) -> Iterator[str]:
     unit = drawn.stage.unit
-    used = {shape.look for part in drawn.parts for shape in part.shapes}
+    used = {stroke.role for part in drawn.parts for stroke in part.strokes}
     yield f".{mark}{{{_properties(LIGHT)};max-width:100%;height:auto}}"
     dark = f".{mark}{{{_properties(DARK)}}}"
     yield f"@media screen and (prefers-color-scheme:dark){{{dark}}}"
-    size = size_of_type(drawn.stage)
+    size = drawn.stage.size_of_type
     yield f".{mark} path{{stroke-linecap:round;stroke-linejoin:round}}"
     yield f".{mark} .paper{{fill:var(--paper)}}"
     yield f".{mark}:root{{background:var(--paper)}}"
     for name in sorted(used):
-        yield f".{mark} .{name}{{{_look(LOOKS[name], unit)}}}"
-    yield f".{mark} text{{font:{_short(size)}px 'DejaVu Sans',Verdana,sans-serif;"
+        yield f".{mark} .{name}{{{LOOKS[name].css(unit)}}}"
+    yield f".{mark} text{{font:{pixels(size)}px 'DejaVu Sans',Verdana,sans-serif;"
     yield "dominant-baseline:central;paint-order:stroke;stroke:var(--paper);stroke-width:3px}"
-    larger = f".{mark} text{{font-size:{_short(max(size, SHRUNK * drawn.stage.width))}px}}"
+    larger = f".{mark} text{{font-size:{pixels(max(size, SHRUNK * drawn.stage.width))}px}}"
     yield f"@media (max-width:{NARROW}px){{{larger}}}"
     for color in sorted({label.color for label in drawn.labels}):
         yield f".{mark} text.{color}{{fill:var(--{color})}}"
@@ -186,21 +184,5 @@ def _properties(colors: Colors) -> str:
     return ";".join(f"--{name}:var(--linkage-{name},{color})" for name, color in colors.items())
 
 
-def _look(look: Look, unit: float) -> str:
-    fill = f"var(--{look.fill})" if look.fill else "none"
-    if look.line is None:
-        return f"fill:{fill}"
-    more = ";stroke-linecap:butt" if look.dashes or look.flat else ""
-    if look.dashes:
-        more += f";stroke-dasharray:{' '.join(_short(length * unit) for length in look.dashes)}"
-    return f"fill:{fill};stroke:var(--{look.line});stroke-width:{_short(look.width * unit)}{more}"
-
-
 def _xy(place: complex) -> str:
-    return f"{_short(place.real)} {_short(place.imag)}"
-
-
-def _short(value: float, digits: int = 2) -> str:
-    """A number without needless signs."""
-    text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
-    return "0" if text == "-0" else text
+    return f"{pixels(place.real)} {pixels(place.imag)}"

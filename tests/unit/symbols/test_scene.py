@@ -7,7 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism import kernels
-from equipoise.scene import Scene, hull
+from equipoise.symbols.scene import Scene, hull
 
 NAMES = sorted(eq.examples("linkage"))
 

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.figures.drawing import Panel
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.ground import GroundPath
-from equipoise.plotting.linkage import Sketch, sketch
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
@@ -24,6 +24,18 @@ Array = np.ndarray[Any, Any]
 IN_TURN = 720
 """Places of the path in a turn that are drawn."""
 CM = 100.0
+SKETCHED = 180
+"""Crank angles in a turn by which the ways of blocks are found."""
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.62, 0.15, 0.5, 0.62, 0.22
+"""Inches: margins of the picture, and the gap between the panels."""
+WIDEST, HIGHEST = 9.4, 5.0
+"""Inches: both panels together at most, and their height at most."""
+LEAST = {1: (5.3,), 2: (1.8, 2.3)}
+"""Inches: least width of each panel, by how many there are, for what is written above and below."""
+AHEAD = 2.5
+"""Largest width of the ground panel, over its height."""
+ROOM, ABOVE, BELOW = 0.38, 0.42, 0.52
+"""Inches kept free at the sides of what is drawn, for its labels; and above and below it."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +71,10 @@ class Paths:
         return self.figures["forward_speed"] != 0
 
     @cached_property
-    def drawn(self) -> Sketch:
-        """The machine at the lowest point of the tip."""
-        lowest = self.figures["lowest.crank_angle"]
-        return sketch(Scene.of(move(self.figures.machine, [lowest])))
+    def scene(self) -> Scene:
+        """The machine over its cycle and, last of all, at the lowest point of the tip."""
+        cycle = np.linspace(0, self.curve.period, SKETCHED * self.curve.turns, endpoint=False)
+        return Scene.of(move(self.figures.machine, [*cycle, self.figures["lowest.crank_angle"]]))
 
     def way_of(self, name: str, after: float = 0.0) -> float:
         """When an instant comes for the first time at or after another way."""
@@ -147,3 +159,33 @@ class Paths:
             while first + loop.way < self.start + self.travel:
                 yield complex(self.over_ground(np.array([first]))[0])
                 first += period
+
+
+def panels(paths: Paths) -> list[Panel]:
+    """The panel of the machine, and that of the ground where the machine drives."""
+    held = CM * np.concatenate(
+        [paths.on_machine(paths.cycle), paths.scene.corners_at(-1), paths.tray, [1j * paths.level]]
+    )
+    low, high = float(np.min(held.imag)), float(np.max(held.imag))
+    spans = [(float(np.min(held.real)), float(np.max(held.real)))]
+    if paths.drives:
+        spans.append(_ground_span(paths, AHEAD * (high - low)))
+    across = sum(stop - start for start, stop in spans)
+    sides = 2 * ROOM * len(spans)
+    inch = max(across / (WIDEST - sides), (high - low) / (HIGHEST - ABOVE - BELOW))
+    ends = (low - BELOW * inch, high + ABOVE * inch)
+    row = []
+    for (start, stop), least in zip(spans, LEAST[len(spans)], strict=True):
+        middle, half = (start + stop) / 2, max((stop - start) / 2 + ROOM * inch, least * inch / 2)
+        row.append(Panel(middle - half, middle + half, *ends, inch))
+    return row
+
+
+def _ground_span(paths: Paths, most: float) -> tuple[float, float]:
+    """From where to where the path over ground is shown, cm: less than two hills of a long way."""
+    x = CM * paths.over_ground(paths.ways).real
+    start, stop = float(np.min(x)), float(np.max(x))
+    if stop - start <= most:
+        return start, stop
+    shares = (0.3, 0.7) if paths.figures["forward_speed"] > 0 else (0.7, 0.3)
+    return -most * shares[0], most * shares[1]

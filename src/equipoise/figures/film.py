@@ -4,26 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator
 from io import BytesIO
-from itertools import cycle, islice
+from itertools import combinations, cycle, islice
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.animation.colors import Shades
-from equipoise.animation.limits import check_frames, check_seconds, check_width
 from equipoise.errors import UsageError
-from equipoise.plotting.cartoon import DARK, LIGHT, Cartoon, Colors, cartoon
-from equipoise.plotting.frames import draw_frames
+from equipoise.figures.moving import Moving, laid_out
+from equipoise.figures.stage import Arrow, check_seconds, check_width
+from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors
 
 if TYPE_CHECKING:
-    from equipoise.plotting.stage import Arrow
-    from equipoise.scene import Scene
+    from equipoise.symbols.scene import Scene
 
 Array = np.ndarray[Any, Any]
 Told = Callable[[int, int], None]
 
 RATES = {"gif": 25, "mp4": 30}
 """Frames a second.  Delays of a GIF are whole hundredths of a second."""
+MOST_PIXELS = 600_000_000
+"""In all frames of a film, each taken as square."""
+MOST_COLORS = 255
+"""In a GIF, and the number of one that is not known yet."""
+ENCODING = {"crf": "18", "threads": "1", "bf": "0"}
+"""Options of the encoder: how good, and that its bytes are the same on every run: frames that
+are told from later ones differ now and then."""
 BT_709 = 1
 """Number of the standard by which players turn a film's brightness and hue into colours."""
 
@@ -55,11 +60,11 @@ def gif(
     """
     from PIL import Image
 
-    drawn = _laid_out(scene, traced, seconds, "gif", width, arrow)
+    drawn = _prepared(scene, traced, seconds, "gif", width, arrow)
     colors = DARK if dark else LIGHT
     count = _in_a_cycle(drawn)
     check_frames(count, width)
-    shades = Shades(colors)
+    shades = Shades(drawn, colors)
     pictures = []
     for frame in _counted(_cycle(drawn, colors), count, told):
         picture = Image.fromarray(shades.numbers(frame))
@@ -93,14 +98,14 @@ def mp4(
     """
     av = _library()
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
-    drawn = _laid_out(scene, traced, seconds, "mp4", width, arrow)
+    drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
     whole = _in_a_cycle(drawn)
     count = whole if turns is None else max(1, round(whole * turns / drawn.stage.turns))
     check_frames(count, width)
     frames = islice(cycle(_cycle(drawn, DARK if dark else LIGHT)), count)
     file = BytesIO()
     with av.open(file, "w", "mp4", options={"fflags": "+bitexact"}) as film:
-        stream = film.add_stream("libx264", RATES["mp4"], {"crf": "18", "threads": "1"})
+        stream = film.add_stream("libx264", RATES["mp4"], ENCODING)
         stream.width, stream.height, stream.pix_fmt = width, drawn.stage.height, "yuv420p"
         for name in ("colorspace", "color_primaries", "color_trc"):
             setattr(stream.codec_context, name, BT_709)
@@ -131,18 +136,18 @@ def _library() -> Any:
     return av
 
 
-def _laid_out(
+def _prepared(
     scene: Scene,
     traced: Collection[str],
     seconds: float,
     kind: str,
     width: int,
     arrow: Arrow | None,
-) -> Cartoon:
+) -> Moving:
     check_seconds(seconds)
     check_width(width)
     frames = in_a_turn(kind, seconds)
-    drawn = cartoon(scene, traced, frames, width, arrow)
+    drawn = laid_out(scene, traced, frames, width, arrow)
     if round(frames * drawn.stage.turns) > (angles := len(scene.crank_angle)):
         raise UsageError(
             f"got {angles} crank angles, too few for {frames} frames in a turn; give more of them"
@@ -150,13 +155,15 @@ def _laid_out(
     return drawn
 
 
-def _in_a_cycle(drawn: Cartoon) -> int:
+def _in_a_cycle(drawn: Moving) -> int:
     """Frames until the motion is where it began; without a cycle it goes back the way it came."""
     steps = len(drawn.stage.times) - 1
     return steps if drawn.stage.closed else 2 * steps
 
 
-def _cycle(drawn: Cartoon, colors: Colors) -> Iterator[Array]:
+def _cycle(drawn: Moving, colors: Colors) -> Iterator[Array]:
+    from equipoise.figures.frames import draw_frames
+
     frames = draw_frames(drawn, colors)
     if drawn.stage.closed:
         return frames
@@ -169,3 +176,59 @@ def _counted(frames: Iterator[Array], count: int, told: Told | None) -> Iterator
         yield frame
         if told is not None:
             told(done, count)
+
+
+# -- colours of a GIF ------------------------------------------------------------------------------
+
+
+class Shades:
+    """Every colour that is drawn with, and what lies between two of them where edges are smooth.
+
+    All frames share them, so that nothing flickers.
+
+    palette : (n, 3) uint8.
+    """
+
+    def __init__(self, drawn: Moving, colors: Colors) -> None:
+        named = sorted(_colors(drawn), key=list(colors).index)
+        few = [np.frombuffer(bytes.fromhex(colors[name][1:]), np.uint8) for name in named]
+        between = (MOST_COLORS - len(few)) * 2 // (len(few) * (len(few) - 1))
+        parts = np.arange(1, between + 1)[:, None] / (between + 1)
+        mixed = [one + (other.astype(float) - one) * parts for one, other in combinations(few, 2)]
+        self.palette = np.round(np.vstack([*few, *mixed])).astype(np.uint8)
+        self._known = np.full(1 << 24, MOST_COLORS, np.uint8)
+
+    def numbers(self, frame: Array) -> Array:
+        """(height, width, 3) uint8 -> number of the nearest colour, (height, width) uint8."""
+        codes = frame.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
+        found = self._known[codes]
+        new = np.unique(codes[found == MOST_COLORS])
+        if new.size:
+            self._learn(new)
+            found = self._known[codes]
+        return found
+
+    def _learn(self, codes: Array) -> None:
+        few = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.int32)
+        apart = few[:, None] - self.palette.astype(np.int32)
+        self._known[codes] = np.sum(apart**2, axis=-1).argmin(axis=-1)
+
+
+def _colors(drawn: Moving) -> set[str]:
+    """Names of those that are drawn with."""
+    looks = [LOOKS[stroke.role] for part in drawn.parts for stroke in part.strokes]
+    names = {name for look in looks for name in (look.fill, look.line) if name is not None}
+    return names | {label.color for label in drawn.labels} | {"paper"}
+
+
+# -- how long, how large and how many frames a film may be -----------------------------------------
+
+
+def check_frames(count: int, width: int) -> None:
+    """Raise `UsageError` if that is too much to draw."""
+    most = MOST_PIXELS // width**2
+    if count > most:
+        raise UsageError(
+            f"the film has {count} frames; {width} pixels wide it can have {most}: "
+            "give a shorter time, fewer turns, or a smaller width"
+        )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -13,19 +14,18 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
-from equipoise.plotting.captions import size_of_type
-from equipoise.plotting.cartoon import LIGHT, Cartoon, Colors, Part
-from equipoise.plotting.shapes import LOOKS, Look, Shape, runs
+from equipoise.figures.moving import Moving, Part, Stroke
 from equipoise.plotting.style import styled
+from equipoise.symbols.looks import LIGHT, LOOKS, Colors, Look
 
 Array = np.ndarray[Any, Any]
-Stroke = tuple[Any, Path, Any]
+Brushed = tuple[Any, Path, Any]
 """Brush, path, and colour of the inside or none."""
 DOTS = 72
 """An inch, so that a point is a pixel."""
 
 
-def draw_frames(drawn: Cartoon, colors: Colors = LIGHT) -> Iterator[Array]:
+def draw_frames(drawn: Moving, colors: Colors = LIGHT) -> Iterator[Array]:
     """Frames of the motion, each (height, width, 3) uint8; none of them twice."""
     stage = drawn.stage
     canvas: Any = RendererAgg(stage.width, stage.height, DOTS)  # type: ignore[no-untyped-call]
@@ -38,7 +38,7 @@ def draw_frames(drawn: Cartoon, colors: Colors = LIGHT) -> Iterator[Array]:
     image = np.asarray(canvas.buffer_rgba())
     ground = [round(255 * part) for part in to_rgba(colors["paper"])]
 
-    def draw(parts: list[tuple[Part, list[Stroke]]], instant: int) -> None:
+    def draw(parts: list[tuple[Part, list[Brushed]]], instant: int) -> None:
         for part, strokes in parts:
             placed = _placed(part, instant) + upright
             for brush, path, fill in strokes:
@@ -53,23 +53,23 @@ def draw_frames(drawn: Cartoon, colors: Colors = LIGHT) -> Iterator[Array]:
 
 
 def _placed(part: Part, instant: int) -> Affine2D:
-    track = part.track
-    if track is None:
+    moves = part.moves
+    if moves is None:
         return Affine2D()
-    place = track.place[instant]
-    stretched = Affine2D().scale(track.stretch[instant], 1)
-    return stretched.rotate(track.angle[instant]).translate(place.real, place.imag)
+    place = moves.place[instant]
+    stretched = Affine2D().scale(moves.stretch[instant], 1)
+    return stretched.rotate(moves.angle[instant]).translate(place.real, place.imag)
 
 
-def _prepared(canvas: Any, part: Part, colors: Colors, unit: float) -> Iterator[Stroke]:
-    for run in runs(part.shapes):
-        look = LOOKS[run[0].look]
+def _prepared(canvas: Any, part: Part, colors: Colors, unit: float) -> Iterator[Brushed]:
+    for role, run in groupby(part.strokes, lambda stroke: stroke.role):
+        look = LOOKS[role]
         path = Path.make_compound_path(*map(_path, run))
         fill = None if look.fill is None else to_rgb(colors[look.fill])
         yield _brush(canvas, look, colors, unit), path, fill
 
 
-def _path(shape: Shape) -> Path:
+def _path(shape: Stroke) -> Path:
     if shape.radius:
         return Path.circle((shape.points[0].real, shape.points[0].imag), shape.radius)
     corners = np.column_stack([shape.points.real, shape.points.imag])
@@ -90,7 +90,7 @@ def _brush(canvas: Any, look: Look, colors: Colors, unit: float) -> Any:
     return brush
 
 
-def _texts(drawn: Cartoon, colors: Colors) -> tuple[Array, Array]:
+def _texts(drawn: Moving, colors: Colors) -> tuple[Array, Array]:
     """Pixels (P, 4) that texts cover, their colours already weighed, and which (height, width)."""
     stage = drawn.stage
     with styled():
@@ -102,7 +102,7 @@ def _texts(drawn: Cartoon, colors: Colors) -> tuple[Array, Array]:
                 label.place.real / stage.width,
                 1 - label.place.imag / stage.height,
                 label.text,
-                fontsize=size_of_type(stage),
+                fontsize=stage.size_of_type,
                 color=colors[label.color],
                 ha={"start": "left", "middle": "center", "end": "right"}[label.anchor],
                 va="center",

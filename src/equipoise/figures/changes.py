@@ -11,16 +11,23 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, PathPatch
 from matplotlib.path import Path
 
+from equipoise.figures.additions import MM, Mark, Posed, marks, posed_well
+from equipoise.figures.drawing import (
+    Drawn,
+    Panel,
+    Placed,
+    arrow,
+    draw_machine,
+    keep_clear,
+    key_of,
+)
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
-from equipoise.plotting.balancing.looks import MM
-from equipoise.plotting.balancing.pieces import Mark, marks
-from equipoise.plotting.balancing.placed import Placed, placed_well
-from equipoise.plotting.labels import Labels
-from equipoise.plotting.linkage import draw_sketch
-from equipoise.plotting.marks import arrow
-from equipoise.plotting.panels import Panel
-from equipoise.plotting.style import FAINT, INK, LINES, MAIN, STRESS, blank, heading, short, shown
+from equipoise.mechanism.motion import move
+from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import coils, zigzag
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,8 +47,6 @@ FAR = 2.0
 """Over the size of the machine: rooms that are larger do not set the scale."""
 NEAR = 0.12
 """Inches: dots that are nearer to each other look like one."""
-STAND = 0.09
-"""Inches from a pivot to the middle of the stand below it."""
 FILL = 0.45
 """How opaque added masses are."""
 DASHES: Any = {"room": (0, (5, 3)), "gear": (0, (8, 2, 1.5, 2)), "spring": "-"}
@@ -57,34 +62,39 @@ NAMES = {
 
 def changes_figure(found: Balanced) -> Figure:
     """The new machine, as far as can be with nothing on top of each other, and its changes."""
-    placed = placed_well(found.original, found.machine)
-    drawn = marks(placed, found.changes, found.plan)
-    panel = _panel(placed, drawn)
+    posed = posed_well(found.original, found.machine)
+    drawn = marks(posed, found.changes, found.plan)
+    scene = _without_new(posed.scene, Scene.of(move(found.original, [0.0])))
+    panel = _panel(posed, scene, drawn)
     figure = blank(panel.width + LEFT + RIGHT, panel.height + TOP + BOTTOM)
     drive = short(found.machine.drive.link)
     changed = any(one.kind != "room" for one in drawn)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    angle = f"{shown(round(float(np.degrees(placed.crank_angle)), 2))}°"
+    angle = f"{shown(round(float(np.degrees(posed.crank_angle)), 2))}°"
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=angle)
     heading(figure, found.original.title, what, LEFT)
     axes = place(figure, LEFT, BOTTOM, panel.width, panel.height)
     panel.settle(axes)
     axes.set_xlabel(say("x in the frame, mm"))
     axes.set_ylabel(say("y in the frame, mm"))
-    old = Placed(found.original).drawn
-    springs = placed.drawn.springs[: len(old.springs)]
-    circles = placed.drawn.circles[: len(old.circles)]
-    draw_sketch(axes, replace(placed.drawn, springs=springs, circles=circles), MM, panel.inch)
+    machine = Drawn(scene, posed.number, MM, panel.inch)
+    shapes = draw_machine(axes, machine)
     for one in drawn:
-        _draw(axes, one)
-    _label(axes, placed, drawn, panel.inch)
-    legend(figure, _keys(drawn, gears=bool(circles)))
+        _draw(axes, one, machine.unit)
+    _label(axes, machine, shapes, drawn)
+    legend(figure, _keys(drawn, gears=bool(scene.wheels)))
     return figure
 
 
-def _panel(placed: Placed, drawn: list[Mark]) -> Panel:
+def _without_new(scene: Scene, old: Scene) -> Scene:
+    """What there was before, and no centres of mass: what is new is drawn over it."""
+    springs, wheels = scene.springs[: len(old.springs)], scene.wheels[: len(old.wheels)]
+    return replace(scene, springs=springs, wheels=wheels, planned=(), mass_centers={})
+
+
+def _panel(posed: Posed, scene: Scene, drawn: list[Mark]) -> Panel:
     """The part of the plane that holds machine and changes, on one scale."""
-    machine = MM * placed.drawn.corners
+    machine = MM * scene.corners_at(posed.number)
     size = _size(machine)
     shapes = [m.outline for m in drawn if m.kind != "room" or _size(m.outline) <= FAR * size]
     held = np.concatenate([machine, *shapes])
@@ -105,7 +115,8 @@ def _size(places: Array) -> float:
     return float(max(np.ptp(places.real), np.ptp(places.imag)))
 
 
-def _draw(axes: Axes, one: Mark) -> None:
+def _draw(axes: Axes, one: Mark, unit: float) -> None:
+    """unit : of signs, mm."""
     color = COLORS[one.kind]
     x, y = one.outline.real, one.outline.imag
     if one.kind == "move":
@@ -117,9 +128,12 @@ def _draw(axes: Axes, one: Mark) -> None:
         path = Path.make_compound_path(*(_path(outline) for outline in outlines))
         axes.add_patch(PathPatch(path, fc=color, ec="none", alpha=FILL, zorder=3.1))
         axes.add_patch(PathPatch(path, fc="none", ec=color, lw=1.0, zorder=3.2))
+    elif one.kind == "spring":
+        start, end = (complex(z) for z in one.outline)
+        line = zigzag(start, end, coils(abs(end - start), unit)).at(1.0, unit)
+        axes.plot(line.real, line.imag, color=color, label=one.kind, linewidth=1.4, zorder=2.8)
     else:
-        width = 1.6 if one.kind == "spring" else 0.9
-        look: Any = {"linestyle": DASHES[one.kind], "linewidth": width, "zorder": 2.3}
+        look: Any = {"linestyle": DASHES[one.kind], "linewidth": 0.9, "zorder": 2.3}
         axes.plot(x, y, color=color, label=one.kind, **look)
 
 
@@ -138,26 +152,21 @@ def _move(axes: Axes, one: Mark) -> None:
         arrow(axes, old, new, color=color, lw=1.4, mutation_scale=11, zorder=3.5)
 
 
-def _label(axes: Axes, placed: Placed, drawn: list[Mark], inch: float) -> None:
+def _label(axes: Axes, machine: Drawn, shapes: list[Placed], drawn: list[Mark]) -> None:
     """What is changed by how much, and the names of points where there is room."""
     labels = Labels(axes)
-    for around in placed.drawn.outlines.values():
-        outline = MM * np.append(around, around[0])
-        labels.avoid(outline.real, outline.imag)
+    keep_clear(labels, shapes)
     for one in drawn:
         if len(one.outline) > 1:
             labels.avoid(one.outline.real, one.outline.imag, 0.25 if one.kind == "room" else 0.6)
-    places = placed.drawn.places
-    for at in [*(MM * z for z in places.values()), *_dots(drawn)]:
+    for at in _dots(drawn):
         labels.reserve(at.real, at.imag)
-    for pivot in placed.drawn.frame.values():
-        labels.reserve(MM * pivot.real, MM * pivot.imag - STAND * inch, half=6.0)
-    for one, text in _together(drawn, NEAR * inch):
+    for one, text in _together(drawn, NEAR * machine.inch):
         wish = float(np.degrees(np.angle(one.away)))
         labels.put(text, one.at.real, one.at.imag, wish=wish, color=COLORS[one.kind])
     look: Any = {"fontweight": "bold", "color": INK, "near": 5.0, "optional": True}
-    for name, at in places.items():
-        labels.put(short(name), MM * at.real, MM * at.imag, wish=45.0, **look)
+    for name, at in machine.points.items():
+        labels.put(short(name), at.real, at.imag, wish=45.0, **look)
 
 
 def _together(drawn: list[Mark], near: float) -> Iterator[tuple[Mark, str]]:
@@ -201,6 +210,5 @@ def _keys(drawn: list[Mark], gears: bool) -> list[Any]:
             look = {"color": COLORS[kind], "linestyle": DASHES[kind], "linewidth": width}
             found.append(Line2D([], [], label=name, **look))
     if gears:
-        look = {"color": FAINT, "linestyle": (0, (4, 2)), "linewidth": 0.9}
-        found.append(Line2D([], [], label=say("pitch circles of gears"), **look))
+        found.append(key_of("wheel", say("pitch circles of gears")))
     return found
