@@ -24,11 +24,11 @@ from equipoise.balancing.measures import Signal
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.balance_outputs import balanced_names
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, matches
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions

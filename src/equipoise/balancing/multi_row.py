@@ -19,11 +19,11 @@ from equipoise.balancing.effects import Effects, Near, gauge_signals
 from equipoise.balancing.measures import Signal
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, output_of, wrong_objective
 from equipoise.mechanism.dynamics import forces, place_of
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, wrong_objective
 from equipoise.mechanism.support import Row
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic

@@ -18,11 +18,12 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.balance import Measure
 from equipoise.quantities import SI, Dimension
 
 Array = np.ndarray[Any, Any]
 Needs = Literal["motion", "masses", "rows", "support"]
+Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
+"""What is told of an output as one number; see `mechanism.objectives`."""
 Part = Literal["", "x", "y", "size"]
 Read = Callable[..., Any]
 """From an analysis, and the name of the member for families, to values (N,), complex of vectors."""

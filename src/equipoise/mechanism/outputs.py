@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.balance import Measure
 from equipoise.mechanism.declaring import (
     DECLARED,
     GROUPS,
     Declared,
     Found,
+    Measure,
     declared,
     declaring,
     matches,

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.i18n import say
-from equipoise.mechanism.balance_outputs import GAUGES, JOINTS, OF_ROWS, output_of
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
 from equipoise.plotting.style import FAINT, LINES, MAIN
