@@ -18,11 +18,11 @@ from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.selection import far_apart
 
 if TYPE_CHECKING:
+    from equipoise.studies.design_space import Make, Output
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.search import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Make, Output
     from equipoise.studies.tolerances import Cause, Tolerances
     from equipoise.studies.variance import Estimate, Scatter
 
