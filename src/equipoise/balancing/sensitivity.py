@@ -118,7 +118,7 @@ def sensitivities(
 
     Parameters
     ----------
-    output : one of `known_outputs`; the shaking moment is about the drive pivot, the drive torque with
+    output : one of `known_outputs`; moments are about the drive pivot, the drive torque is with
         weight.  The crank's speed is constant, that of the machine.
     angles : crank angles in each turn of the cycle.
 
