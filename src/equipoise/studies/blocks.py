@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from equipoise.balancing.naming import objective_named
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.naming import objective_named
 from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.selection import far_apart
 
