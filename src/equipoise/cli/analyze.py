@@ -58,9 +58,9 @@ def analyze(
     """
     from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     check_belonging("--json", json or None, split=split or None)
     if crank_zero is not None and orders is None:
         raise UsageError("--crank-zero belongs to --orders; give both")

@@ -60,7 +60,7 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.animation.limits import check_seconds, check_width
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.output import write
 
     name = f"{os.path.basename(file).removesuffix('.toml')}.svg" if out is None else out
@@ -72,7 +72,7 @@ def animate(
     check_belonging("--force", force or None, speed=speed)
     check_seconds(seconds)
     check_width(width)
-    machine = load(file)
+    machine = load_linkage(file)
     check_target("--out", name, file, machine)
     if speed is not None:
         machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))

@@ -129,12 +129,12 @@ def balance(
     """
     from equipoise.cli.questions import tell_arrangements, tell_conditions, tell_sensitivities
     from equipoise.cli.wishes import Freed, plan_of
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
     check_belonging("--front", front, points=points)
     check_belonging("--sensitivities", sensitivities, crank_zero=crank_zero)
     check_belonging("--arrangements", arrangements, spacing=spacing)
-    machine = load(file)
+    machine = load_linkage(file)
     if speed is not None:
         machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
     wanted = Wanted(json, csv, plot, format)

@@ -20,14 +20,9 @@ if TYPE_CHECKING:
 
 def check_model_out(model: Machine | Tool, path: str) -> None:
     """A new model file must have a place to go, and so must all that is written beside it."""
-    from equipoise.handheld.model import Tool
     from equipoise.schema.models import files_of
-    from equipoise.schema.tools import files_of_tool
 
-    if isinstance(model, Tool):
-        check_new_files(path, lambda name: files_of_tool(model, name))
-    else:
-        check_new_files(path, lambda name: files_of(model, name))
+    check_new_files(path, lambda name: files_of(model, name))
 
 
 def save_design(model: Machine | Tool, path: str, number: int, of: str) -> None:
@@ -35,21 +30,15 @@ def save_design(model: Machine | Tool, path: str, number: int, of: str) -> None:
 
     of : what it is a design of, such as ``the study "Lengths"``.
     """
-    from equipoise.handheld.model import Tool
     from equipoise.schema.files import printable
     from equipoise.schema.models import files_of, save
-    from equipoise.schema.tools import files_of_tool, save_tool
 
     title = f"{model.title}, design {number}"
     start = f"Design {number} of {of}. Started from: "
     description = f"{start}{model.description}".removesuffix(" Started from: ")
     made: Any = replace(model, title=title, description=description.strip())
-    if isinstance(made, Tool):
-        save_tool(made, path)
-        files = files_of_tool(made, path)
-    else:
-        save(made, path)
-        files = files_of(made, path)
+    save(made, path)
+    files = files_of(made, path)
     print(f"wrote {' and '.join(map(printable, files))}", file=sys.stderr)
 
 

@@ -39,9 +39,9 @@ def check(file: Annotated[str, FILE], /) -> None:
     """
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.schema.tools import load_any
+    from equipoise.schema.models import load
 
-    found = load_any(file)
+    found = load(file)
     if isinstance(found, Tool):
         from equipoise.terminal.check_tool import print_check_of_tool
 
@@ -73,11 +73,8 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     import json
 
     from equipoise.schema.models import json_schema
-    from equipoise.schema.studies import study_schema
-    from equipoise.schema.tools import tool_schema
 
-    schemas = {"linkage": json_schema, "tool": tool_schema, "study": study_schema}
-    print(json.dumps(schemas[_kind(tool, study)](), indent=2))
+    print(json.dumps(json_schema(_kind(tool, study)), indent=2))
 
 
 @app.command

@@ -34,10 +34,10 @@ def modes(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.vibration.free import vibrate_freely
 
-    machine = load(file)
+    machine = load_linkage(file)
     wanted = Wanted(json, None, plot, format)
     wanted.check(file, machine)
     with naming(file):

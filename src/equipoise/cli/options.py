@@ -112,10 +112,10 @@ def check_target(
 
     others : further files that are read or written.
     """
-    from equipoise.schema.models import tables_of
+    from equipoise.schema.models import parts_of
 
-    tables = tables_of(machine).values()
-    sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]
+    folder = os.path.dirname(file)
+    sources = [file, *(os.path.join(folder, part.file) for part in parts_of(machine))]
     check_result_file(option, path, sources, others)
 
 

@@ -73,7 +73,7 @@ def plant(
         With --fit: seed of the random numbers instead of the target file's.
     """
     from equipoise.planting.summary import plant as read_off
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.terminal.units import Units
 
     check_belonging("--csv", csv, angles=angles)
@@ -83,7 +83,7 @@ def plant(
         raise UsageError("--crank-zero has no place in what --fit prints; leave it out")
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
-    machine = load(file)
+    machine = load_linkage(file)
     shown_in = Units.read(units)
     zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
     if speed is not None:

@@ -60,10 +60,10 @@ def respond(
     format
         With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.terminal.units import OF_VIBRATION, Units
 
-    machine = load(file)
+    machine = load_linkage(file)
     wanted = Wanted(json, csv, plot, format)
     wanted.check(file, machine)
     shown_in = Units.read(units, OF_VIBRATION)

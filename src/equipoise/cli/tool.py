@@ -75,7 +75,7 @@ def tool(
     """
     from equipoise.cli.tool_asked import Asked
     from equipoise.cli.tool_parts import PARTS, give
-    from equipoise.schema.tools import load_tool
+    from equipoise.schema.models import load_tool
     from equipoise.terminal.units import OF_VIBRATION, Units
 
     check_belonging("--plot", plot, format=format)

@@ -54,7 +54,7 @@ class Asked:
 
     def check_places(self, csv: str | None, plot: str | None, out: str | None) -> None:
         """Results must have a place to go, before time is spent on them."""
-        from equipoise.schema.tools import files_of_tool, parts_of
+        from equipoise.schema.models import files_of, parts_of
 
         if plot is not None:
             check_folder("--plot", plot)
@@ -63,7 +63,7 @@ class Asked:
             beside = [os.path.join(folder, part.file) for part in parts_of(self.tool) if part.file]
             check_result_file("--csv", csv, [self.file, *beside])
         if out is not None:
-            check_new_files(out, lambda name: files_of_tool(self.tool, name))
+            check_new_files(out, lambda name: files_of(self.tool, name))
 
     @property
     def count(self) -> int:

@@ -243,7 +243,7 @@ def give(
 
 
 def _save(asked: Asked, out: str) -> None:
-    from equipoise.schema.tools import save_tool
+    from equipoise.schema.models import save
 
-    save_tool(asked.better.better, out)
+    save(asked.better.better, out)
     print(f"wrote {out}; next: equipoise tool {out}", file=sys.stderr)

@@ -12,7 +12,6 @@ from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
-    Anything,
     Conditions,
     Frozen,
     Key,
@@ -25,11 +24,14 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Told,
     Whole,
     declared,
     inside,
     key,
 )
+from equipoise.quantities import Dimension, pattern
+from equipoise.quantities.units import NUMBER
 
 Pair = tuple[float, float]
 Shape = Literal["any", "point", "disc", "ring", "sector"]
@@ -38,6 +40,8 @@ CUT = ("disc", "ring", "sector")
 """Shapes cut from a plate, which need a thickness and a density."""
 HOLLOW = ("ring", "sector")
 """Shapes with an inner radius."""
+MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "energy", "length", "angle")
+"""What measures of outputs can be."""
 RANGE = Listing(Quantity("length"), (2,))
 Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
@@ -440,9 +444,10 @@ class Limit(Frozen):
     beside: ClassVar[Keys] = {
         "at_most": Key(
             "at_most",
-            Anything(
-                text='give number and unit in quotes, such as "120 N", or a share of the value '
+            Told(
+                right='give number and unit in quotes, such as "120 N", or a share of the value '
                 'before, such as "80 %"',
+                schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
             ),
             '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
             example="120 N",

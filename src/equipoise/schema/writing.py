@@ -8,6 +8,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
+    PLANES,
     Anything,
     Direction,
     File,
@@ -25,12 +26,13 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Told,
     Whole,
     all_keys,
     keys_of,
 )
 from equipoise.quantities import format_exact
-from equipoise.schema.reading import PLANES, Place, written_place, written_point
+from equipoise.schema.reading import Place, written_place, written_point
 
 Namer = Callable[[str, str, Any], str]
 """Name of the file for the key at a place: takes the place, its sort and what lies in it."""
@@ -70,7 +72,7 @@ class Writer:
 
 def plain_default(one: Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
-    if one.shown is not None or one.required or one.default is None:
+    if one.shown is not None or one.required or one.default is None or one.endless:
         return one.shown
     if isinstance(one.kind, Table | Tables | File):
         return None
@@ -192,6 +194,7 @@ WRITERS: dict[type[Kind], Callable[[Any, Any, Place, Writer], Any]] = {
     Table: _table,
     Tables: _tables,
     Text: _same,
+    Told: _same,
     Whole: _same,
 }
 
@@ -213,10 +216,11 @@ def _headed(name: str, kind: Kind, value: Any) -> Iterator[str]:
     if isinstance(kind, Tables):
         for item in value:
             yield from _blocks(f"[[{name}]]", name, kind.item.type, item)
+    elif isinstance(kind, Named) and not isinstance(kind.item, Table):
+        yield "".join([f"[{name}]\n", *_lines(value)])
     elif isinstance(kind, Named):
-        assert isinstance(kind.item, Table)
         for key, item in value.items():
-            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)
+            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)  # type: ignore[attr-defined]
     elif isinstance(kind, Table):
         yield from _blocks(f"[{name}]", name, kind.type, value)
 
@@ -247,7 +251,7 @@ def _lines(table: Mapping[str, Any], prefix: str = "") -> Iterable[str]:
         if isinstance(value, dict) and not _is_polar(value):
             yield from _lines(value, f"{prefix}{_key(key)}.")
         else:
-            yield f"{prefix}{_key(key)} = {_value(value)}\n"
+            yield f"{prefix}{_key(key)} = {value_text(value)}\n"
 
 
 def _is_polar(table: Mapping[str, Any]) -> bool:
@@ -255,13 +259,14 @@ def _is_polar(table: Mapping[str, Any]) -> bool:
     return set(table) == {"distance", "direction"} and isinstance(table["distance"], str)
 
 
-def _value(value: Any) -> str:
+def value_text(value: Any) -> str:
+    """A plain value as it stands in TOML, on one line."""
     import tomli_w
 
     if isinstance(value, list):  # tomli_w spreads lists over several lines
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, dict):
-        items = ", ".join(f"{_key(name)} = {_value(item)}" for name, item in value.items())
+        items = ", ".join(f"{_key(name)} = {value_text(item)}" for name, item in value.items())
         return f"{{ {items} }}"
     return tomli_w.dumps({"k": value}).removeprefix("k = ").removesuffix("\n")
 

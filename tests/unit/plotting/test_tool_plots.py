@@ -40,7 +40,7 @@ from equipoise.plotting.tool.response import speed_shown
 from equipoise.plotting.tool.shaft import MOST
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.tool.studies import UNITS, zeros_of
-from equipoise.schema.tools import load_tool
+from equipoise.schema.models import load_tool
 from unit.plotting.samples import words
 from unit.plotting.tool_samples import MACHINES, SPEEDS, drawn_anew, hashed, machine, pictures
 from unit.plotting.vibration_samples import check_texts

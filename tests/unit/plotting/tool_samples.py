@@ -17,7 +17,7 @@ from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
 from equipoise.plotting import tool as plotting
 from equipoise.plotting.style import render
-from equipoise.schema.tools import load_tool
+from equipoise.schema.models import load_tool
 
 Drawn = dict[str, Figure]
 SPEEDS = np.linspace(105.0, 942.0, 60)

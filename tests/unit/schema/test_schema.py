@@ -13,8 +13,8 @@ from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
 from equipoise.schema import dumps, examples, json_schema, load, loads
+from equipoise.schema.models import tool_schema
 from equipoise.schema.studies import load_study, study_schema
-from equipoise.schema.tools import tool_schema
 from unit.schema.samples import EVERYTHING, FOUR_BAR
 
 FOLDER = files("equipoise.schema")

@@ -13,9 +13,9 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
-from equipoise.handheld.shaft import Section, Tube
+from equipoise.handheld.section import Section, Tube
 from equipoise.schema import examples, load, loads
-from equipoise.schema.tools import dumps_tool, load_any, load_tool, loads_tool, tool_schema
+from equipoise.schema.models import dumps, load_any, load_tool, loads_tool, tool_schema
 from unit.schema.samples import FOUR_BAR
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 
@@ -80,14 +80,14 @@ def test_materials(material: str) -> None:
     tube = f'outer_diameter = "26 mm"\nmaterial = "{material}"'
     old = 'mass_per_length = "2.3 kg/m"\nbending_stiffness = "980 N m^2"'
     text = changed(old, tube)
-    assert f'material = "{material}"\n' in dumps_tool(loads_tool(text))
+    assert f'material = "{material}"\n' in dumps(loads_tool(text))
     VALIDATOR.validate(tomllib.loads(text))
 
 
 @pytest.mark.parametrize("text", [TOOL, EVERY_TOOL], ids=["tool", "everything"])
 def test_schema_accepts(text: str) -> None:
     VALIDATOR.validate(tomllib.loads(text))
-    VALIDATOR.validate(tomllib.loads(dumps_tool(loads_tool(text))))
+    VALIDATOR.validate(tomllib.loads(dumps(loads_tool(text))))
 
 
 def test_examples_of_tools() -> None:
@@ -97,7 +97,7 @@ def test_examples_of_tools() -> None:
     for name, title in names.items():
         tool = load_tool(name)
         assert tool.title == title
-        VALIDATOR.validate(tomllib.loads(dumps_tool(tool)))
+        VALIDATOR.validate(tomllib.loads(dumps(tool)))
 
 
 # -- one kind of file for another ------------------------------------------------------------------
