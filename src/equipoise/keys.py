@@ -300,11 +300,13 @@ class Table(Kind):
     of : the class, or ``module:name`` of one that takes time to import.
     flat : its keys stand among those of the table that has it.
     headed : inside of another table it is written below a header of its own.
+    without : keys of a flat one that do not stand there.
     """
 
     of: Any
     flat: bool = False
     headed: bool = False
+    without: tuple[str, ...] = ()
 
     @property
     def wanted(self) -> str:  # type: ignore[override]
@@ -563,7 +565,11 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     found: dict[str, Key] = {}
     for one in keys_of(cls).values():
         kind = one.kind
-        found |= all_keys(kind.type) if isinstance(kind, Table) and kind.flat else {one.name: one}
+        if isinstance(kind, Table) and kind.flat:
+            inner = all_keys(kind.type).items()
+            found |= {name: own for name, own in inner if name not in kind.without}
+        else:
+            found[one.name] = one
     return found
 
 

@@ -103,6 +103,7 @@ class Excitation(Frozen):
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [one]} for one in CAUSES],
         "dependentRequired": {"direction": ["force"]},
+        "allOf": [{"properties": {"ratio": {"not": {"const": 0}}}}],
     }
 
     name: str = inside(Text())

@@ -384,6 +384,8 @@ class Phases(Frozen):
 class Objective(Frozen):
     """What is to become small: a measure of an output."""
 
+    file_order = ("output", "measure", "orders", "about", "speeds", "weight")
+
     output: str = key(
         Text(),
         "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
@@ -402,6 +404,7 @@ class Objective(Frozen):
         "those that count: events in one turn of the crank, 0 for the mean; all if left out",
         default=(),
         example=[1, 2],
+        at_least=0,
     )
     about: str | None = key(
         Text(),
@@ -454,7 +457,7 @@ class Limit(Frozen):
         )
     }
 
-    objective: Objective = key(Table(Objective, flat=True))
+    objective: Objective = key(Table(Objective, flat=True, without=("weight",)))
     at_most: float | None = inside(Number(), default=None)
     ratio: float | None = inside(Number(), default=None)
 

@@ -61,7 +61,7 @@ def find(content: Content, kind: Kind, path: str) -> Found:
             return Found(place, rest=written_place(steps[count:]))
         here = _below(content, kind, path, (*place, step), here)
         place = (*place, step)
-    number = read_number(here, isinstance(here, int) and isinstance(_kind_at(kind, place), Whole))
+    number = read_number(here, isinstance(here, int) and is_whole(kind, place))
     if number is None:
         raise ModelError(path, _no_number(path, here))
     return Found(place, number)
@@ -135,6 +135,11 @@ def _key_at(kind: Kind, place: Place) -> Key | None:
     """The key at the end of a place; None where it is a name of the user's, or unknown."""
     above = _kind_at(kind, place[:-1])
     return all_keys(above.type).get(str(place[-1])) if isinstance(above, Table) else None
+
+
+def is_whole(kind: Kind, place: Place) -> bool:
+    """Whether only whole numbers will do at a place."""
+    return isinstance(_kind_at(kind, place), Whole)
 
 
 def _kind_at(kind: Kind, place: Place) -> KeyKind | None:

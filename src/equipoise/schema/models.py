@@ -349,6 +349,6 @@ def examples(kind: FileKind | None = None) -> dict[str, str]:
 
 def json_schema(kind: FileKind = "linkage") -> dict[str, Any]:
     """JSON Schema (draft 2020-12) of the file of a linkage, tool or study, for editors."""
-    from equipoise.schema.json_schema import schema_of
+    from equipoise.schema.schemas import schema_of
 
     return schema_of(kind)

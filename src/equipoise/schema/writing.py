@@ -51,10 +51,7 @@ class Writer:
 
     def content(self, of: type[Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
         """Content of the table of an object as plain values."""
-        try:
-            given = self.makers.get(of, of.to_table)(value)
-        except ModelError as error:
-            raise ModelError(f"{written_place(place)}{error.where}", error.what) from error
+        given = _given(self.makers.get(of, of.to_table), value, place)
         table: dict[str, Any] = {}
         for name, one in keys_of(of).items():
             if name not in given:
@@ -70,13 +67,24 @@ class Writer:
         return WRITERS[type(kind)](kind, value, place, self)
 
 
+def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: Place) -> dict[str, Any]:
+    """What the file says of an object; errors tell its place."""
+    try:
+        return to_table(value)
+    except ModelError as error:
+        within = written_place(place)
+        inner = "." if within and error.where else ""
+        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
+
+
 def plain_default(one: Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
     if one.shown is not None or one.required or one.default is None or one.endless:
         return one.shown
     if isinstance(one.kind, Table | Tables | File):
         return None
-    return Writer({}).plain(one.kind, one.default, ())
+    default = Writer({}).plain(one.kind, one.default, ())
+    return None if isinstance(default, list | dict) and not default else default
 
 
 def beside(of: type[Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
@@ -97,7 +105,7 @@ def _beside(kind: Kind, value: Any, place: Place) -> Iterator[tuple[str, str, An
         for name, item in value.items():
             yield from _beside(kind.item, item, (*place, name))
     elif isinstance(kind, Table):
-        for name, item in kind.type.to_table(value).items():
+        for name, item in _given(kind.type.to_table, value, place).items():
             one = keys_of(kind.type)[name]
             inner = place if isinstance(one.kind, Table) and one.kind.flat else (*place, name)
             for where, sort, found, file in _beside(one.kind, item, inner):

@@ -15,11 +15,11 @@ from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
 from equipoise.handheld.section import Section, Tube
 from equipoise.schema import examples, load, loads
-from equipoise.schema.models import dumps, load_any, load_tool, loads_tool, tool_schema
+from equipoise.schema.models import dumps, json_schema, load_linkage, load_tool, loads_tool
 from unit.schema.samples import FOUR_BAR
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 
-VALIDATOR = Draft202012Validator(tool_schema())
+VALIDATOR = Draft202012Validator(json_schema("tool"))
 RPM = 2 * pi / 60
 
 
@@ -107,10 +107,10 @@ def test_a_tool_is_no_linkage(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(TOOL)
     with pytest.raises(ModelError) as caught:
-        load(path)
+        load_linkage(path)
     said = "this is the file of a tool, with a table [shaft]; use `equipoise tool FILE`"
     assert str(caught.value) == f"{path}: {said}"
-    assert load_any(path) == loads_tool(TOOL)
+    assert load(path) == loads_tool(TOOL)
 
 
 def test_a_linkage_is_no_tool(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_linkage_is_no_tool(tmp_path: Path) -> None:
     path.write_text(FOUR_BAR)
     with pytest.raises(ModelError, match="file of a linkage, without a table"):
         load_tool(path)
-    assert load_any(path) == loads(FOUR_BAR)
+    assert load(path) == loads(FOUR_BAR)
 
 
 @pytest.mark.parametrize("text", ["schema = 1\n", "schema = 1\n[shaft]\n[drive]\n", "x", ""])
@@ -126,7 +126,7 @@ def test_what_tells_neither_is_read_as_a_linkage(text: str, tmp_path: Path) -> N
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(ModelError) as of_any:
-        load_any(path)
+        load(path)
     with pytest.raises(ModelError) as of_linkage:
         load(path)
     assert str(of_any.value) == str(of_linkage.value)

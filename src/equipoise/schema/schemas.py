@@ -76,10 +76,11 @@ def _property(one: Key, definitions: Definitions) -> Schema:
     default = plain_default(one)
     if default not in (None, [], {}):
         schema["default"] = default
-    if type(one.kind) is Number:
+    if type(innermost(one.kind)) is Number:
         limits = {"minimum": one.at_least, "exclusiveMinimum": one.above,
                   "exclusiveMaximum": one.below}  # fmt: skip
-        schema |= {name: limit for name, limit in limits.items() if limit is not None}
+        at = schema if type(one.kind) is Number else schema.get("items", {})
+        at |= {name: limit for name, limit in limits.items() if limit is not None}
     return schema
 
 
