@@ -24,6 +24,7 @@ from sybil.example import SybilFailure
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker has a core, not all of them
+os.environ["EQUIPOISE_PROGRESS"] = "off"  # a busy machine must not change what a command prints
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts what runs behind it
     signal.signal(signal.SIGINT, signal.default_int_handler)  # commands that tests stop must hear
 settings.register_profile("equipoise", deadline=None)  # time is measured in benchmarks, not here

@@ -55,8 +55,8 @@ _HOMES = {
     "LoadTable": "mechanism.model",
     "Machine": "mechanism.model",
     "Motion": "mechanism.motion",
-    "Motor": "mechanism.motor",
-    "MotorTable": "mechanism.motor",
+    "Motor": "mechanism.force_elements",
+    "MotorTable": "mechanism.force_elements",
     "Mount": "mechanism.support",
     "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
@@ -81,7 +81,7 @@ _HOMES = {
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
-    "Spring": "mechanism.spring",
+    "Spring": "mechanism.force_elements",
     "SpringChoice": "mechanism.balance",
     "Station": "handheld.model",
     "Store": "studies.store",
@@ -162,7 +162,7 @@ _HOMES = {
     "weigh_orders": "exposure.spectra",
     "weigh_signal": "exposure.spectra",
     "weigh_spectrum": "exposure.spectra",
-    "write_report": "report.writing",
+    "write_report": "present.composition",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -240,6 +240,9 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
+    from equipoise.mechanism.force_elements import Motor as Motor
+    from equipoise.mechanism.force_elements import MotorTable as MotorTable
+    from equipoise.mechanism.force_elements import Spring as Spring
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -268,8 +271,6 @@ if TYPE_CHECKING:
     )
     from equipoise.mechanism.motion import Motion as Motion
     from equipoise.mechanism.motion import move as move
-    from equipoise.mechanism.motor import Motor as Motor
-    from equipoise.mechanism.motor import MotorTable as MotorTable
     from equipoise.mechanism.parameters import (
         BaseParameters as BaseParameters,
     )
@@ -282,7 +283,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parameters import (
         regressor as regressor,
     )
-    from equipoise.mechanism.spring import Spring as Spring
     from equipoise.mechanism.support import Gauge as Gauge
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
@@ -292,7 +292,7 @@ if TYPE_CHECKING:
     from equipoise.planting.search import fit_planting as fit_planting
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
-    from equipoise.report.writing import write_report as write_report
+    from equipoise.present.composition import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
     from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps

@@ -18,10 +18,10 @@ import numpy as np
 
 from equipoise.balancing.program import Affine, Program
 from equipoise.mechanism.balance import CenterMove, SpringChoice
+from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import spring_columns
-from equipoise.mechanism.spring import Spring
 
 Array = np.ndarray[Any, Any]
 
@@ -110,6 +110,15 @@ class Bound:
     at_most: float
     used: float
     unit: str
+
+
+@dataclass(frozen=True, eq=False)
+class LinkParameters:
+    """Mass, first moments and inertia of a link about its origin, as they are."""
+
+    link: str
+    count: int = 4
+    effect: Array = field(default_factory=lambda: np.eye(4))
 
 
 class DesignVariables(ABC):

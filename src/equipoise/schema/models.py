@@ -150,7 +150,7 @@ def tool_of(content: Mapping[str, Any], reader: Beside) -> Tool:
 def _limit(machine: Machine, given: dict[str, Any]) -> Any:
     """A limit of an output, whose text is a share or in a unit of what the output is."""
     from equipoise.mechanism.balance import Limit
-    from equipoise.mechanism.balance_outputs import quantity_of, wrong_limit
+    from equipoise.mechanism.objectives import quantity_of, wrong_limit
 
     text, objective = given["at_most"], given["objective"]
     try:
@@ -168,7 +168,7 @@ def _limit(machine: Machine, given: dict[str, Any]) -> Any:
 
 
 def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:
-    from equipoise.mechanism.balance_outputs import quantity_of
+    from equipoise.mechanism.objectives import quantity_of
 
     if limit.ratio is not None:
         at_most = format_share(limit.ratio)

@@ -40,8 +40,8 @@ def csv_text(table: Sequence[tuple[str, str, Array]]) -> str:
     """Columns, as name, unit and values (N,), as the text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f"{name} [{unit}]" for name, unit, _ in table])
-    writer.writerows(np.column_stack([values for _, _, values in table]).tolist())
+    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit, _ in table])
+    writer.writerows(zip(*(values.tolist() for _, _, values in table), strict=True))
     return text.getvalue()
 
 

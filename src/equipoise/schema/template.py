@@ -17,9 +17,9 @@ from typing import Any
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
 from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.motor import MotorTable
 from equipoise.schema.files import printable
 from equipoise.schema.finding import Found, all_numbers, find, replaced, with_changes, written_place
 from equipoise.schema.given_units import unit_in

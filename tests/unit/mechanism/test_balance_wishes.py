@@ -11,6 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.mechanism.balance import (
+    LISTS,
+    MOST,
     AddedMass,
     Balance,
     CenterMove,
@@ -20,8 +22,7 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.balance_checks import LISTS, MOST
-from equipoise.mechanism.balance_outputs import joint_names, output_of, quantity_of
+from equipoise.mechanism.objectives import joint_names, output_of, quantity_of
 from equipoise.mechanism.support import Row
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank

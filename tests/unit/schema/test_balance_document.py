@@ -12,7 +12,6 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.mechanism.balance import (
     MATERIALS,
-    MEASURED_IN,
     AddedMass,
     Balance,
     BalanceShafts,
@@ -24,7 +23,7 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.balance_outputs import Quantity
+from equipoise.mechanism.objectives import MEASURED_IN, OutputQuantity
 from equipoise.schema import dumps, json_schema, loads
 from unit.schema.samples import BALANCE, FOUR_BAR, ROWS, SUPPORT
 
@@ -108,7 +107,7 @@ def test_materials(material: str) -> None:
 
 
 def test_dimensions_of_limits_are_those_of_outputs() -> None:
-    assert {*get_args(Quantity)} == {*MEASURED_IN}
+    assert {*get_args(OutputQuantity)} == {*MEASURED_IN}
 
 
 # -- refusing --------------------------------------------------------------------------------------

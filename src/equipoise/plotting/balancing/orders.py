@@ -13,7 +13,7 @@ from equipoise.balancing.effects import SCALARS, VECTORS, Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
-from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
+from equipoise.mechanism.objectives import JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
 from equipoise.plotting.style import FAINT, LINES, MAIN

@@ -1,0 +1,158 @@
+"""Commands about files: `examples`, `check`, `schema`, `new`; and `serve`, a file on a page."""
+
+from __future__ import annotations
+
+import gc
+import sys
+from typing import TYPE_CHECKING, Annotated
+
+from cyclopts import Parameter
+
+from equipoise.cli.options import File, count, naming
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.web.session import Session
+
+STARTS = {
+    # kind of file: text to start from, usual name, what comes next
+    "linkage": ("start.toml", "machine.toml", "equipoise analyze {}"),
+    "tool": ("start-tool.toml", "machine.toml", "equipoise tool {}"),
+    "study": ("start-study.toml", "study.toml", "equipoise sweep {} -o designs.zarr"),
+}
+
+
+def examples() -> None:
+    """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
+    from equipoise.schema import models
+
+    found = models.examples()
+    width = max(map(len, found))
+    for name, title in found.items():
+        print(f"{name:<{width}}  {title}")
+
+
+def check(file: File, /) -> None:
+    """Check a file and tell how the linkage or tool is built up, or what a study will compute.
+
+    Parameters
+    ----------
+    file
+        Path of a model file or a study file, or the name of a bundled example.
+    """
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.model import Machine
+    from equipoise.present import checks, show_blocks
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import load
+
+    found = load(file)
+    if isinstance(found, Tool):
+        show_blocks(found.title, checks.tool_blocks(found, printable(file)))
+        return
+    with naming(file):
+        if isinstance(found, Machine):
+            show_blocks(found.title, checks.machine_blocks(found))
+        else:
+            from equipoise.schema.study_units import units_of
+
+            show_blocks(found.title, checks.study_blocks(found, units_of(found), file))
+
+
+def schema(*, tool: bool = False, study: bool = False) -> None:
+    """Print the JSON Schema of the model file, for editors.
+
+    Parameters
+    ----------
+    tool
+        That of the file of a hand-held tool.
+    study
+        That of the study file.
+    """
+    import json
+
+    from equipoise.schema.models import json_schema
+
+    print(json.dumps(json_schema(_kind(tool, study)), indent=2))
+
+
+def new(
+    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    /,
+    *,
+    tool: bool = False,
+    study: bool = False,
+) -> None:
+    """Write a commented model file to start from.
+
+    Parameters
+    ----------
+    file
+        Where to write it, machine.toml if not given; a file that is there already is left alone.
+    tool
+        That of a hand-held tool, not of a linkage.
+    study
+        That of a study of many designs; study.toml if no name is given.
+    """
+    from importlib.resources import files
+
+    from equipoise.schema.output import write
+
+    name, usual, command = STARTS[_kind(tool, study)]
+    start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
+    path = usual if file is None else file
+    write(path, start, replace=False)
+    print(f"wrote {path}; next: {command.format(path)}", file=sys.stderr)
+
+
+def _kind(tool: bool, study: bool) -> str:
+    if tool and study:
+        raise UsageError("--tool and --study are two kinds of files; give one of them")
+    return "tool" if tool else "study" if study else "linkage"
+
+
+def serve(
+    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    /,
+    *,
+    port: Annotated[int | None, count(0, 65535)] = None,
+    no_browser: bool = False,
+) -> None:
+    """Open a page in the browser on which the linkage moves and can be dragged and changed.
+
+    It is served on this machine, for this machine only, until Ctrl+C; nothing is sent elsewhere.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example; else one is picked on the page.
+    port
+        On which it is served; any that is free if not given.
+    no_browser
+        Print the address, and open no browser.
+    """
+    from equipoise.web import server
+    from equipoise.web.session import Session, opened_file
+
+    design = None if file is None else opened_file(file)
+
+    def begin() -> Session:
+        session = Session()
+        if design is not None:
+            session.open(design)
+        return session
+
+    with naming(file or ""):
+        begin()  # what is wrong with the machine is told before a page is opened
+
+    def tell(address: str) -> None:
+        print(address, flush=True)
+        print("press Ctrl+C to end", file=sys.stderr)
+        if not no_browser:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    gc.enable()  # other commands end before garbage matters
+    gc.freeze()
+    server.serve(begin, port or 0, tell)
