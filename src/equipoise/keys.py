@@ -414,14 +414,16 @@ class Key:
         kind = innermost(self.kind)
         return f" {SI[kind.dimension]}" if isinstance(kind, Quantity) else ""
 
-    @property
-    def limits(self) -> str:
-        """What to give, in words."""
+    def right(self, value: float) -> str:
+        """What to give instead of a number beyond the limits."""
         if self.why:
             return self.why
-        if self.above is not None:
-            return f"give more than {self.above:g}"
-        return f"give {self.at_least:g} or more"
+        if self.below is not None and value >= self.below:
+            return f"give less than {self.below:g}"
+        least = (
+            f"more than {self.above:g}" if self.above is not None else f"{self.at_least:g} or more"
+        )
+        return f"give {least}"
 
 
 Keys = Mapping[str, Key]
@@ -613,7 +615,7 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if names and leaf not in names:
             yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
         elif not isinstance(leaf, str) and not one.allows(leaf):
-            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.limits}")
+            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.right(leaf)}")
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
