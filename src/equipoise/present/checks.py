@@ -18,7 +18,8 @@ from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
 from equipoise.studies.blocks import Unit, Units, in_unit, labelled
 from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.evaluate import Outcome, evaluator
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Outcome
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
