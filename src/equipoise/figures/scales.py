@@ -80,7 +80,7 @@ def ends_of(axis: Axis, values: Iterable[Any]) -> tuple[float, float]:
         room = axis.room * (most - least)
         low = least - room if low is None else low
         high = most + room if high is None else high
-    return (low, high) if high > low else (low - 1, low + 1)
+    return (low, high) if high != low else (low - 1, low + 1)
 
 
 def _log_ends(values: Array, low: float | None, high: float | None) -> tuple[float, float]:
@@ -104,8 +104,8 @@ def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
 
 
 def _between(value: float, low: float, high: float) -> bool:
-    slack = 1e-6 * (high - low)
-    return low - slack <= value <= high + slack
+    slack = 1e-6 * abs(high - low)
+    return min(low, high) - slack <= value <= max(low, high) + slack
 
 
 def _apart(scale: Scale, ticks: Ticks) -> Ticks:

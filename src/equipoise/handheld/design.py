@@ -16,6 +16,7 @@ from equipoise.handheld.model import Tool
 from equipoise.handheld.response import respond_tool, rms_over_time
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between
+from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
@@ -171,7 +172,16 @@ DIGITS = 6
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
 ACCELERATION = "acceleration"
-WORDS = {"rms": "RMS over the band", "peak": "largest"}
+WORDS = {"rms": to_say("RMS over the band"), "peak": to_say("largest")}
+TOLD = (
+    to_say("a_hv of the worst hand, RMS over the band"),
+    to_say("a_hv of the worst hand, largest"),
+    to_say("a_hv at {station}"),
+    to_say("force at {station}"),
+    to_say("{figure}, {measure}"),
+    to_say("mass"),
+)
+"""What these figures are called for reading."""
 NO_DESIGN = (
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
@@ -180,12 +190,21 @@ NO_DESIGN = (
 
 @dataclass(frozen=True, eq=False)
 class Before:
-    """A figure before and after, in SI units."""
+    """A figure before and after, in SI units.
+
+    label : what it is called for reading, where that is more than its name.
+    """
 
     name: str
     dimension: str
     before: float
     after: float
+    label: Note | None = None
+
+    @property
+    def told(self) -> str:
+        """What it is called, in the language that is spoken."""
+        return self.name if self.label is None else self.label.said()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -311,15 +330,23 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
         means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
         tops.append({name: float(np.max(one)) for name, one in curves.items()})
-    yield Before(f"a_hv of the worst hand, {WORDS['rms']}", ACCELERATION, *map(_worst, means))
-    yield Before(f"a_hv of the worst hand, {WORDS['peak']}", ACCELERATION, *map(_worst, tops))
+    for part, found in (("rms", means), ("peak", tops)):
+        told = Note(f"a_hv of the worst hand, {WORDS[part]}")
+        yield Before(str(told), ACCELERATION, *map(_worst, found), told)
     for name in search.hands if len(search.hands) > 1 else ():
-        yield Before(f"a_hv at {name}, {WORDS['rms']}", ACCELERATION, *(one[name] for one in means))
-        yield Before(f"a_hv at {name}, {WORDS['peak']}", ACCELERATION, *(one[name] for one in tops))
+        for part, found in (("rms", means), ("peak", tops)):
+            told = _at(Note("a_hv at {station}", station=name), part)
+            yield Before(str(told), ACCELERATION, found[0][name], found[1][name], told)
     for name in filter(None, search.held):
         forces = [_largest_force(one, search.band.speed, name) for one in (search.tool, better)]
-        yield Before(f"force at {name}, largest", "force", *forces)
-    yield Before("mass", "mass", search.tool.mass, better.mass)
+        told = _at(Note("force at {station}", station=name), "peak")
+        yield Before(str(told), "force", forces[0], forces[1], told)
+    yield Before("mass", "mass", search.tool.mass, better.mass, Note("mass"))
+
+
+def _at(what: Note, part: str) -> Note:
+    """A figure of a station and whether it is its mean or its largest value."""
+    return Note("{figure}, {measure}", figure=what, measure=Note(WORDS[part]))
 
 
 def _worst(values: dict[str, float]) -> float:

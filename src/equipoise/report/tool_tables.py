@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.i18n import say, to_say
-from equipoise.plotting.tool.design import figure_named
 from equipoise.report.document import Block, Paragraph, Row, Table
 from equipoise.report.numbers import change, number, percent
 
@@ -151,9 +150,7 @@ def design_table(design: ToolDesign) -> Table:
         )
     for one in design.figures:
         before, after, unit = in_units(one)
-        rows.append(
-            (figure_named(one.name), unit, before, after, change(one.before, one.after), "")
-        )
+        rows.append((one.told, unit, before, after, change(one.before, one.after), ""))
     header = ("", "", say("before"), say("after"), say("change"), "")
     return Table(say("What to change, and what that brings"), header, tuple(rows), words=2)
 
