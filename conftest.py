@@ -8,6 +8,7 @@ share their names and files, as a reader types them one after the other.
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -23,6 +24,9 @@ from sybil.example import SybilFailure
 from sybil.parsers.markdown import CodeBlockParser, PythonCodeBlockParser
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # each worker has a core, not all of them
+os.environ["EQUIPOISE_PROGRESS"] = "off"  # a busy machine must not change what a command prints
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:  # as a shell starts what runs behind it
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # commands that tests stop must hear
 settings.register_profile("equipoise", deadline=None)  # time is measured in benchmarks, not here
 settings.load_profile("equipoise")
 

@@ -37,7 +37,7 @@ _HOMES = {
     "Figures": "signals",
     "Fit": "planting.search",
     "Forces": "mechanism.dynamics",
-    "FourBar": "mechanism.fourbar",
+    "FourBar": "mechanism.assessment",
     "FreeVibration": "vibration.free",
     "Front": "balancing.pareto",
     "Gauge": "mechanism.support",
@@ -105,7 +105,7 @@ _HOMES = {
     "Weight": "mechanism.balance",
     "Weighted": "exposure.weighting",
     "Work": "handheld.model",
-    "analyze": "pipeline",
+    "analyze": "results.analysis",
     "arranged": "balancing.patterns",
     "assemble": "mechanism.linkage",
     "balance": "balancing.optimisation",
@@ -123,7 +123,7 @@ _HOMES = {
     "feasibility": "balancing.physical_consistency",
     "fit_planting": "planting.search",
     "forces": "mechanism.dynamics",
-    "four_bar": "mechanism.fourbar",
+    "four_bar": "mechanism.assessment",
     "from_rest": "vibration.transient",
     "harmonics": "signals",
     "identify_decay": "measured.decay",
@@ -225,6 +225,8 @@ if TYPE_CHECKING:
     from equipoise.measured.decay import identify_decay as identify_decay
     from equipoise.measured.record import Record as Record
     from equipoise.measured.record import simulate_decay as simulate_decay
+    from equipoise.mechanism.assessment import FourBar as FourBar
+    from equipoise.mechanism.assessment import four_bar as four_bar
     from equipoise.mechanism.balance import AddedMass as AddedMass
     from equipoise.mechanism.balance import Balance as Balance
     from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
@@ -240,8 +242,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
-    from equipoise.mechanism.fourbar import FourBar as FourBar
-    from equipoise.mechanism.fourbar import four_bar as four_bar
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -289,7 +289,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
     from equipoise.mechanism.support import Support as Support
-    from equipoise.pipeline import analyze as analyze
     from equipoise.planting.goals import Goal as Goal
     from equipoise.planting.search import Fit as Fit
     from equipoise.planting.search import fit_planting as fit_planting
@@ -297,6 +296,7 @@ if TYPE_CHECKING:
     from equipoise.planting.summary import plant as plant
     from equipoise.report.writing import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
+    from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps
     from equipoise.schema.models import examples as examples
     from equipoise.schema.models import json_schema as json_schema

@@ -37,6 +37,11 @@ class ModelError(EquipoiseError):
     def __str__(self) -> str:
         return ": ".join(part for part in (self.source, self.where, self.what) if part)
 
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """The place without numbers in lists: ``("balance", "moves", "link")``."""
+        return tuple(part.partition("[")[0] for part in self.where.split("."))
+
     def in_file(self, source: str) -> ModelError:
         """Return the same error with the name of the file in front."""
         return type(self)(self.where, self.what, source)

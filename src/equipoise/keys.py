@@ -24,12 +24,10 @@ from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
-from equipoise.quantities.units import KINDS, Dimension
+from equipoise.quantities import HUGE, SI, TINY, Dimension
 
 Class = TypeVar("Class", bound=type)
 MOST_WHOLE = 1_000_000
-HUGE, TINY = 1e30, 1e-30
-"""Limits of what is taken for a quantity in SI units."""
 
 # -- kinds -----------------------------------------------------------------------------------------
 
@@ -49,6 +47,9 @@ class Kind:
         return value
 
 
+NO_INERTIA = "no body has a negative moment of inertia"
+
+
 def choice(names: Iterable[Any]) -> str:
     """Say which there are: ``'a', 'b' or 'c'``."""
     *most, last = map(repr, names)
@@ -65,15 +66,11 @@ class Text(Kind):
     names: tuple[str, ...] = ()
     suggested: tuple[str, ...] = ()
 
-    @property
-    def wanted(self) -> str:  # type: ignore[override]
-        return choice(self.names) if self.names else "text"
+    wanted = "text"
 
     def check(self, value: Any) -> str:
         if not isinstance(value, str):
             raise TypeError
-        if self.names and value not in self.names:
-            raise ValueError
         return value
 
 
@@ -98,21 +95,19 @@ class Quantity(Number):
 
 @dataclass(frozen=True)
 class Whole(Kind):
-    """A whole number; `choices` are the only ones, if there are any."""
+    """A whole number; `names` are the only ones, if there are any."""
 
     least: int | None = None
     most: int = MOST_WHOLE
-    choices: tuple[int, ...] = ()
+    names: tuple[int, ...] = ()
 
-    @property
-    def wanted(self) -> str:  # type: ignore[override]
-        return choice(self.choices) if self.choices else f"a whole number of at most {MOST_WHOLE}"
+    wanted = f"a whole number of at most {MOST_WHOLE}"
 
     def check(self, value: Any) -> int:
         if isinstance(value, bool) or not isinstance(value, Integral):
             raise TypeError
         count = int(value)
-        if abs(count) > max(self.most, MOST_WHOLE) or (self.choices and count not in self.choices):
+        if abs(count) > max(self.most, MOST_WHOLE):
             raise ValueError
         return count
 
@@ -206,7 +201,11 @@ class Direction(Kind):
     wanted = "an angle, or three numbers"
 
     def check(self, value: Any) -> float | tuple[float, ...]:
-        return Number().check(value) if isinstance(value, Real) else Point(True).check(value)
+        if isinstance(value, Real):
+            return Number().check(value)
+        if len(row := tuple(map(Number().check, items_of(value)))) != 3:
+            raise ValueError
+        return row
 
 
 @dataclass(frozen=True)
@@ -325,6 +324,13 @@ class File(Kind):
         return Frozen.checked(value)
 
 
+def innermost(kind: Kind) -> Kind:
+    """What lists, and mappings of names, consist of."""
+    while isinstance(kind, Listing | Named | OneOr | Planes):
+        kind = kind.item
+    return kind
+
+
 # -- declaring -------------------------------------------------------------------------------------
 
 REQUIRED = object()
@@ -340,7 +346,8 @@ class Key:
     text : what it means, in words that go on after its name.
     example : as it would stand in the file.  default : in Python; `shown` if the file's reader is
         better told otherwise.
-    at_least, above, below : limits in SI units; `why` is said instead of the limit.
+    at_least, above, below : limits in SI units; `why` is said
+        instead of words made of them.
     endless : it may be infinite, for no limit.  inside : no file has it.
     """
 
@@ -376,7 +383,8 @@ class Key:
     @property
     def unit(self) -> str:
         """SI unit of its quantity behind a space; nothing of a plain number."""
-        return f" {KINDS[self.kind.dimension].units[0]}" if isinstance(self.kind, Quantity) else ""
+        kind = innermost(self.kind)
+        return f" {SI[kind.dimension]}" if isinstance(kind, Quantity) else ""
 
     @property
     def limits(self) -> str:
@@ -386,6 +394,10 @@ class Key:
         if self.above is not None:
             return f"give more than {self.above:g}"
         return f"give {self.at_least:g} or more"
+
+
+Keys = Mapping[str, Key]
+Conditions = Mapping[str, Any]
 
 
 def key(
@@ -430,13 +442,13 @@ class Frozen:
     read-only, each checked by its kind when the object is made.
 
     beside : keys of the file that are no fields, by name; `from_table` and `to_table` translate.
-    order : names of keys in the order of the file, where it is not that of the fields.
+    file_order : names of keys in the order of the file, where it is not that of the fields.
     conditions : what the JSON Schema says of keys that go together.
     """
 
-    beside: ClassVar[Mapping[str, Key]] = {}
-    order: ClassVar[tuple[str, ...]] = ()
-    conditions: ClassVar[Mapping[str, Any]] = {}
+    beside: ClassVar[Keys] = {}
+    file_order: ClassVar[tuple[str, ...]] = ()
+    conditions: ClassVar[Conditions] = {}
     wanted: ClassVar[str] = "such an object"
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
@@ -490,6 +502,18 @@ def _shown(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
+ROW = Listing(Number())
+"""Numbers of a table, in Python only."""
+SCHEMA_VERSION = 1
+VERSION = Key(
+    "schema",
+    Whole(names=(SCHEMA_VERSION,)),
+    f"version of the format: {SCHEMA_VERSION}",
+    example=SCHEMA_VERSION,
+)
+"""The first key of every file."""
+
+
 # -- what a class declares -------------------------------------------------------------------------
 
 
@@ -501,7 +525,7 @@ def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
         if one.name:
             found[one.name] = one
     own = [name for name in found if name not in cls.beside]
-    return {name: found[name] for name in dict.fromkeys((*cls.order, *own, *cls.beside))}
+    return {name: found[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
 
 
 @cache
@@ -517,13 +541,26 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
 @cache
 def _declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     """What is declared of the fields of a class; without a name where no file has it."""
-    found: list[Key] = []
+    found: list[Key] = [_of_shape(*item) for item in getattr(cls, "shapes", {}).items()]
     for one in fields(cls):
         declared: Key | None = one.metadata.get(_KEY)
+        if declared is None and one.name not in getattr(cls, "shapes", {}):
+            flat = one.name in getattr(cls, "flat", ())
+            found.append(Key(one.name, Table(Frozen, flat=True) if flat else Anything(),
+                         field=one.name, default=None))  # fmt: skip
         if declared is not None:
             name = declared.name if declared.inside else declared.name or one.name
             found.append(replace(declared, name=name, field=one.name))
     return tuple(found)
+
+
+def _of_shape(name: str, shape: str) -> Key:
+    kind: Kind = {
+        "text": Text(), "number": Number(), "pair": Listing(Number(), (2,)), "count": Whole(),
+        "row": ROW, "names": Listing(Text()), "list": Tables(Table(Frozen)),
+    }[shape.rstrip("?")]  # fmt: skip
+    return Key(name, kind, field=name, default=None if shape.endswith("?") else REQUIRED,
+               endless=name in ("shear_stiffness",))  # fmt: skip
 
 
 @cache
@@ -532,39 +569,48 @@ def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, bool], ...]:
     return tuple((one.field, one.kind, one.default is None) for one in _declarations(cls))
 
 
-# -- numbers of an object --------------------------------------------------------------------------
+# -- values of an object ---------------------------------------------------------------------------
 
 
-def wrong_numbers(where: str, value: Any) -> Iterator[ModelError]:
+def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
     """Complain of every number below a value that is not finite, of no usual size, or beyond its
-    limits.
+    limits, and of every text that is none of those that there are.
     """
-    numbers = list(_numbers(where, value, None))
-    for place, size, _ in numbers:
-        if not isfinite(size):
-            yield ModelError(place, f"got {size}; give a finite number")
-        elif abs(size) > HUGE or 0 < abs(size) < TINY:
-            yield ModelError(place, f"got {size:g} in SI units, which no machine can have")
-    for place, size, one in numbers:
-        if one is not None and not one.allows(size):
-            yield ModelError(place, f"got {size:g}{one.unit}; {one.limits}")
+    leaves = list(_leaves(where, value, None))
+    for place, leaf, _ in leaves:
+        if isinstance(leaf, str):
+            continue
+        if not isfinite(leaf):
+            yield ModelError(place, f"got {leaf}; give a finite number")
+        elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
+            yield ModelError(place, f"got {leaf:g} in SI units, which no machine can have")
+    for place, leaf, one in leaves:
+        if one is None:
+            continue
+        names = getattr(innermost(one.kind), "names", ())
+        if names and leaf not in names:
+            yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
+        elif not isinstance(leaf, str) and not one.allows(leaf):
+            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.limits}")
 
 
-def _numbers(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, float, Key | None]]:
-    """Numbers below a value, each with its place and its declaration."""
-    if isinstance(value, bool | str) or value is None:
+def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
+    """Numbers and texts below a value, each with its place and its declaration."""
+    if isinstance(value, bool) or value is None:
         return
-    if isinstance(value, int | float):
+    if isinstance(value, int | float | str):
         if not (of is not None and of.endless and value == inf):
             yield where, value, of
     elif isinstance(value, Mapping):
         for name, item in value.items():
-            yield from _numbers(f"{where}.{name}".lstrip("."), item, of)
+            yield from _leaves(f"{where}.{name}".lstrip("."), item, of)
     elif isinstance(value, tuple | list):
+        one = of is not None and isinstance(of.kind, OneOr | Planes)
+        alike = one and all(item == value[0] for item in value)
         for number, item in enumerate(value, 1):
-            yield from _numbers(f"{where}[{number}]", item, of)
+            yield from _leaves(where if alike else f"{where}[{number}]", item, of)
     else:
         for one in _declarations(type(value)):
             flat = isinstance(one.kind, Table) and one.kind.flat
             place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
-            yield from _numbers(place, getattr(value, one.field), one)
+            yield from _leaves(place, getattr(value, one.field), one)

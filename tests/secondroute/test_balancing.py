@@ -638,7 +638,7 @@ def test_prices(name: str) -> None:
         for share, near in ((1e-3, 0.15), (1e-4, 0.03)):
             after = eq.balance(machine, loosened(plan, limited, 1 + share))
             fall = unit * (found.cost - after.cost)
-            more, slack = share * price.at_most, 5e-9 * unit
+            more, slack = share * price.at_most, GAP * unit
             convex = not limited.startswith("radius")  # which counts by its square
             between = after.prices[limited].price * more - slack, price.price * more + slack
             assert not convex or between[0] <= fall <= between[1]

@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.figures import Figure
 from equipoise.mechanism.model import Gear, Machine, Slider
-from equipoise.results.analysis import columns, outputs
+from equipoise.mechanism.outputs import declared
 from equipoise.signals import Figures, figures
 from support.designs import Array, size_of
 from unit.mechanism.build import heavy, machine
@@ -65,8 +65,8 @@ class Known:
 def signals_of(design: Machine) -> list[str]:
     """Names of all signals that a batch knows of a machine."""
     analysis = eq.analyze(design, 8)
-    names = dict.fromkeys(analysis.summary)
-    for name, _ in columns(analysis):
+    names = {name: None for name in analysis.summary if declared(name)[0].loop}
+    for name in (one.name for one in analysis.outputs.arrays):
         kind, part = name.partition(".")[0], name.rpartition(".")[2]
         moving = kind in ("points", "links") and part in MOTIONS
         if moving or (kind in ("joints", "gears") and part in ("force_x", "force_y")):
@@ -77,7 +77,7 @@ def signals_of(design: Machine) -> list[str]:
 def known_of(design: Machine, angles: int, signals: Sequence[str]) -> Mapping[str, Known]:
     """Signals of a machine at so many crank angles in a turn."""
     analysis = eq.analyze(design, angles)
-    arrays = {**dict(columns(analysis)), **outputs(analysis)}
+    arrays = {one.name: one.values for one in analysis.outputs}
     summary = analysis.summary
     sizes = _sizes(design, analysis)
     found = {}

@@ -493,7 +493,7 @@ main()
 
 
 @pytest.mark.parametrize(
-    ("module", "function"), [("equipoise.pipeline", "analyze"), ("os", "fsync")]
+    ("module", "function"), [("equipoise.results.analysis", "analyze"), ("os", "fsync")]
 )
 def test_interruption_leaves_nothing_half_written(module: str, function: str, folder: Path) -> None:
     program = WAITING.format(module=module, function=function)

@@ -320,7 +320,7 @@ def test_pictures() -> None:
     names = sorted(path.name for path in Path("pictures").iterdir())
     assert result.err == f"wrote {len(names)} pictures to pictures\n"
     assert "force.png" in names
-    words = (*CRANK, "--front", "shaking_force.x", "shaking_force.y", "--points", "3")
+    words = ("trade-off", *CRANK, "shaking_force.x", "shaking_force.y", "--points", "3")
     result = equipoise("balance", *words, "--plot", "front")
     succeeded(result)
     assert result.err == "wrote 1 picture to front\n"
@@ -367,7 +367,7 @@ def test_planting_figures_are_kept() -> None:
 
 # -- other questions -------------------------------------------------------------------------------
 
-FRONT = (*CRANK, "--front", "shaking_force.x", "shaking_force.y", "--points", "4")
+FRONT = ("trade-off", *CRANK, "shaking_force.x", "shaking_force.y", "--points", "4")
 
 
 def test_front() -> None:
@@ -397,17 +397,17 @@ def test_front_has_21_points() -> None:
 
 
 def test_conditions() -> None:
-    text = run("yamashita-1", "--conditions")
+    text = run("conditions", "yamashita-1")
     assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0" in text
     assert "The shaking force can be made zero, with every mass as it is." in text
-    content = read("yamashita-1", "--conditions")
+    content = read("conditions", "yamashita-1")
     assert [len(content[kind]["conditions"]) for kind in ("zero", "sine")] == [4, 2]
     assert content["verdict"]["shaking_force"]["possible"] is True
     assert content["verdict"]["shaking_moment"]["proof"]["unit"] == "kg"
 
 
 def test_sensitivities() -> None:
-    words = ("yamashita-2", "--sensitivities", "shaking_force.y")
+    words = ("sensitivities", "yamashita-2", "shaking_force.y")
     text = run(*words, "--crank-zero", "-100 deg")
     assert "crank angles from -100.0 deg" in text
     row = cells(text, "coupler.center_x")
@@ -421,19 +421,19 @@ def test_sensitivities() -> None:
 
 @pytest.mark.parametrize("output", ["shaking_force.x", "shaking_moment", "drive_torque"])
 def test_sensitivities_of_other_outputs(output: str) -> None:
-    text = run("lee-kim-a", "--sensitivities", output)
+    text = run("sensitivities", "lee-kim-a", output)
     assert "coupler.mass" in text
     assert "crank angles from" not in text
 
 
 def test_arrangements() -> None:
-    text = run("yamashita-2", "--arrangements", "4")
+    text = run("arrangements", "yamashita-2", "4")
     assert cells(text, "all in phase") == ["86.74", "0", "0"]
     assert cells(text.partition("Figures")[2], "4 quarter turns") == ["13.80", "9.556", "6.522"]
-    wide = run("yamashita-2", "--arrangements", "4", "--spacing", "600 mm")
+    wide = run("arrangements", "yamashita-2", "4", "--spacing", "600 mm")
     row = cells(wide.partition("Figures")[2], "4 quarter turns")
     assert [float(part) for part in row] == pytest.approx([13.80, 2 * 9.556, 2 * 6.522], rel=1e-3)
-    content = read("yamashita-2", "--arrangements", "6")
+    content = read("arrangements", "yamashita-2", "6")
     assert [one["source"] for one in content["patterns"]][:1] == ["Table 5, 6 claws (a)"]
 
 

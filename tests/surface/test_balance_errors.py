@@ -26,8 +26,7 @@ UP = ("--objective", "shaking_force.y")
 DISC = (*CRANK, *UP, "--shape", "disc")
 GEARED = ("lee-kim-a", "--geared-counterweight", "rocker", "--objective", "shaking_energy")
 PITCH = ("--pitch-radius", "50 mm")
-FRONT = ("--front", "shaking_force.y", "shaking_force.x")
-BOTH = ("--front", "shaking_force.y")
+BOTH = ("shaking_force.y", "shaking_force.x")
 
 
 def asked(text: str) -> tuple[str, ...]:
@@ -36,6 +35,10 @@ def asked(text: str) -> tuple[str, ...]:
 
 def limited(text: str) -> tuple[str, ...]:
     return (*CRANK, *UP, "--limit", text)
+
+
+def front(*words: str) -> tuple[str, ...]:
+    return ("trade-off", *CRANK, *words)
 
 
 REFUSED: dict[str, tuple[tuple[str, ...], str]] = {
@@ -126,33 +129,30 @@ REFUSED: dict[str, tuple[tuple[str, ...], str]] = {
                    "this limit cannot be met: added mass at most 100 g; allow more of it"),
     "phases and limits": (("four-row-transplanter", "--limit", "joints.B <= 5 N"),
                           "limits are not kept while phases are looked for; leave one of them out"),
-    # fronts and other questions
-    "against itself": ((*CRANK, *BOTH, "rms shaking_force.y"), "rms of shaking_force.y cannot be "
-                       "traded against itself; give another objective"),
-    "one point": ((*CRANK, *FRONT, "--points", "1"), "--points: got '1'; give a whole number from"),
-    "many points": ((*CRANK, *FRONT, "--points", "501"), "--points: got '501'; give a whole numbe"),
-    "no points": ((*CRANK, *FRONT, "--points", "x"), "--points: got 'x'; give a whole number from"),
-    "half a front": ((*CRANK, *BOTH), '"balance" parameter --front requires 2'),
-    "wrong front": ((*CRANK, *BOTH, "x"), "no output is called 'x'"),
-    "front of phases": (("four-row-transplanter", *FRONT), "a front is not drawn over phases; lea"),
-    "front of nothing": (("yamashita-1", *FRONT), "nothing is free to change; give tables such as"),
-    "front's file": ((*CRANK, *FRONT, "-o", "x.toml"), "--front has no use for --out; leave it ou"),
-    "front's objective": ((*CRANK, *FRONT, *UP), "--front has no use for --objective; leave it ou"),
-    "two questions": (("yamashita-1", *FRONT, "--conditions"), "--front and --conditions answer d"),
-    "conditions' file": (("yamashita-1", "--conditions", "--csv", "x.csv"), "no use for --csv"),
-    "conditions' pictures": (("yamashita-1", "--conditions", "--plot", "x"), "no use for --plot"),
-    "conditions' limit": (("yamashita-1", "--conditions", "--limit", "x"), "no use for --limit"),
-    "conditions' weight": ((*CRANK, "--conditions"), "no use for --crank-counterweight; leave it"),
-    "sensitivity": (("yamashita-1", "--sensitivities", "joints.B"), "--sensitivities: no output of "
-                    "this kind is called 'joints.B'; there are 'shaking_force.x', 'shaking_force."),
-    "crank zero": (("yamashita-1", "--sensitivities", "drive_torque", "--crank-zero", "5"),
+    # trade-offs and other questions
+    "against itself": (front("shaking_force.y", "rms shaking_force.y"), "rms of shaking_force.y "
+                       "cannot be traded against itself; give another objective"),
+    "one point": (front(*BOTH, "--points", "1"), "--points: got '1'; give a whole number from 2"),
+    "many points": (front(*BOTH, "--points", "501"), "--points: got '501'; give a whole number"),
+    "no points": (front(*BOTH, "--points", "x"), "--points: got 'x'; give a whole number from 2"),
+    "half a front": (front("shaking_force.y"), "parameter SECOND requires an argument"),
+    "wrong front": (front("shaking_force.y", "x"), "no output is called 'x'"),
+    "no objective's words": (front("shaking_force.y", "a b"), "SECOND: got 'a b'; give such as"),
+    "front of phases": (("trade-off", "four-row-transplanter", *BOTH), "a front is not drawn over "
+                        "phases; lea"),
+    "front of nothing": (("trade-off", "yamashita-1", *BOTH), "nothing is free to change; give"),
+    "front's file": (front(*BOTH, "-o", "x.toml"), "Unknown option: -o."),
+    "conditions' weight": (("conditions", *CRANK), "Unknown option: --crank-counterweight."),
+    "sensitivity": (("sensitivities", "yamashita-1", "joints.B"), "OUTPUT: no output of this kind "
+                    "is called 'joints.B'; there are 'shaking_force.x', 'shaking_force."),
+    "crank zero": (("sensitivities", "yamashita-1", "drive_torque", "--crank-zero", "5"),
                    "--crank-zero: got '5'; the unit is missing; give an angle"),
-    "still": (("yamashita-1", "--sensitivities", "drive_torque", "--speed", "0 rpm"),
+    "still": (("sensitivities", "yamashita-1", "drive_torque", "--speed", "0 rpm"),
               "a crank that stands still shakes nothing; give the drive a speed"),
-    "one row": (("yamashita-1", "--arrangements", "1"), "--arrangements: got '1'; give a whole nu"),
-    "many rows": (("yamashita-1", "--arrangements", "65"), "give a whole number from 2 to 64"),
-    "spacing": (("yamashita-1", "--arrangements", "4", "--spacing", "0 mm"), "--spacing: got '0 m"),
-    "no spacing": (("yamashita-1", "--arrangements", "4", "--spacing", ""), "--spacing: got ''; g"),
+    "one row": (("arrangements", "yamashita-1", "1"), "ROWS: got '1'; give a whole number from 2"),
+    "many rows": (("arrangements", "yamashita-1", "65"), "give a whole number from 2 to 64"),
+    "spacing": (("arrangements", "yamashita-1", "4", "--spacing", "0 mm"), "--spacing: got '0 m"),
+    "no spacing": (("arrangements", "yamashita-1", "4", "--spacing", ""), "--spacing: got ''; g"),
     # options without their owner
     **{
         option: (("yamashita-1", option, value, *UP), f"{option} belongs to {owner}; give both")
@@ -165,9 +165,6 @@ REFUSED: dict[str, tuple[tuple[str, ...], str]] = {
             ("--material", "steel", "a counterweight"),
             ("--ratio", "1", "--geared-counterweight"),
             ("--pitch-radius", "5 mm", "--geared-counterweight"),
-            ("--points", "5", "--front"),
-            ("--spacing", "5 mm", "--arrangements"),
-            ("--crank-zero", "5 deg", "--sensitivities"),
             ("--format", "png", "--plot"),
         )
     },
@@ -241,9 +238,12 @@ def test_a_plan_that_cannot_be(name: str, old: str, new: str, said: str) -> None
 def test_missing_masses_are_named() -> None:
     text = re.sub(r"(?m)^(mass|center_of_mass|inertia) = .*\n", "", example_text("yamashita-1"))
     Path("model.toml").write_text(text, encoding="utf-8")
-    words = ("--crank-counterweight", *UP)
-    for extra in (words, ("--conditions",), ("--sensitivities", "drive_torque")):
-        line = refused(equipoise("balance", "model.toml", *extra))
+    for words in (
+        ("model.toml", "--crank-counterweight", *UP),
+        ("conditions", "model.toml"),
+        ("sensitivities", "model.toml", "drive_torque"),
+    ):
+        line = refused(equipoise("balance", *words))
         assert line.startswith("model.toml: forces need mass, center_of_mass and inertia of every")
 
 

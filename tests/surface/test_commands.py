@@ -33,7 +33,7 @@ ROOT = Path(__file__).parents[2]
 COMMANDS = (
     *["analyze", "animate", "balance", "best", "check", "decay", "examples", "export"],
     *["exposure", "modes", "new", "plant", "plot", "report", "respond", "resume", "schema"],
-    *["search", "serve", "sweep", "tolerance", "tool"],
+    *["search", "serve", "simulate", "sweep", "tolerance", "tool"],
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
@@ -75,74 +75,75 @@ def test_help_names_every_command() -> None:
         assert sorted(listed) == sorted(COMMANDS)
 
 
+DRAWN = ["--json", "--plot", "--format"]
+OUTPUTS = [*DRAWN, "--csv"]
+FREED = [
+    *["--move-cm", "--crank-counterweight", "--counterweight", "--geared-counterweight"],
+    *["--ratio", "--pitch-radius", "--shape", "--radius", "--mass", "--at-most", "--thickness"],
+    *["--material", "--phases"],
+]
 OPTIONS = {
     "analyze": [
-        *["FILE", "--angles", "--speed", "--acceleration", "--about", "--json", "--split"],
-        *["--csv", "--orders", "--crank-zero"],
+        *["FILE", "--angles", "--speed", "--acceleration", "--about", "--split", "--csv"],
+        *["--orders", "--crank-zero", "--json"],
     ],
     "animate": [
         *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],
         *["--dark"],
     ],
-    "balance": [
-        *["FILE", "--objective", "--limit", "--move-cm", "--crank-counterweight"],
-        *["--counterweight", "--geared-counterweight", "--ratio", "--pitch-radius", "--shape"],
-        *["--radius", "--mass", "--at-most", "--thickness", "--material", "--phases", "--speed"],
-        *["--front", "--points", "--conditions", "--sensitivities", "--crank-zero"],
-        *["--arrangements", "--spacing", "--out", "--json", "--csv", "--plot", "--format"],
+    "balance": ["FILE", "--objective", "--limit", "--speed", "--out", *OUTPUTS, *FREED],
+    "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", "--json"],
+    "balance conditions": ["FILE", "--speed", "--json"],
+    "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", "--json"],
+    "balance trade-off": [
+        *["FILE", "FIRST", "SECOND", "--points", "--limit", "--speed", *OUTPUTS, *FREED],
     ],
-    "best": [
-        *["STORE", "--by", "--largest", "--count", "--out", "--design", "--json", "--csv"],
-        *["--plot", "--format"],
-    ],
+    "best": ["STORE", "--by", "--largest", "--count", "--out", "--design", *OUTPUTS],
     "check": ["FILE"],
-    "decay": (
-        ["--stiffness", "--arm", "--spring-arm", "--confidence", "--json", "--plot", "--format"]
-    ),
+    "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
     "export": ["STORE", "--out", "--kept"],
     "exposure": [
         *["INPUT", "--duration", "--idle", "--racing", "--bands", "--weighted", "--single-axis"],
-        *["--periodic", "--json", "--plot", "--format"],
+        *["--periodic", *DRAWN],
     ],
-    "modes": ["FILE", "--model", "--json", "--plot", "--format"],
+    "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
-    "plant": [
-        *["FILE", "--speed", "--units", "--crank-zero", "--json", "--csv", "--angles"],
-        *["--plot", "--format", "--fit", "--out", "--seed"],
-    ],
-    "plot": [
-        *["FILE", "--out", "--format", "--only", "--at", "--speed", "--over", "--of", "--set"],
-        "--points",
+    "plant": ["FILE", "--speed", "--crank-zero", "--angles", "--units", *OUTPUTS],
+    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", "--units", *OUTPUTS],
+    "plot": ["FILE", "--out", "--format", "--only", "--at", "--speed"],
+    "plot map": [
+        *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed", "--out"],
+        "--format",
     ],
     "report": ["FILE", "--out", "--language", "--pdf", "--speed"],
-    "respond": [
-        *["FILE", "--model", "--speed", "--speeds", "--drive", "--transient", "--units"],
-        *["--json", "--csv", "--plot", "--format"],
-    ],
+    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--units", *OUTPUTS],
     "resume": ["STORE", "--workers", "--cluster", "--json"],
     "schema": ["--tool", "--study"],
     "search": [
-        *["STUDY", "--population", "--generations", "--seed", "--out", "--design", "--json"],
-        *["--csv", "--plot", "--format"],
+        *["STUDY", "--population", "--generations", "--seed", "--out", "--design", *OUTPUTS],
     ],
     "serve": ["FILE", "--port", "--no-browser"],
+    "simulate": ["FILE", "DURATION", "--speed", "--drive", "--units", *OUTPUTS],
     "sweep": ["STUDY", "--out", "--workers", "--cluster", "--json"],
-    "tolerance": ["STUDY", "--designs", "--json", "--plot", "--format"],
+    "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
-        *["--duration", "--vary", "--sensitivities", "--design", "--out", "--units", "--json"],
-        *["--csv", "--plot", "--format"],
+        *["--duration", "--units", *OUTPUTS],
     ],
+    "tool design": ["FILE", "--out", "--units", *DRAWN],
+    "tool sensitivities": ["FILE", "--speeds", "--units", "--json"],
+    "tool vary": ["FILE", "CHANGE", "--number", "--units", *DRAWN],
 }
 
 
-@pytest.mark.parametrize("name", COMMANDS)
+@pytest.mark.parametrize("name", OPTIONS)
 def test_help_of_a_command_tells_each_option(name: str) -> None:
-    text = succeeded(equipoise(name, "--help"))
+    text = succeeded(equipoise(*name.split(), "--help"))
     assert text.startswith(f"Usage: equipoise {name}")
-    shown = re.findall(r"^[│|] \*? *(FILE|INPUT|STUDY|STORE|--[a-z-]+)", text, re.MULTILINE)
+    shown = re.findall(r"^[│|] \*? *([A-Z]+|--[a-z-]+) +\S", text, re.MULTILINE)
     assert shown == OPTIONS[name]
+    assert all(len(line) <= 80 for line in text.splitlines())
 
 
 @pytest.mark.parametrize("name", COMMANDS)
@@ -426,14 +427,14 @@ def schema() -> dict[str, Any]:
 
 
 def test_schema_is_the_shipped_file(schema: dict[str, Any]) -> None:
-    shipped = Path(package.__file__).with_name("io") / "model.schema.json"
+    shipped = Path(package.__file__).with_name("schema") / "model.schema.json"
     assert schema == json.loads(shipped.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(schema)
 
 
 @pytest.mark.parametrize("kind", ["tool", "study"])
 def test_schemas_of_other_files_are_the_shipped_ones(kind: str) -> None:
-    shipped = Path(package.__file__).with_name("io") / f"{kind}.schema.json"
+    shipped = Path(package.__file__).with_name("schema") / f"{kind}.schema.json"
     found = json.loads(succeeded(equipoise("schema", f"--{kind}")))
     assert found == json.loads(shipped.read_text(encoding="utf-8"))
 

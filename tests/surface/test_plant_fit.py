@@ -1,8 +1,9 @@
-"""`equipoise plant --fit` as a user runs it."""
+"""`equipoise plant fit` as a user runs it."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -24,6 +25,14 @@ target = "26 cm"
 """
 
 
+@pytest.fixture(autouse=True, scope="module")
+def with_progress() -> Iterator[None]:
+    """Here lines of progress are looked at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
+        yield
+
+
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     monkeypatch.chdir(tmp_path)
@@ -32,7 +41,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_new_model_file_and_a_table(folder: Path) -> None:
-    result = equipoise("plant", "kim-chung-a", "--fit", "target.toml")
+    result = equipoise("plant", "fit", "kim-chung-a", "target.toml")
     text = succeeded(result)
     assert "curve.height cm  26.00" in text
     assert "yes" in text
@@ -41,14 +50,14 @@ def test_a_new_model_file_and_a_table(folder: Path) -> None:
     assert "generation 1 of at most 20" in result.err
     found = eq.load("kim-chung-a-fit.toml")
     assert eq.plant(found)["curve.height"] == pytest.approx(0.26, abs=1e-8)
-    assert "plant --fit target.toml, seed 1" in found.description
+    assert "plant fit target.toml, seed 1" in found.description
     assert [path.name for path in folder.iterdir()] == ["target.toml", "kim-chung-a-fit.toml"] or [
         path.name for path in folder.iterdir()
     ] == ["kim-chung-a-fit.toml", "target.toml"]
 
 
 def test_json(folder: Path) -> None:
-    result = equipoise("plant", "kim-chung-a", "--fit", "target.toml", "--json", "--seed", 5)
+    result = equipoise("plant", "fit", "kim-chung-a", "target.toml", "--json", "--seed", 5)
     content = json.loads(succeeded(result))
     assert content["seed"] == 5
     assert content["goals"][0]["met"] is True
@@ -58,13 +67,13 @@ def test_json(folder: Path) -> None:
 
 
 def test_where_it_is_written(folder: Path) -> None:
-    succeeded(equipoise("plant", "kim-chung-a", "--fit", "target.toml", "--out", "new.toml"))
+    succeeded(equipoise("plant", "fit", "kim-chung-a", "target.toml", "--out", "new.toml"))
     assert eq.plant(eq.load("new.toml"))["curve.height"] == pytest.approx(0.26, abs=1e-8)
 
 
 def test_a_file_that_is_there_stays(folder: Path) -> None:
     (folder / "kim-chung-a-fit.toml").write_text("mine", encoding="utf-8")
-    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    said = refused(equipoise("plant", "fit", "kim-chung-a", "target.toml"))
     assert said == "kim-chung-a-fit.toml: is there already; choose another name by --out"
     assert (folder / "kim-chung-a-fit.toml").read_text(encoding="utf-8") == "mine"
 
@@ -72,18 +81,16 @@ def test_a_file_that_is_there_stays(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("words", "said"),
     [
-        (["kim-chung-a", "--fit", "none.toml"], "none.toml: there is no such file"),
-        (["kim-chung-a", "--fit", ""], "there is no such file"),
-        (["yamashita-1", "--fit", "target.toml"], "yamashita-1: planting: missing"),
-        (["kim-chung-a", "--out", "new.toml"], "--out belongs to --fit; give both"),
-        (["kim-chung-a", "--seed", "3"], "--seed belongs to --fit; give both"),
-        (["kim-chung-a", "--fit", "target.toml", "--seed", "-3"], "--seed: got -3; give 0 or more"),
-        (["kim-chung-a", "--fit", "target.toml", "--out", ""], "--out: got an empty name"),
-        (["kim-chung-a", "--fit", "target.toml", "--out", "no/new.toml"], "no/new.toml"),
+        (["kim-chung-a", "none.toml"], "none.toml: there is no such file"),
+        (["kim-chung-a", ""], "there is no such file"),
+        (["yamashita-1", "target.toml"], "yamashita-1: planting: missing"),
+        (["kim-chung-a", "target.toml", "--seed", "-3"], "--seed: got -3; give 0 or more"),
+        (["kim-chung-a", "target.toml", "--out", ""], "--out: got an empty name"),
+        (["kim-chung-a", "target.toml", "--out", "no/new.toml"], "no/new.toml"),
     ],
 )
 def test_refused(folder: Path, words: list[str], said: str) -> None:
-    result = equipoise("plant", *words)
+    result = equipoise("plant", "fit", *words)
     assert result.status == 2
     assert said in result.err
     assert "Traceback" not in result.err
@@ -93,7 +100,7 @@ def test_refused(folder: Path, words: list[str], said: str) -> None:
 def test_a_wrong_goal_names_the_target_file(folder: Path) -> None:
     text = TARGET.replace("crank =", "crnk =")
     (folder / "target.toml").write_text(text, encoding="utf-8")
-    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    said = refused(equipoise("plant", "fit", "kim-chung-a", "target.toml"))
     assert said.startswith("target.toml: vary.crnk: ")
     assert "did you mean 'crank'" in said
 
@@ -103,7 +110,7 @@ GOAL = "schema = 1\n[search]\ngenerations = 4\npopulation = 6\n[[goals]]\nfigure
 
 def asked(folder: Path, goal: str) -> str:
     (folder / "target.toml").write_text(GOAL + goal, encoding="utf-8")
-    return succeeded(equipoise("plant", "transplanter", "--fit", "target.toml"))
+    return succeeded(equipoise("plant", "fit", "transplanter", "target.toml"))
 
 
 def test_the_smallest_population_and_a_figure_to_be_made_large(folder: Path) -> None:
@@ -133,20 +140,20 @@ def test_tables_beside_the_new_file_are_not_replaced(folder: Path) -> None:
     )
     eq.save(machine, "mine.toml")
     (folder / "mine-fit.soil.csv").write_text("mine", encoding="utf-8")
-    said = refused(equipoise("plant", "mine.toml", "--fit", "target.toml"))
+    said = refused(equipoise("plant", "fit", "mine.toml", "target.toml"))
     assert said == "mine-fit.soil.csv: is there already; choose another name by --out"
     assert (folder / "mine-fit.soil.csv").read_text(encoding="utf-8") == "mine"
 
 
 @pytest.mark.parametrize("path", ["target.toml", "new.toml"])
 def test_results_keep_out_of_each_others_way(folder: Path, path: str) -> None:
-    words = ["--fit", "target.toml", "--out", "new.toml", "--csv", path]
-    said = refused(equipoise("plant", "kim-chung-a", *words))
+    words = ["--out", "new.toml", "--csv", path]
+    said = refused(equipoise("plant", "fit", "kim-chung-a", "target.toml", *words))
     assert said == f"--csv: {path} has another part in this command; give another name"
 
 
 def test_an_empty_vary(folder: Path) -> None:
     lines = [line for line in TARGET.splitlines() if not line.startswith(("crank", "tip"))]
     (folder / "target.toml").write_text("\n".join(lines), encoding="utf-8")
-    said = refused(equipoise("plant", "kim-chung-a", "--fit", "target.toml"))
+    said = refused(equipoise("plant", "fit", "kim-chung-a", "target.toml"))
     assert said.startswith("target.toml: vary: names nothing")

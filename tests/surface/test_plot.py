@@ -9,10 +9,9 @@ import pytest
 from surface.running import equipoise, refused, succeeded
 
 WEIGHT = "counterweights.crank"
-MAP = (
-    *["--over", f"{WEIGHT}.radius = 0 : 70 mm", "--over", f"{WEIGHT}.direction = 0 deg : 360 deg"],
-    *["--of", "ripple shaking_force.y", "--points", "9"],
-)
+RADIUS = f"{WEIGHT}.radius = 0 : 70 mm"
+DIRECTION = f"{WEIGHT}.direction = 0 deg : 360 deg"
+MAP = (RADIUS, DIRECTION, "ripple shaking_force.y")
 
 
 @pytest.fixture(autouse=True)
@@ -53,43 +52,45 @@ def test_chosen_pictures(folder: Path, arguments: list[str], written: list[str])
 
 def test_a_map_tells_the_best_place(folder: Path) -> None:
     """Fig. 12 of Yamashita, Ichikawa and Mori: 35.7 mm at 111 deg from the line of pivots."""
-    result = equipoise("plot", "yamashita-1", *MAP, "--set", f"{WEIGHT}.mass = 1145 g", "-o", "map")
+    options = ("--points", "9", "--set", f"{WEIGHT}.mass = 1145 g", "-o", "map")
+    result = equipoise("plot", "map", "yamashita-1", *MAP, *options)
     told = succeeded(result)
     assert f"{WEIGHT}.radius = 35.7 mm and {WEIGHT}.direction = 194 deg" in told
     assert [path.name for path in (folder / "map").iterdir()] == ["landscape.svg"]
 
 
 BAD = {
-    "name": (["--only", "polr"], "did you mean 'polar'"),
-    "angle": (["--at", "3 mm"], "--at"),
-    "half a map": (["--over", "links.crank.mass = 1 g : 2 g"], "give it twice"),
-    "no aim": (MAP[:4], "--of: missing"),
-    "aim without map": (["--of", "drive_torque"], "belongs to --over"),
-    "unknown aim": ([*MAP[:5], "rms force"], "no output is called 'force'"),
-    "unknown number": (["--over", "links.a = 1 : 2", *MAP[2:]], "no number of the model"),
-    "no range": (["--over", "links.crank.mass = 2 g", *MAP[2:]], "give a number and its range"),
-    "no path": (["--over", "2 g : 3 g", *MAP[2:]], "give such as"),
-    "wrong unit": (["--over", "links.crank.mass = 1 : 2 mm", *MAP[2:]], "a mass is wanted"),
-    "back to front": (["--over", "links.crank.mass = 2 : 1 g", *MAP[2:]], "the smaller value"),
-    "the same twice": ([*MAP[:2], *MAP[:2], *MAP[4:]], "twice"),
-    "set too": ([*MAP, "--set", f"{WEIGHT}.radius = 1 mm"], "give one of both"),
-    "map and choice": ([*MAP, "--only", "polar"], "no use"),
-    "points": ([*MAP[:6], "--points", "3"], "--points"),
-    "folder": (["-o", "taken"], "--out"),
-}
+    "name": (["plot", "--only", "polr"], "did you mean 'polar'"),
+    "angle": (["plot", "--at", "3 mm"], "--at"),
+    "folder": (["plot", "-o", "taken"], "--out"),
+    "half a map": (["plot", "map", "links.crank.mass = 1 g : 2 g"], "parameter SECOND requires"),
+    "no aim": (["plot", "map", *MAP[:2]], "parameter OUTPUT requires"),
+    "unknown aim": (["plot", "map", *MAP[:2], "rms force"], "no output is called 'force'"),
+    "unknown number": (["plot", "map", "links.a = 1 : 2", *MAP[1:]], "no number of the model"),
+    "no range": (
+        ["plot", "map", "links.crank.mass = 2 g", *MAP[1:]], "FIRST: got 'links.crank.mass = 2 g'; "
+        "give a number and its range"),
+    "no path": (["plot", "map", "2 g : 3 g", *MAP[1:]], "give such as"),
+    "wrong unit": (["plot", "map", "links.crank.mass = 1 : 2 mm", *MAP[1:]], "a mass is wanted"),
+    "back to front": (["plot", "map", "links.crank.mass = 2 : 1 g", *MAP[1:]], "the smaller value"),
+    "the same twice": (["plot", "map", RADIUS, RADIUS, MAP[2]], "twice"),
+    "set too": (["plot", "map", *MAP, "--set", f"{WEIGHT}.radius = 1 mm"], "give one of both"),
+    "points": (["plot", "map", *MAP, "--points", "3"], "--points"),
+    "a map's folder": (["plot", "map", *MAP, "-o", "taken"], "--out"),
+}  # fmt: skip
 
 
-@pytest.mark.parametrize("name", BAD)
-def test_wrong_wishes_are_told(folder: Path, name: str) -> None:
+@pytest.mark.parametrize(("words", "said"), BAD.values(), ids=BAD)
+def test_wrong_wishes_are_told(folder: Path, words: list[str], said: str) -> None:
     (folder / "taken").write_text("", encoding="utf-8")
-    arguments, words = BAD[name]
-    assert words in refused(equipoise("plot", "yamashita-1", *arguments))
+    name = 2 if words[1] == "map" else 1
+    assert said in refused(equipoise(*words[:name], "yamashita-1", *words[name:]))
     assert [path.name for path in folder.iterdir()] == ["taken"]
 
 
 def test_tools_have_no_crank_angles_and_no_map() -> None:
     assert "crank angles" in refused(equipoise("plot", "pole-saw", "--at", "0 deg"))
-    assert "tool --vary" in refused(equipoise("plot", "pole-saw", *MAP))
+    assert "tool vary" in refused(equipoise("plot", "map", "pole-saw", *MAP))
 
 
 def test_studies_draw_what_they_print(folder: Path) -> None:

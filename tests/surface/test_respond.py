@@ -296,7 +296,7 @@ def test_the_motor_over_a_range() -> None:
 
 @pytest.mark.parametrize("extra", [(), ("--drive",), ("--speed", "-193 rpm")])
 def test_from_rest(extra: tuple[str, ...]) -> None:
-    content = answer("--transient", "0.5 s", *extra)
+    content = read("simulate", RIG, "0.5 s", *extra)
     time = content["time"]
     assert (time[0], time[-1]) == (0, 0.5)
     series = [content["crank_angle"], content["crank_speed"], content["gauges"]["gauge"],
@@ -308,7 +308,7 @@ def test_from_rest(extra: tuple[str, ...]) -> None:
     assert content["gauges"]["gauge"]["displacement"][0] == 0
     if "--drive" in extra:
         assert content["crank_speed"][0] == 0
-    text = succeeded(equipoise("respond", RIG, "--transient", "500 ms", *extra))
+    text = succeeded(equipoise("simulate", RIG, "500 ms", *extra))
     assert "\nfrom rest for 0.5000 s, " in text
     assert cells(text, "crank speed") and cells(text, "spring")
 
@@ -316,17 +316,17 @@ def test_from_rest(extra: tuple[str, ...]) -> None:
 # -- CSV and units ---------------------------------------------------------------------------------
 
 CSV = {
-    "one speed": ((), 360, ["time [s]", "crank_angle [rad]"]),
-    "motor": (("--drive",), 360, ["time [s]", "gauges.gauge.displacement [m]"]),
-    "range": (("--speed", "150:200 rpm", "--speeds", "7"), 7, ["speed [rad/s]"]),
-    "from rest": (("--transient", "0.2 s"), 2001,
+    "one speed": (("respond", RIG), 360, ["time [s]", "crank_angle [rad]"]),
+    "motor": (("respond", RIG, "--drive"), 360, ["time [s]", "gauges.gauge.displacement [m]"]),
+    "range": (("respond", RIG, "--speed", "150:200 rpm", "--speeds", "7"), 7, ["speed [rad/s]"]),
+    "from rest": (("simulate", RIG, "0.2 s"), 2001,
                   ["time [s]", "crank_angle [rad]", "crank_speed [rad/s]"]),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize(("words", "count", "first"), CSV.values(), ids=CSV)
 def test_csv(words: tuple[str, ...], count: int, first: list[str]) -> None:
-    result = equipoise("respond", RIG, *words, "--csv", "out.csv")
+    result = equipoise(*words, "--csv", "out.csv")
     assert succeeded(result)
     assert result.err == "wrote out.csv\n"
     header, values = table("out.csv")
@@ -401,7 +401,7 @@ def test_units_of_the_tables() -> None:
 
 
 def test_units_of_the_tables_from_rest() -> None:
-    words = ("respond", RIG, "--transient", "0.5 s")
+    words = ("simulate", RIG, "0.5 s")
     usual = float(cells(succeeded(equipoise(*words)), "gauge")[1])
     text = succeeded(equipoise(*words, "--units", "um, rad/s"))
     assert float(cells(text, "gauge")[1]) == pytest.approx(1000 * usual, rel=1e-3)
@@ -525,7 +525,7 @@ PICTURES = {
         ("respond", RIG, "--speed", "100:140 rpm", "--speeds", "5"),
         {"response", "velocity", "acceleration", "resonance-map", "mounts"},
     ),
-    "from rest": (("respond", RIG, "--transient", "0.2 s"), {"gauges", "mounts"}),
+    "from rest": (("simulate", RIG, "0.2 s"), {"gauges", "mounts"}),
     "modes": (("modes", RIG), {"mode-1"}),
 }
 

@@ -44,7 +44,6 @@ REFUSED = {
     # words after `respond`, what is said
     "no support": (["yamashita-1"], "yamashita-1: support: the machine stands on solid ground; ad"),
     "no support, range": (["yamashita-1", "--speed", "20:300 rpm"], "stands on solid ground; add "),
-    "no support, from rest": (["yamashita-1", "--transient", "1 s"], "stands on solid ground; add"),
     "no file": (["nothing.toml"], "nothing.toml: there is no such file; give a path, or the name"),
     "unknown option": ([RIG, "--spede", "3 rpm"], "--spede"),
     "speed 0": ([RIG, "--speed", "0 rpm"], "--speed: got '0 rpm'; a crank that stands still"),
@@ -76,15 +75,7 @@ REFUSED = {
         "riding-transplanter: support.freedoms: the model exact is for motion in the plane",
     ),
     "coupled in space": (["riding-transplanter", "--model", "coupled"], "the model coupled is for"),
-    "rest in space": (["riding-transplanter", "--transient", "1 s"], "the model exact is for mot"),
     "unknown model": ([RIG, "--model", "best"], "--model"),
-    "rest over a range": ([RIG, "--transient", "1 s", "--speed", "20:30 rpm"], "one speed; give o"),
-    "backwards in time": ([RIG, "--transient", "-1 s"], "--transient: got '-1 s'; give a time"),
-    "no time": ([RIG, "--transient", "0 s"], "--transient: got '0 s'; give a time of more than 0"),
-    "an age": ([RIG, "--transient", "1e9 s"], "give a time of more than 0 and at most 2000 turns"),
-    "no time's unit": ([RIG, "--transient", "5"], "--transient: got '5'; the unit is missing"),
-    "time's unit": ([RIG, "--transient", "5 rpm"], "--transient: got '5 rpm'; rpm is the unit of"),
-    "linear from rest": ([RIG, "--transient", "1 s", "--model", "linear"], "leave out --model lin"),
     "format alone": ([RIG, "--format", "png"], "--format belongs to --plot; give both"),
     "kind": ([RIG, "--plot", "new", "--format", "gif"], "--format"),
     "no folder's name": ([RIG, "--plot", ""], "--plot: got ''; give the name of a folder"),
@@ -97,6 +88,24 @@ REFUSED = {
 }  # fmt: skip
 
 
+FROM_REST = {
+    "no support": (["yamashita-1", "1 s"], "yamashita-1: support: the machine stands on solid gro"),
+    "in space": (["riding-transplanter", "1 s"], "the model exact is for motion in the plane"),
+    "a range": ([RIG, "1 s", "--speed", "20:30 rpm"], "--speed: got '20:30 rpm'"),
+    "backwards in time": ([RIG, "-1 s"], "DURATION: got '-1 s'; give a time of more than 0"),
+    "no time": ([RIG, "0 s"], "DURATION: got '0 s'; give a time of more than 0"),
+    "an age": ([RIG, "1e9 s"], "give a time of more than 0 and at most 2000 turns"),
+    "no time's unit": ([RIG, "5"], "DURATION: got '5'; the unit is missing"),
+    "time's unit": ([RIG, "5 rpm"], "DURATION: got '5 rpm'; rpm is the unit of"),
+}
+
+
+@pytest.mark.parametrize(("words", "said"), FROM_REST.values(), ids=FROM_REST)
+def test_refused_from_rest(words: list[str], said: str) -> None:
+    assert said in refused(equipoise("simulate", *words))
+    assert list(Path().iterdir()) == []
+
+
 @pytest.mark.parametrize(("words", "said"), REFUSED.values(), ids=REFUSED)
 def test_refused(words: list[str], said: str) -> None:
     assert said in refused(equipoise("respond", *words))
@@ -105,7 +114,7 @@ def test_refused(words: list[str], said: str) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    [["--speeds", "1", "--speed", "20:30 rpm"], ["--transient", "0 s"], ["--speed", "0 rpm"]],
+    [["--speeds", "1", "--speed", "20:30 rpm"], ["--speed", "0 rpm"]],
 )
 def test_the_sentence_names_the_option(words: list[str]) -> None:
     line = refused(equipoise("respond", RIG, *words))
@@ -218,7 +227,7 @@ def test_a_machine_that_cannot(
 
 
 @pytest.mark.parametrize("kind", ["massless", "no spring", "no mounts", "cannot turn"])
-@pytest.mark.parametrize("words", [("modes",), ("modes", "--json"), ("respond", "--transient=1 s")])
+@pytest.mark.parametrize("words", [("modes",), ("modes", "--json"), ("simulate", "1 s")])
 def test_modes_and_the_way_from_rest_of_such_a_machine(kind: str, words: tuple[str, ...]) -> None:
     changes, said = CANNOT[kind]
     line = refused(equipoise(words[0], file(*changes), *words[1:]))
@@ -315,7 +324,7 @@ def test_a_support_that_falls_over() -> None:
     assert "unstable: falls over" in succeeded(equipoise("modes", path))
     content = json.loads(succeeded(equipoise("respond", path, "--json")))
     assert any("falls over" in note for note in content["notes"])
-    content = json.loads(succeeded(equipoise("respond", path, "--transient", "4 s", "--json")))
+    content = json.loads(succeeded(equipoise("simulate", path, "4 s", "--json")))
     moved = content["gauges"]["gauge"]["displacement"]
     assert abs(moved[-1]) > 100 * abs(moved[100])
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import csv
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.cli import progress_studies
-from equipoise.cli.progress_studies import left_told, rate_told, swept, time_told
+from equipoise.cli import progress as progress_lines
+from equipoise.cli.progress import left_told, rate_told, swept, time_told
 from equipoise.schema.study_units import Unit
 from equipoise.studies.outcomes import Progress
 from surface.running import equipoise, succeeded
@@ -22,6 +23,14 @@ FRONT = LENGTHS.replace('list = ["199 g", "0.4 kg"]', 'range = ["199 g", "0.4 kg
     "drive_torque.peak", 'drive_torque.peak"\nmake = "largest'
 )
 QUICK = ("--population", "12", "--generations", "8")
+
+
+@pytest.fixture(autouse=True, scope="module")
+def with_progress() -> Iterator[None]:
+    """Here lines of progress are looked at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
+        yield
 
 
 @pytest.fixture(autouse=True)
@@ -40,7 +49,7 @@ def test_json_is_what_python_has() -> None:
     expected = own.to_dict()
     assert found == expected
     line = result.err.splitlines()[-1]
-    assert re.match(r"\d+ designs computed in .*; best vertical .* mN, torque", line)
+    assert re.match(r"\d+ designs computed in .*; best: vertical .* mN, torque", line)
 
 
 def test_generations_before_there_is_a_front() -> None:
@@ -145,7 +154,7 @@ def test_lines_in_a_log_grow_fewer(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     now = [0.0]
-    monkeypatch.setattr(progress_studies, "monotonic", lambda: now[0])
+    monkeypatch.setattr(progress_lines, "monotonic", lambda: now[0])
     told = []
     with swept({"height": Unit.of("mm")}) as tell:
         for second in range(1000):
@@ -158,11 +167,14 @@ def test_lines_in_a_log_grow_fewer(
     assert len(seconds) < 20
     assert np.all(np.diff(seconds) >= 5)
     assert told[0][1] == (
-        "0 %, 50 of 10000 designs, 10 designs/s; best height 250.0 mm; does not turn fully 5\n"
+        "0 %, 50 of 10000 designs, 10 designs/s; best so far: height 250.0 mm; "
+        "failed: does not turn fully 5\n"
     )
     assert "40 %, 4050 of 10000 designs, 10 designs/s, 9 min 55 s left; best" in told[-3][1]
     closing = capsys.readouterr().err
-    assert closing.startswith("9990 designs computed in 16 min 39 s, 10 designs/s; best height 250")
+    assert closing.startswith(
+        "9990 designs computed in 16 min 39 s, 10 designs/s; best: height 250"
+    )
     assert closing.count("\n") == 1
 
 

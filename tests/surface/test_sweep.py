@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,16 @@ from surface.studies import LENGTHS, TOLERANCES, written
 STORE = "lengths.zarr"
 
 
+@pytest.fixture(autouse=True, scope="module")
+def with_progress() -> Iterator[None]:
+    """Here lines of progress are looked at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
+        yield
+
+
 @pytest.fixture(scope="module")
-def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def made(tmp_path_factory: pytest.TempPathFactory, with_progress: None) -> Path:
     """A store, and what was printed when it was made."""
     folder = tmp_path_factory.mktemp("made")
     (folder / "study.toml").write_text(LENGTHS, encoding="utf-8")
@@ -66,7 +75,7 @@ def test_what_is_printed(made: Path) -> None:
     assert "The best designs; vertical smallest" in shown
     assert f"equipoise best {made / STORE}" in shown
     line = (made / "err").read_text().splitlines()[-1]
-    assert re.match(r"200 designs computed in \d.* s, .* designs/s; best vertical .* mN", line)
+    assert re.match(r"200 designs computed in \d.* s, .* designs/s; best: vertical .* mN", line)
 
 
 def test_units_are_those_of_the_files(made: Path) -> None:
@@ -226,7 +235,7 @@ REFUSED = {
     "design alone": (["best", STORE, "--design", "3"], "--design belongs to --out; give both"),
     "no such design": (
         ["best", STORE, "-o", "x.toml", "--design", "200"],
-        "--design: got '200'; give a whole number from 0 to 199",
+        "--design: got 200; give a whole number from 0 to 199",
     ),
     "model there": (["best", STORE, "-o", "study.toml"], "study.toml: is there already; choose an"),
     "no folder": (["best", STORE, "-o", "no/x.toml"], "no/x.toml: there is no such folder; make i"),

@@ -117,24 +117,24 @@ def test_unrestrained_shaft_names_its_rigid_modes() -> None:
 
 
 def test_variation() -> None:
-    words = ("--vary", "harness position = 0 mm : 154.4 mm", "--number", "5")
-    found = read("nagamine-irie", *words)["variation"]
+    words = ("vary", "nagamine-irie", "harness position = 0 mm : 154.4 mm", "--number", "5")
+    found = read(*words)["variation"]
     assert len(found["values"]) == len(found["eigenvalues"])
     first, last = found["eigenvalues"][0], found["eigenvalues"][-1]
     assert first == pytest.approx((1.650, 3.105, 4.326, 6.169, 9.359), abs=5e-4)
     assert last == pytest.approx((1.497, 2.631, 4.364, 6.221, 9.387), abs=5e-4)
-    shown = succeeded(equipoise("tool", "nagamine-irie", *words))
+    shown = succeeded(equipoise("tool", *words))
     assert "Natural frequencies against harness position; N in 1/min" in shown
 
 
 def test_sensitivities_are_those_of_python() -> None:
-    found = read("pole-saw", "--sensitivities", "--respond", "5000 rpm : 6000 rpm")
+    found = read("sensitivities", "pole-saw", "--speeds", "5000 rpm : 6000 rpm")
     speeds = np.linspace(5000 * RPM, 6000 * RPM, 201)
     slopes = eq.tool_sensitivities(eq.load_tool("pole-saw"), speeds)
     told = {(s, k): v for s, part in found["sensitivities"].items() for k, v in part.items()}
     assert told.keys() == slopes.keys()
     assert list(told.values()) == pytest.approx(list(slopes.values()))
-    assert "mm/s^2" in succeeded(equipoise("tool", "pole-saw", "--sensitivities"))
+    assert "mm/s^2" in succeeded(equipoise("tool", "sensitivities", "pole-saw"))
 
 
 def test_a_file_to_start_from() -> None:
@@ -165,7 +165,7 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     hand = 'hand = { stiffness = "51 kgf/cm", hands = 2 }'
     damped = hand.replace("stiffness", 'damping = "60 N s/m", stiffness')
     file = written(text + SMALL, hand, damped)
-    result = equipoise("tool", file, "--design", "-o", "better.toml", "--json")
+    result = equipoise("tool", "design", file, "-o", "better.toml", "--json")
     found = json.loads(succeeded(result))["design"]
     assert result.err == "wrote better.toml; next: equipoise tool better.toml\n"
     assert {path.name for path in folder.iterdir()} == {"tool.toml", "better.toml"}
@@ -189,19 +189,13 @@ def test_design_before_and_after() -> None:
     text = example_text("pole-saw")
     shown = succeeded(equipoise("tool", written(text + SMALL.replace('"harness"', '"belt"'))))
     assert "What to change" not in shown
-    shown = succeeded(equipoise("tool", "tool.toml", "--design"))
+    shown = succeeded(equipoise("tool", "design", "tool.toml"))
     row = re.search(r"^belt position +mm +600\.0 +(\S+) +(\S+ %)(.*)$", shown, re.MULTILINE)
     assert row
     assert 200 <= float(row[1]) <= 300
     assert ("that it may be" in row[3]) == (row[1] in {"200.0", "300.0"})
     assert "a_hv of the worst hand, RMS over the band  m/s^2" in shown
     assert re.search(r"^[1-8] of 8 searches from places", shown, re.MULTILINE)
-
-
-def test_sensitivities_have_no_picture(folder: Path) -> None:
-    said = refused(equipoise("tool", "pole-saw", "--sensitivities", "--plot", "pictures"))
-    assert "--plot: sensitivities have no picture" in said
-    assert not list(folder.iterdir())
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -252,18 +246,7 @@ def test_start_is_quick_and_alone() -> None:
         (["--at", "2"], "--at: got '2'"),
         (["--duration", "25 h"], "--duration: got '25 h'; give more than 0 and at most 24 h a day"),
         (["--duration", "0 h"], "--duration: got '0 h'"),
-        (["--vary", "harness"], "--vary: got 'harness'; give a station, one of its numbers and"),
-        (["--vary", "belt position = 0 m : 1 m"], "--vary: stations: no station is called 'belt'"),
-        (["--vary", "harness length = 0 m : 1 m"], "no number of 'harness' is called 'length'"),
-        (["--vary", "engine harness.stiffness = 1 N/m : 2 N/m"], "'engine' has no harness"),
-        (["--vary", "harness position = 0 m : 2 m"], "the shaft"),
-        (["--vary", "harness harness.damping = 0 N s/m : 9 N s/m"], "do not feel; vary another"),
-        (["--design", "--out", "."], "--out: . is a directory"),
-        (["--vary", "harness position = 1 m : 0 m"], "the smaller value first"),
-        (["--vary", "harness position = 0 kg : 1 kg"], "--vary: got '0 kg'"),
-        (["--design"], "design: missing; add the table [design]"),
-        (["--out", "new.toml"], "--out belongs to --design; give both"),
-        (["--number", "5", "--exposure"], "--number belongs to --modes or --vary"),
+        (["--number", "5", "--exposure"], "--number belongs to --modes; give both"),
         (["--format", "png"], "--format belongs to --plot; give both"),
         (["--csv", ""], "--csv: got an empty name"),
         (["--csv", "no/where.csv"], "there is no such folder"),
@@ -273,6 +256,30 @@ def test_start_is_quick_and_alone() -> None:
 )
 def test_bad_options(folder: Path, words: list[str], said: str) -> None:
     assert said in refused(equipoise("tool", "nagamine-irie", *words))
+    assert not list(folder.iterdir())
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ("harness", "CHANGE: got 'harness'; give a station, one of its numbers and a range"),
+        ("belt position = 0 m : 1 m", "CHANGE: stations: no station is called 'belt'"),
+        ("harness length = 0 m : 1 m", "no number of 'harness' is called 'length'"),
+        ("engine harness.stiffness = 1 N/m : 2 N/m", "'engine' has no harness"),
+        ("harness position = 0 m : 2 m", "the shaft"),
+        ("harness harness.damping = 0 N s/m : 9 N s/m", "do not feel; vary another"),
+        ("harness position = 1 m : 0 m", "the smaller value first"),
+        ("harness position = 0 kg : 1 kg", "CHANGE: got '0 kg'"),
+    ],
+)
+def test_bad_changes(change: str, said: str) -> None:
+    assert said in refused(equipoise("tool", "vary", "nagamine-irie", change))
+
+
+def test_designs_that_cannot_be(folder: Path) -> None:
+    words = ("tool", "design", "nagamine-irie")
+    assert "design: missing; add the table [design]" in refused(equipoise(*words))
+    assert "--out: . is a directory" in refused(equipoise(*words, "--out", "."))
     assert not list(folder.iterdir())
 
 
@@ -322,7 +329,7 @@ def test_what_is_missing_is_told() -> None:
 
 def test_new_file_takes_no_others_place(folder: Path) -> None:
     Path("there.toml").write_text("mine")
-    said = refused(equipoise("tool", "brush-cutter", "--design", "--out", "there.toml"))
+    said = refused(equipoise("tool", "design", "brush-cutter", "--out", "there.toml"))
     assert "is there already" in said
     assert Path("there.toml").read_text() == "mine"
 
@@ -332,7 +339,7 @@ def test_no_design_within_the_limits() -> None:
         '\n[[design.limits]]\noutput = "acceleration"\nstation = "handle"\nat_most = "1 mm/s^2"\n'
     )
     file = written(example_text("nagamine-irie") + SMALL + limit)
-    said = refused(equipoise("tool", file, "--design"))
+    said = refused(equipoise("tool", "design", file))
     assert "no design within the limits was found" in said
 
 

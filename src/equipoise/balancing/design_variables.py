@@ -20,8 +20,8 @@ from equipoise.balancing.program import Affine, Program
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.parameters import spring_columns
 from equipoise.mechanism.spring import Spring
-from equipoise.mechanism.spring_columns import spring_columns
 
 Array = np.ndarray[Any, Any]
 

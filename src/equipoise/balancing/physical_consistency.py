@@ -35,10 +35,10 @@ SMALL = 1e-6
 """Relative to the mass of the machine, and this at its size: less is what the solver leaves."""
 TRACE = 1e-3
 """The same, where a link without mass needs some."""
-SUSPECT = (1e-2, 1e-4, 0.0)
-"""Shares of the largest factor of a combination below which one may be rounding: tried in turn."""
 PIVOT, ROUNDING = 1e-10, 1e-12
 """Relative sizes below which a number counts as none."""
+SUSPECT = (1e-2, 1e-4, ROUNDING)
+"""Shares of the largest factor of a combination below which one may be rounding: tried in turn."""
 MOST = 1e4
 """Times the mass of the machine, and this at its size: more no link gets, where the solver needs a
 bound."""
@@ -141,9 +141,12 @@ class ConsistentMasses:
                 continue
             for share in SUSPECT:
                 combination = self._tidied(found, share)
-                least = self._least(combination)
-                if least > SMALL * np.max(np.abs(combination)):
-                    return combination / self.scale, least
+                size = float(np.max(np.abs(combination)))
+                if size <= SMALL:  # all of it is what the solver leaves of zero
+                    continue
+                least = self._least(combination / size)
+                if least > SMALL:
+                    return combination / self.scale, size * least
         return None
 
     def _combinations(self, bounded: bool) -> tuple[Program, Array]:
@@ -182,6 +185,7 @@ class ConsistentMasses:
         combination = y @ self.rows
         gone = np.abs(combination) < share * np.max(np.abs(combination))
         unwanted = self.rows[:, gone].T
+        unwanted = np.where(np.abs(unwanted) < PIVOT, 0.0, unwanted)  # no inverse of rounding
         tidied = (y - np.linalg.pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
         return (
             np.where(gone, 0.0, tidied)

@@ -13,53 +13,17 @@ from collections.abc import Sequence
 
 from cyclopts import CycloptsError
 
-from equipoise.cli import (
-    analyze,
-    animate,
-    balance,
-    best,
-    decay,
-    exposure,
-    models,
-    modes,
-    plant,
-    plot,
-    report,
-    respond,
-    search,
-    serve,
-    sweep,
-    tolerance,
-    tool,
-)
-from equipoise.cli.app import app
+from equipoise.cli.app import app, import_commands
 from equipoise.errors import EquipoiseError
 
-__all__ = [
-    "analyze",
-    "animate",
-    "balance",
-    "best",
-    "decay",
-    "exposure",
-    "main",
-    "models",
-    "modes",
-    "plant",
-    "plot",
-    "report",
-    "respond",
-    "run",
-    "search",
-    "serve",
-    "sweep",
-    "tolerance",
-    "tool",
-]
+__all__ = ["main", "run"]
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
+    given = sys.argv[1:] if arguments is None else arguments
+    if not given or given[0].startswith("-"):
+        import_commands()
     try:
         app(
             arguments,

@@ -4,10 +4,25 @@ from __future__ import annotations
 
 import re
 import sys
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.app import FILE, SIGNED, app
-from equipoise.cli.options import check_belonging, check_target, naming, quantity, whole
+from cyclopts import Parameter
+
+from equipoise.cli.options import (
+    Angle,
+    File,
+    Speed,
+    Text,
+    check_belonging,
+    check_result_file,
+    count,
+    naming,
+    quantity,
+    read_by,
+    size,
+    sources_of,
+)
+from equipoise.cli.outputs import Printed
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -16,20 +31,31 @@ if TYPE_CHECKING:
 MOST_ORDERS = 100
 
 
-@app.command
+def _angles(option: str, text: str) -> int | list[float]:
+    if re.fullmatch("[+-]?[0-9]{1,20}", text):
+        return int(text)
+    try:
+        return [quantity(option, part.strip(), "angle") for part in text.split(",")]
+    except UsageError as error:
+        raise UsageError(f'{error}; give a number, or angles such as "0 deg, 45 deg"') from error
+
+
+Angles = Annotated[Any, read_by(_angles), Parameter(show_default=True)]
+
+
 def analyze(
-    file: Annotated[str, FILE],
+    file: File,
     /,
     *,
-    angles: Annotated[str, SIGNED] = "360",
-    speed: Annotated[str | None, SIGNED] = None,
-    acceleration: Annotated[str | None, SIGNED] = None,
-    about: Annotated[str | None, SIGNED] = None,
-    json: bool = False,
+    angles: Angles = 360,
+    speed: Speed = None,
+    acceleration: Annotated[float | None, size("angular acceleration")] = None,
+    about: Text = None,
     split: bool = False,
     csv: str | None = None,
-    orders: Annotated[str | None, SIGNED] = None,
-    crank_zero: Annotated[str | None, SIGNED] = None,
+    orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
+    crank_zero: Angle = None,
+    outputs: Printed = Printed(),
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
 
@@ -45,8 +71,6 @@ def analyze(
         Acceleration of the crank instead of the file's, such as "10 rad/s^2".
     about
         Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
-    json
-        Print one JSON object in SI units, and nothing else.
     split
         With --json: add every force by cause and by link.
     csv
@@ -56,59 +80,37 @@ def analyze(
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
     """
-    from equipoise import pipeline
+    from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
     from equipoise.schema.models import load
 
-    machine = load(file)
-    check_belonging("--json", json or None, split=split or None)
+    check_belonging("--json", outputs.json, split=split or None)
     if crank_zero is not None and orders is None:
         raise UsageError("--crank-zero belongs to --orders; give both")
-    count = None if orders is None else whole("--orders", orders, 1, MOST_ORDERS)
-    zero = 0.0 if crank_zero is None else quantity("--crank-zero", crank_zero, "angle")
+    machine = load(file)
+    zero = crank_zero or 0.0
     if csv is not None:
-        check_target("--csv", csv, file, machine)
-    arguments = (
-        _angles(angles),
-        None if speed is None else quantity("--speed", speed, "angular speed"),
-        None
-        if acceleration is None
-        else quantity("--acceleration", acceleration, "angular acceleration"),
-        None if about is None else _place(machine, about),
-    )
+        check_result_file("--csv", csv, sources_of(machine, file))
+    place = None if about is None else _place(machine, about)
     with naming(file):
-        analysis = pipeline.analyze(machine, *arguments)
-        told = {} if count is None else {"by_order": order_values(analysis, count, zero)}
+        analysis = analyzed(machine, angles, speed, acceleration, place)
+        by_order = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
     if csv is not None:
         from equipoise.schema.output import to_csv, write
 
         write(csv, to_csv(analysis))
         print(f"wrote {csv}", file=sys.stderr)
-    if json:
-        from equipoise.schema.output import json_text
 
-        print(json_text(analysis.to_dict(split) | told))
-    elif count is not None:
+    def show() -> None:
+        from equipoise.terminal.analysis import print_analysis
         from equipoise.terminal.orders import print_orders
 
-        print_orders(analysis, count, zero)
-    else:
-        from equipoise.terminal.analysis import print_analysis
+        if orders is None:
+            print_analysis(analysis)
+        else:
+            print_orders(analysis, orders, zero)
 
-        print_analysis(analysis)
-
-
-def _angles(text: str) -> int | list[float]:
-    from equipoise.quantities import parse
-
-    if re.fullmatch("[+-]?[0-9]{1,20}", text):
-        return int(text)
-    try:
-        return [parse(part.strip(), "angle") for part in text.split(",")]
-    except UsageError as error:
-        raise UsageError(
-            f'--angles: {error}; give a number, or angles such as "0 deg, 45 deg"'
-        ) from error
+    outputs.print(lambda: analysis.to_dict(split) | by_order, show)
 
 
 def _place(machine: Machine, text: str) -> str | tuple[float, float]:

@@ -1,63 +1,52 @@
-"""The command `balance`."""
+"""The command `balance`, and what else is asked of it, each question by a command of its own."""
 
 from __future__ import annotations
 
-import sys
-from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated
 
-from equipoise.cli.app import FILE, MANY, OUT, SIGNED, app
-from equipoise.cli.options import check_belonging, check_new, naming, quantity, whole
-from equipoise.cli.results import Kind, Wanted
-from equipoise.errors import UsageError
+from cyclopts import App, Parameter
+
+from equipoise.cli.options import (
+    Angle,
+    File,
+    Many,
+    Out,
+    Speed,
+    blaming,
+    check_new,
+    count,
+    naming,
+    size,
+    sources_of,
+)
+from equipoise.cli.outputs import Outputs, Printed, write_model
+from equipoise.cli.plan import Freed, plan_of, read_objective
+from equipoise.cli.progress import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Mapping
 
     from matplotlib.figure import Figure
 
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
 
-MOST_POINTS = 500
-Shape = Literal["any", "point", "disc", "ring", "sector"]
+app = App(name="balance")
+MOST_POINTS, MOST_ROWS = 500, 64
 
 
-@app.command
+@app.default
 def balance(
-    file: Annotated[str, FILE],
+    file: File,
     /,
     *,
-    objective: Annotated[list[str] | None, MANY] = None,
-    limit: Annotated[list[str] | None, MANY] = None,
-    move_cm: Annotated[list[str] | None, MANY] = None,
-    crank_counterweight: bool = False,
-    counterweight: Annotated[list[str] | None, MANY] = None,
-    geared_counterweight: str | None = None,
-    ratio: Annotated[str | None, SIGNED] = None,
-    pitch_radius: Annotated[str | None, SIGNED] = None,
-    shape: Shape | None = None,
-    radius: Annotated[str | None, SIGNED] = None,
-    mass: Annotated[str | None, SIGNED] = None,
-    at_most: Annotated[str | None, SIGNED] = None,
-    thickness: Annotated[str | None, SIGNED] = None,
-    material: str | None = None,
-    phases: bool = False,
-    speed: Annotated[str | None, SIGNED] = None,
-    front: tuple[str, str] | None = None,
-    points: Annotated[str | None, SIGNED] = None,
-    conditions: bool = False,
-    sensitivities: str | None = None,
-    crank_zero: Annotated[str | None, SIGNED] = None,
-    arrangements: Annotated[str | None, SIGNED] = None,
-    spacing: Annotated[str | None, SIGNED] = None,
-    out: Annotated[str | None, OUT] = None,
-    json: bool = False,
-    csv: str | None = None,
-    plot: str | None = None,
-    format: Kind | None = None,
+    objective: Many = None,
+    limit: Many = None,
+    speed: Speed = None,
+    freed: Freed = Freed(),
+    out: Out = None,
+    outputs: Outputs = Outputs(),
 ) -> None:
     """What to change so that the machine shakes less, with proof that nothing better exists.
 
@@ -71,149 +60,39 @@ def balance(
     limit
         What must be kept: "peak joints.B <= 120 N", "rms drive_torque <= 90 %",
         "added_mass <= 500 g".  May be repeated.
-    move_cm
-        Free the centre of mass of this link.  May be repeated.
-    crank_counterweight
-        Free a counterweight on the crank's axis.
-    counterweight
-        Free a counterweight on this link, about its pin in the frame, or its first point where it
-        has none.  May be repeated.
-    geared_counterweight
-        Free a counterweight on a shaft geared to this link.
-    ratio
-        With --geared-counterweight: speed of the shaft over the link's, or a range "0.3, 2".
-    pitch_radius
-        With --geared-counterweight: of the gear on the link.
-    shape
-        Of counterweights: any distribution of mass, point, disc, ring or sector.
-    radius
-        Of the room that a counterweight has; the reach of its link if neither this nor a mass is
-        given.
-    mass
-        Of a counterweight, where it is given.
-    at_most
-        Most mass of a counterweight.
-    thickness
-        Of the plate that discs, rings and sectors are cut from.
-    material
-        Of that plate, such as steel.
-    phases
-        Free the phases of [[rows]].
     speed
         Speed of the crank instead of the file's, such as "250 rpm".
-    front
-        Draw the trade-off between two objectives instead.
-    points
-        With --front: number of points, 21 if not given.
-    conditions
-        Print the conditions under which the shaking force is zero or a pure sine instead.
-    sensitivities
-        Print what each parameter does to this output instead, such as shaking_force.y.
-    crank_zero
-        With --sensitivities: direction from which crank angles count, such as "-83 deg"; else the
-        x axis.
-    arrangements
-        Print named arrangements of this many rows, and what each leaves, instead.
-    spacing
-        With --arrangements: from row to row, 300 mm if not given.
     out
         Write the balanced machine as a new model file.
-    json
-        Print one JSON object in SI units, and nothing else.
-    csv
-        Write signals before and after, or the front, to this file.
-    plot
-        Draw before and after, or the front, into this folder.
-    format
-        With --plot: kind of the pictures, svg if not given.
     """
-    from equipoise.cli.questions import tell_arrangements, tell_conditions, tell_sensitivities
-    from equipoise.cli.wishes import Freed, plan_of
-    from equipoise.schema.models import load
+    from equipoise.balancing import optimisation as balancing
 
-    check_belonging("--front", front, points=points)
-    check_belonging("--sensitivities", sensitivities, crank_zero=crank_zero)
-    check_belonging("--arrangements", arrangements, spacing=spacing)
-    machine = load(file)
-    if speed is not None:
-        machine = machine.with_drive(speed=quantity("--speed", speed, "angular speed"))
-    wanted = Wanted(json, csv, plot, format)
-    wanted.check(file, machine, [] if out is None else [out])
+    machine = _machine(file, speed)
+    outputs.check(sources_of(machine, file), [out])
     if out is not None:
         check_new(machine, out)
-    freed = Freed(
-        move_cm,
-        crank_counterweight,
-        counterweight,
-        geared_counterweight,
-        phases,
-        shape,
-        radius,
-        mass,
-        at_most,
-        thickness,
-        material,
-        ratio,
-        pitch_radius,
-    )
-    _check_alone(
-        {
-            "--front": front,
-            "--conditions": conditions or None,
-            "--sensitivities": sensitivities,
-            "--arrangements": arrangements,
-        },
-        {"--out": out, "--csv": csv, "--plot": plot, "--objective": objective, "--limit": limit}
-        | dict.fromkeys(freed.given, "given"),
-    )
     with naming(file):
-        if conditions:
-            tell_conditions(machine, wanted)
-        elif arrangements is not None:
-            tell_arrangements(machine, arrangements, spacing, wanted)
-        elif sensitivities is not None:
-            tell_sensitivities(machine, sensitivities, crank_zero, wanted)
-        elif front is not None:
-            count = 21 if points is None else whole("--points", points, 2, MOST_POINTS)
-            plan = plan_of(machine, freed, None, limit)
-            _trade(machine, plan, front, count, wanted)
-        else:
-            _balance(machine, plan_of(machine, freed, objective, limit), out, wanted)
+        plan = plan_of(machine, freed, objective, limit)
+        with counted("program") as progress:
+            found = balancing.balance(machine, plan, progress)
 
+        def show() -> None:
+            from equipoise.terminal.balance import print_balanced
 
-def _check_alone(questions: Mapping[str, object], others: Mapping[str, object]) -> None:
-    """Options that ask another question stand alone; a front is drawn of what is free to change."""
-    asked = [name for name, value in questions.items() if value is not None]
-    if len(asked) > 1:
-        raise UsageError(f"{asked[0]} and {asked[1]} answer different questions; give one of them")
-    unused = ("--out", "--objective") if asked == ["--front"] else tuple(others)
-    for name in unused:
-        if asked and others[name] is not None:
-            raise UsageError(f"{asked[0]} has no use for {name}; leave it out")
+            print_balanced(found)
 
-
-def _balance(machine: Machine, plan: Balance, out: str | None, wanted: Wanted) -> None:
-    from equipoise.balancing.optimisation import balance as solve
-    from equipoise.cli.progress import counted
-
-    with counted("program") as progress:
-        found = solve(machine, plan, progress)
-
-    def save() -> None:  # after tables and pictures, which may fail
-        if out is not None:
+        outputs.write(found.columns)
+        outputs.draw(lambda: _drawings(found))
+        if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
+        outputs.print(found.to_dict, show)
 
-    def show() -> None:
-        from equipoise.terminal.balance import print_balanced
 
-        save()
-        print_balanced(found)
+def _machine(file: str, speed: float | None) -> Machine:
+    from equipoise.schema.models import load
 
-    def values() -> dict[str, object]:
-        save()
-        return found.to_dict()
-
-    wanted.give(found.columns, lambda: _drawings(found), values, show)
+    machine = load(file)
+    return machine if speed is None else machine.with_drive(speed=speed)
 
 
 def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
@@ -224,34 +103,167 @@ def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
 
 def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
-    from equipoise.schema.files import printable
-    from equipoise.schema.models import files_of, save
     from equipoise.terminal.changes import told
 
-    machine = found.machine
     changes = " ".join(f"{line.strip()}." for change in found.changes for line in told(change))
-    start = f"Changed by equipoise balance: {changes} Started from: "
-    text = f"{start}{machine.description}".removesuffix(" Started from: ")
-    title = f"{machine.title.removesuffix(', balanced')}, balanced"
-    save(replace(machine, title=title, description=text.strip()), out)
-    written = " and ".join(map(printable, files_of(machine, out)))
-    print(f"wrote {written}", file=sys.stderr)
+    write_model(found.machine, out, ", balanced", f"Changed by equipoise balance: {changes}")
 
 
-def _trade(
-    machine: Machine, plan: Balance, both: Sequence[str], points: int, wanted: Wanted
+@app.command
+def trade_off(
+    file: File,
+    first: Annotated[str, Parameter(name="FIRST")],
+    second: Annotated[str, Parameter(name="SECOND")],
+    /,
+    *,
+    points: Annotated[int, count(2, MOST_POINTS)] = 21,
+    limit: Many = None,
+    speed: Speed = None,
+    freed: Freed = Freed(),
+    outputs: Outputs = Outputs(),
 ) -> None:
-    from equipoise.balancing.pareto import trade_off
-    from equipoise.cli.progress import counted
-    from equipoise.cli.wishes import read_objective
+    """The best that can be had of two objectives at once: their Pareto front, point by point.
 
-    first, second = (read_objective("--front", text) for text in both)
-    with counted("point") as progress:
-        found = trade_off(machine, first, second, plan, points, progress)
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.  Its table [balance] says what may
+        change; the options below take the place of it.
+    first
+        What is to become small: "shaking_force.y", "peak shaking_moment about D".
+    second
+        What is to become small besides.
+    points
+        Number of points.
+    limit
+        What must be kept: "peak joints.B <= 120 N".  May be repeated.
+    speed
+        Speed of the crank instead of the file's, such as "250 rpm".
+    """
+    from equipoise.balancing import pareto
+
+    machine = _machine(file, speed)
+    outputs.check(sources_of(machine, file))
+    with naming(file):
+        plan = plan_of(machine, freed, None, limit)
+        one, other = read_objective("FIRST", first), read_objective("SECOND", second)
+        with counted("point") as progress:
+            found = pareto.trade_off(machine, one, other, plan, points, progress)
+
+        def show() -> None:
+            from equipoise.terminal.balance import print_front
+
+            print_front(found)
+
+        outputs.write(found.columns)
+        outputs.give(lambda: _drawings(found), found.to_dict, show)
+
+
+@app.command
+def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed()) -> None:
+    """When the shaking force is zero or a pure sine, and whether mass can make it so.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    speed
+        Speed of the crank instead of the file's, such as "250 rpm".
+    """
+    from equipoise.balancing import linear_conditions as balancing
+    from equipoise.balancing.physical_consistency import feasibility
+
+    machine = _machine(file, speed)
+    with naming(file):
+        found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
+        told = feasibility(machine)
+
+        def show() -> None:
+            from equipoise.terminal.conditions import print_conditions
+
+            print_conditions(machine, found.values(), told)
+
+        values = {name: one.to_dict() for name, one in found.items()}
+        outputs.print(lambda: values | {"verdict": told.to_dict()}, show)
+
+
+@app.command
+def sensitivities(
+    file: File,
+    output: Annotated[str, Parameter(name="OUTPUT")],
+    /,
+    *,
+    crank_zero: Angle = None,
+    speed: Speed = None,
+    outputs: Printed = Printed(),
+) -> None:
+    """What each link's mass, centre of mass and inertia does to an output.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    output
+        Such as shaking_force.y.
+    crank_zero
+        Direction from which crank angles count, such as "-83 deg"; else the x axis.
+    speed
+        Speed of the crank instead of the file's, such as "250 rpm".
+    """
+    from equipoise.balancing import sensitivity
+    from equipoise.vibration.forced import check_moving
+
+    machine = _machine(file, speed)
+    with naming(file):
+        check_moving(machine)
+        with blaming("OUTPUT"):
+            found = sensitivity.sensitivities(machine, output)
 
     def show() -> None:
-        from equipoise.terminal.balance import print_front
+        from equipoise.terminal.conditions import print_sensitivities
 
-        print_front(found)
+        print_sensitivities(found, crank_zero or 0.0)
 
-    wanted.give(found.columns, lambda: _drawings(found), found.to_dict, show)
+    outputs.print(found.to_dict, show)
+
+
+@app.command
+def arrangements(
+    file: File,
+    rows: Annotated[int, count(2, MOST_ROWS, "ROWS")],
+    /,
+    *,
+    spacing: Annotated[
+        float, size("length", "give a length of more than 0"), Parameter(show_default=False)
+    ] = 0.3,
+    speed: Speed = None,
+    outputs: Printed = Printed(),
+) -> None:
+    """Named arrangements of so many rows in fixed phases, and what each leaves of the forces.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    rows
+        How many linkages stand side by side.
+    spacing
+        From row to row, 300 mm if not given.
+    speed
+        Speed of the crank instead of the file's, such as "250 rpm".
+    """
+    from equipoise.balancing.patterns import patterns_for
+    from equipoise.vibration.forced import check_moving
+
+    machine = _machine(file, speed)
+    with naming(file):
+        check_moving(machine)
+
+    def show() -> None:
+        from equipoise.terminal.phases import print_patterns
+
+        print_patterns(machine, rows, spacing)
+
+    with naming(file):
+        values = {"patterns": [one.to_dict() for one in patterns_for(rows)]}
+        outputs.print(lambda: values, show)

@@ -3,34 +3,43 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.app import SIGNED, app
-from equipoise.cli.options import check_belonging, check_folder, quantity
-from equipoise.cli.results import Kind, draw
+from equipoise.cli.options import SIGNED, blaming, check_belonging, quantity, read_by, size
+from equipoise.cli.outputs import Drawn
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.measured.decay import Decay
-    from equipoise.measured.record import Record
+    from collections.abc import Mapping
 
-RECORD = Parameter(name="CSV", negative="")
+    from matplotlib.figure import Figure
+
+Arm = Annotated[float | None, size("length", "give more than 0")]
 
 
-@app.command
+def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
+    """A stiffness, N/m or N m/rad, whether it is torsional, and how it was given."""
+    from equipoise.quantities.units import KINDS, plain_unit
+
+    unit = plain_unit(text.partition(" ")[2].strip())
+    torsional = unit in KINDS["torsional stiffness"].units
+    value = quantity(option, text, "torsional stiffness" if torsional else "stiffness")
+    if value <= 0:
+        raise UsageError(f"{option}: got {text!r}; give more than 0")
+    return value, torsional, text
+
+
 def decay(
-    csv: Annotated[str, RECORD],
+    csv: Annotated[str, Parameter(name="CSV", negative="")],
     /,
     *,
-    stiffness: Annotated[str | None, SIGNED] = None,
-    arm: Annotated[str | None, SIGNED] = None,
-    spring_arm: Annotated[str | None, SIGNED] = None,
+    stiffness: Annotated[Any, read_by(_stiffness)] = None,
+    arm: Arm = None,
+    spring_arm: Arm = None,
     confidence: Annotated[float, SIGNED] = 0.95,
-    json: bool = False,
-    plot: str | None = None,
-    format: Kind | None = None,
+    outputs: Drawn = Drawn(),
 ) -> None:
     """Frequency, inertia, viscous damping and Coulomb friction from a recorded free decay.
 
@@ -46,88 +55,37 @@ def decay(
         Distance from the pivot at which the spring acts; its stiffness is then in N/m.
     confidence
         Of the intervals.
-    json
-        Print one JSON object in SI units, and nothing else.
-    plot
-        Draw the record with its fit, and the line of half-swings, into this folder.
-    format
-        With --plot: kind of the pictures, svg if not given.
     """
+    from equipoise.measured.decay import identify_decay
+    from equipoise.schema.files import printable
     from equipoise.schema.records import read_record
 
-    check_belonging("--plot", plot, format=format)
-    check_belonging("--stiffness", stiffness, **{"spring-arm": spring_arm})
+    check_belonging("--stiffness", stiffness is not None, spring_arm=spring_arm)
     if not 0 < confidence < 1:
         raise UsageError(f"--confidence: got {confidence:g}; give 0.95, or another between 0 and 1")
-    if plot is not None:
-        check_folder("--plot", plot)
-    at, spring_at = _length("--arm", arm), _length("--spring-arm", spring_arm)
-    stiff, torsional = _stiffness(stiffness)
     record = read_record(csv)
     if arm is not None and record.kind == "angle":
         raise UsageError(
             "--arm makes an angle of a length, but the record has angles; leave it out"
         )
+    value = None
     if stiffness is not None:
-        angles = record.kind == "angle" or arm is not None
-        _check_stiffness(stiffness, torsional, angles, spring_at)
-    found = _identified(csv, record, stiff, at, spring_at, confidence)
-    if plot is not None:
-        from equipoise.plotting.decay import drawings
-        from equipoise.schema.files import printable
+        value, torsional, text = stiffness
+        _check_stiffness(text, torsional, record.kind == "angle" or arm is not None, spring_arm)
+    with blaming(printable(csv)):
+        found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
 
-        draw(drawings(found, printable(os.path.basename(csv))), plot, format or "svg")
-    if json:
-        from equipoise.schema.output import json_text
-
-        print(json_text(found.to_dict()))
-    else:
+    def show() -> None:
         from equipoise.terminal.decay import print_decay
 
         print_decay(found, os.path.basename(csv))
 
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting import decay as pictures
 
-def _identified(
-    csv: str,
-    record: Record,
-    stiffness: float | None,
-    arm: float | None,
-    spring_arm: float | None,
-    confidence: float,
-) -> Decay:
-    from equipoise.measured.decay import identify_decay
-    from equipoise.schema.files import printable
+        return pictures.drawings(found, printable(os.path.basename(csv)))
 
-    try:
-        return identify_decay(
-            record, stiffness, arm=arm, spring_arm=spring_arm, confidence=confidence
-        )
-    except UsageError as error:
-        raise UsageError(f"{printable(csv)}: {error}") from error
-
-
-def _length(option: str, text: str | None) -> float | None:
-    if text is None:
-        return None
-    return _above_zero(option, text, quantity(option, text, "length"))
-
-
-def _above_zero(option: str, text: str, value: float) -> float:
-    if value <= 0:
-        raise UsageError(f"{option}: got {text!r}; give more than 0")
-    return value
-
-
-def _stiffness(text: str | None) -> tuple[float | None, bool]:
-    """A stiffness, N/m or N m/rad, and whether it is torsional."""
-    from equipoise.quantities.units import KINDS, plain_unit
-
-    if text is None:
-        return None, False
-    unit = plain_unit(text.partition(" ")[2].strip())
-    torsional = unit in KINDS["torsional stiffness"].units
-    value = quantity("--stiffness", text, "torsional stiffness" if torsional else "stiffness")
-    return _above_zero("--stiffness", text, value), torsional
+    outputs.give(drawings, found.to_dict, show)
 
 
 def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float | None) -> None:

@@ -1,91 +1,243 @@
-"""What the commands of studies share: designs as CSV and as model files, and where these may go."""
+"""The commands `best`, `export` and `search`: designs of a study, the best first."""
 
 from __future__ import annotations
 
+import json
+import os
 import sys
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import check_new_files
+from equipoise.cli.options import (
+    Many,
+    Out,
+    StorePath,
+    StudyFile,
+    check_new,
+    check_result_file,
+    count,
+    naming,
+)
+from equipoise.cli.outputs import Chosen, Columns, Outputs, write_model
+from equipoise.cli.progress import Watched, swept
+from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
-    from equipoise.handheld.model import Tool
-    from equipoise.mechanism.model import Machine
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
 
+    Array = np.ndarray[Any, Any]
 
-def check_model_out(model: Machine | Tool, path: str) -> None:
-    """A new model file must have a place to go, and so must all that is written beside it."""
-    from equipoise.handheld.model import Tool
-    from equipoise.schema.models import files_of
-    from equipoise.schema.tools import files_of_tool
-
-    if isinstance(model, Tool):
-        check_new_files(path, lambda name: files_of_tool(model, name))
-    else:
-        check_new_files(path, lambda name: files_of(model, name))
+MOST_TOLD, MOST_SEED = 100_000, 2**32 - 1
+ENDINGS = (".csv", ".parquet")
 
 
-def save_design(model: Machine | Tool, path: str, number: int, of: str) -> None:
-    """Write a design as a model file, with where it comes from in its description.
-
-    of : what it is a design of, such as ``the study "Lengths"``.
-    """
-    from equipoise.handheld.model import Tool
-    from equipoise.schema.files import printable
-    from equipoise.schema.models import files_of, save
-    from equipoise.schema.tools import files_of_tool, save_tool
-
-    title = f"{model.title}, design {number}"
-    start = f"Design {number} of {of}. Started from: "
-    description = f"{start}{model.description}".removesuffix(" Started from: ")
-    made: Any = replace(model, title=title, description=description.strip())
-    if isinstance(made, Tool):
-        save_tool(made, path)
-        files = files_of_tool(made, path)
-    else:
-        save(made, path)
-        files = files_of(made, path)
-    print(f"wrote {' and '.join(map(printable, files))}", file=sys.stderr)
-
-
-def write_designs(
-    path: str,
-    designs: Iterable[int],
-    columns: Mapping[str, np.ndarray[Any, Any]],
-    units: Mapping[str, str],
+def best(
+    store: StorePath,
+    /,
+    *,
+    by: Many = None,
+    largest: Many = None,
+    most: Annotated[int, count(1, MOST_TOLD, "--count")] = 10,
+    chosen: Chosen = Chosen(),
+    outputs: Outputs = Outputs(),
 ) -> None:
-    """Write designs as CSV, one a row, in SI units, and say so; the form is that of `export`."""
-    import csv
-    import io
+    """The best designs of a store, of those that keep every limit; of several aims, the trade-offs.
 
+    Parameters
+    ----------
+    store
+        Path of a store, as `equipoise sweep` makes it.
+    by
+        Name of an output or of a varied number to go by, instead of what the study makes small or
+        large; small is good unless the study says otherwise.  May be repeated.
+    largest
+        The same, of which much is good.  May be repeated.
+    most
+        Most designs that are told.
+    """
+    from equipoise.schema.study_units import machine_of, study_of, units_in
+    from equipoise.studies import selection as of_stores
+    from equipoise.studies.store import open_store
+
+    opened = open_store(store)
+    chosen.check(0, opened.size - 1)
+    outputs.check([], [chosen.out])
+    if chosen.out is not None:
+        check_new(study_of(opened).model.base(), chosen.out)
+    ways: Any = dict.fromkeys(by or ()) | dict.fromkeys(largest or (), "largest")
+    found = of_stores.best(opened, most, ways)
+    first = int(found.designs[0]) if chosen.design is None else chosen.design
+    model = None if chosen.out is None else machine_of(opened, first)
+    title, units = title_of(opened), units_in(opened)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.studies import best_drawings
+
+        return best_drawings(found, title, units)
+
+    def show() -> None:
+        from equipoise.terminal.best import print_best
+
+        print_best(found, title, of_stores.outputs_of(opened), units)
+
+    def columns() -> Columns:
+        from equipoise.terminal.designs import columns_of
+
+        values = columns_of(found.numbers, found.values, found.outputs, found.figures)
+        return _columns(found.designs.tolist(), values, opened.units)
+
+    outputs.write(columns)
+    outputs.give(drawings, lambda: {"title": title, **found.to_dict()}, show)
+    if model is not None and chosen.out is not None:
+        _save(model, chosen.out, first, f'the study "{title}"')
+
+
+def export(
+    store: StorePath,
+    /,
+    *,
+    out: Out = None,
+    kept: bool = False,
+) -> None:
+    """Write all designs of a store as one table, Parquet or CSV, in SI units.
+
+    Parameters
+    ----------
+    store
+        Path of a store, as `equipoise sweep` makes it.
+    out
+        The file, which ends in .parquet or .csv.
+    kept
+        Only designs that keep every limit.
+    """
     from equipoise.schema.files import printable
-    from equipoise.schema.output import write
+    from equipoise.studies import table_files as of_stores
+    from equipoise.studies.store import open_store
 
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    heads = (f"{name} [{units[name]}]" if units.get(name) else name for name in columns)
-    writer.writerow(["design", *heads])
-    writer.writerows(zip(designs, *(column.tolist() for column in columns.values()), strict=True))
-    write(path, text.getvalue())
-    print(f"wrote {printable(path)}", file=sys.stderr)
+    opened = open_store(store)
+    if out is None or not out.lower().endswith(ENDINGS):
+        got = "missing" if out is None else f"got {out!r}"
+        raise UsageError(f"--out: {got}; give the name of a file that ends in .parquet or .csv")
+    check_result_file("--out", out, [])
+    rows = of_stores.export(opened, out, kept=kept)
+    print(f"wrote {rows} designs to {printable(os.fspath(out))}", file=sys.stderr)
+
+
+def search(
+    study: StudyFile,
+    /,
+    *,
+    population: Annotated[int | None, count(8, 100_000)] = None,
+    generations: Annotated[int | None, count(1, 100_000)] = None,
+    seed: Annotated[int | None, count(0, MOST_SEED)] = None,
+    chosen: Chosen = Chosen(),
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Look for the best designs of a study; of several aims, those that no other beats.
+
+    Parameters
+    ----------
+    study
+        Path of a study file, or the name of a bundled example.
+    population
+        Designs in a generation, 100 if not given.
+    generations
+        Most generations, 200 if not given; the search ends where nothing gets better any more.
+    seed
+        Of the random numbers, that of the study if not given; the same gives the same designs.
+    """
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
+
+    asked = load_study(study)
+    outputs.check([study], [chosen.out])
+    if chosen.out is not None:
+        check_new(asked.model.base(), chosen.out)
+    units = units_of(asked)
+    given = {"population": population, "generations": generations, "seed": seed}
+    with naming(study):
+        found = _found(asked, units, {k: one for k, one in given.items() if one is not None})
+        chosen.check(0, len(found.values) - 1)
+        own = _own(found.study) if outputs.plot is not None or not outputs.json else None
+
+        def drawings() -> Mapping[str, Figure]:
+            from equipoise.plotting.studies import searched_drawings
+
+            return searched_drawings(found, units, own)
+
+        def show() -> None:
+            from equipoise.terminal.search import print_searched
+
+            print_searched(found, units, own)
+
+        def columns() -> Columns:
+            from equipoise.terminal.designs import columns_of
+
+            study = found.study
+            values = columns_of(study.paths, found.values, study.names, found.figures)
+            return _columns(range(len(found.values)), values, _si_units(study))
+
+        outputs.write(columns)
+        outputs.give(drawings, found.to_dict, show)
+    if chosen.out is not None:
+        number = chosen.design or 0
+        of = f'a search of the study "{found.study.title}", seed {found.seed}'
+        _save(found.machine(number), chosen.out, number, of)
+
+
+def _found(study: Study, units: dict[str, Unit], options: dict[str, int]) -> Searched:
+    from equipoise.studies.search import GENERATIONS, POPULATION, search_designs
+
+    most = options.get("population", POPULATION) * options.get("generations", GENERATIONS)
+    given: Any = options
+    with swept(units) as told:
+        watched = Watched(study, told)
+        return search_designs(
+            study, progress=lambda *_: watched.tell(most), compute=watched, **given
+        )
+
+
+def _own(study: Study) -> tuple[Array, Array] | None:
+    """Values and figures of the model itself, for comparison; None where it cannot be computed."""
+    import numpy as np
+
+    from equipoise.codegen.figures import COMPUTED
+    from equipoise.studies.evaluate import evaluator
+
+    values = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
+    outcome = evaluator(study)(values[None])
+    return (values, outcome.figures[0]) if outcome.reason[0] == COMPUTED else None
+
+
+def _save(model: Any, out: str, number: int, of: str) -> None:
+    write_model(model, out, f", design {number}", f"Design {number} of {of}.")
+
+
+def _columns(
+    designs: Iterable[int], columns: Mapping[str, Array], units: Mapping[str, str]
+) -> Columns:
+    """Columns of designs as name, unit and values; the form is that of `export`."""
+    import numpy as np
+
+    told = [(name, units.get(name) or "", values) for name, values in columns.items()]
+    return [("design", "", np.array([*designs])), *told]
 
 
 def title_of(store: Store) -> str:
     """Title of the study in a store."""
-    import json
-
     return str(json.loads(store.texts["study"])["title"])
 
 
-def si_units(study: Study) -> dict[str, str]:
+def _si_units(study: Study) -> dict[str, str]:
     """SI unit of each number and output that has one, as a store tells it."""
     from equipoise.quantities import SI
 
-    kinds = {one.path: one.dimension for one in study.vary}
+    kinds: dict[str, Any] = {one.path: one.dimension for one in study.vary}
     kinds |= {output.name: output.dimension for output in study.outputs}
     return {name: SI[kind] for name, kind in kinds.items() if kind}

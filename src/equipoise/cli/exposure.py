@@ -9,17 +9,19 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.app import SIGNED, app
-from equipoise.cli.options import check_belonging, check_folder, quantity
-from equipoise.cli.results import Kind, draw
+from equipoise.cli.options import blaming, check_belonging, quantity, read_by
+from equipoise.cli.outputs import Drawn
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from matplotlib.figure import Figure
+
     from equipoise.exposure.daily import Exposure, Task
     from equipoise.exposure.weighting import Weighted
     from equipoise.schema.records import Accelerations
 
-INPUT = Parameter(name="INPUT", negative="")
 DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
 VALUE = re.compile(r"(?:(?P<name>[^:]*[^:\s])\s*:\s+)?(?P<a_hv>.*\S)\s+for\s+(?P<duration>.*)")
 LOOKS_LIKE_A_VALUE = re.compile(r"(?:[^:]+:\s)?\s*[+-]?[0-9.]+(?: .*)?")
@@ -45,19 +47,26 @@ class Options:
     periodic: bool
 
 
-@app.command
+def _acceleration(option: str, text: str) -> float:
+    value = quantity(option, text, "acceleration")
+    if value < 0:
+        raise UsageError(f"{option}: got {text!r}; give an acceleration of 0 or more")
+    return value
+
+
+Acceleration = Annotated[float | None, read_by(_acceleration)]
+
+
 def exposure(
-    *inputs: Annotated[str, INPUT],
+    *inputs: Annotated[str, Parameter(name="INPUT", negative="")],
     duration: Annotated[list[str] | None, DURATION] = None,
-    idle: Annotated[str | None, SIGNED] = None,
-    racing: Annotated[str | None, SIGNED] = None,
+    idle: Acceleration = None,
+    racing: Acceleration = None,
     bands: bool = False,
     weighted: bool = False,
     single_axis: bool = False,
     periodic: bool = False,
-    json: bool = False,
-    plot: str | None = None,
-    format: Kind | None = None,
+    outputs: Drawn = Drawn(),
 ) -> None:
     """Hand-arm vibration: weighted acceleration, a day's exposure, and how long one may work.
 
@@ -83,49 +92,38 @@ def exposure(
     periodic
         The signals are whole periods of a steady vibration, with nothing above half the sampling
         rate, as simulated ones; any rate and duration will do then.
-    json
-        Print one JSON object in SI units, and nothing else.
-    plot
-        Draw the spectrum of every file, and the exposure against hours of work, into this folder.
-    format
-        With --plot: kind of the pictures, svg if not given.
     """
-    check_belonging("--plot", plot, format=format)
-    check_belonging("--racing", racing, idle=idle)
-    check_belonging("--idle", idle, racing=racing)
-    if plot is not None:
-        check_folder("--plot", plot)
-    told = [
-        each
-        for text in inputs
-        for each in _told(text, Options(weighted, single_axis, bands, periodic))
-    ]
+    from equipoise.exposure.daily import equivalent
+
+    check_belonging("--racing", racing is not None, idle=idle)
+    check_belonging("--idle", idle is not None, racing=racing)
+    options = Options(weighted, single_axis, bands, periodic)
+    told = [each for text in inputs for each in _told(text, options)]
     if idle is not None and racing is not None:
-        told.append(_both_modes(idle, racing))
+        told.append(Told("idling and racing", equivalent(idle, racing)))
     if not told:
         raise UsageError('give a value, "7.4 m/s^2 for 2.5 h", or the path of a CSV file')
-    _check_options(told, weighted=weighted, single_axis=single_axis, bands=bands, periodic=periodic)
-    told = _timed(told, duration or [])
-    _give(told, json, plot, format or "svg")
+    _check_options(told, options)
+    _give(_timed(told, duration or []), outputs)
 
 
-def _give(told: list[Told], json: bool, plot: str | None, kind: Kind) -> None:
+def _give(told: list[Told], outputs: Drawn) -> None:
     """Draw, then print."""
     day = _day(told)
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
-    if plot is not None:
-        from equipoise.plotting.exposure import drawings
 
-        draw(drawings(measured, tools, day), plot, kind)
-    if json:
-        from equipoise.schema.output import json_text
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting import exposure as pictures
 
-        print(json_text(_values(measured, tools, day)))
-    else:
+        return pictures.drawings(measured, tools, day)
+
+    def show() -> None:
         from equipoise.terminal.exposure import print_exposure
 
         print_exposure(measured, tools, day)
+
+    outputs.give(drawings, lambda: _values(measured, tools, day), show)
 
 
 def _values(
@@ -172,34 +170,19 @@ def _value(text: str, match: re.Match[str]) -> Told:
     return Told(match["name"] or match["a_hv"], a_hv, duration)
 
 
-def _both_modes(idle: str, racing: str) -> Told:
-    from equipoise.exposure.daily import equivalent
-
-    values = [
-        quantity("--idle", idle, "acceleration"),
-        quantity("--racing", racing, "acceleration"),
-    ]
-    for option, text, value in zip(("--idle", "--racing"), (idle, racing), values, strict=True):
-        if value < 0:
-            raise UsageError(f"{option}: got {text!r}; give an acceleration of 0 or more")
-    return Told("idling and racing", equivalent(*values))
-
-
 def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
     from equipoise.exposure.spectra import weigh_signal, weigh_spectrum
     from equipoise.schema.files import printable
 
     single = options.single_axis and len(found.axes) < 3
     shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options.weighted}
-    try:
+    with blaming(printable(path)):
         if found.kind == "time":
             return weigh_signal(found.at, found.values, periodic=options.periodic, **shared)
         return weigh_spectrum(found.at, found.values, bands=options.bands, **shared)
-    except UsageError as error:
-        raise UsageError(f"{printable(path)}: {error}") from error
 
 
-def _check_options(told: list[Told], **given: bool) -> None:
+def _check_options(told: list[Told], options: Options) -> None:
     """An option that would do nothing is told, not passed over."""
     files = [each.weighted for each in told if each.weighted is not None]
     of_use = {
@@ -214,10 +197,10 @@ def _check_options(told: list[Told], **given: bool) -> None:
         "bands": "a spectrum",
         "periodic": "a signal",
     }
-    for name, value in given.items():
-        if value and not of_use[name]:
+    for name, owner in owners.items():
+        if getattr(options, name) and not of_use[name]:
             option = name.replace("_", "-")
-            raise UsageError(f"--{option} belongs to {owners[name]}; give one, or leave it out")
+            raise UsageError(f"--{option} belongs to {owner}; give one, or leave it out")
 
 
 def _timed(told: list[Told], durations: list[str]) -> list[Told]:
@@ -268,7 +251,5 @@ def _day(told: list[Told]) -> Exposure | None:
 def _task(each: Told) -> Task:
     from equipoise.exposure.daily import Task
 
-    try:
+    with blaming(each.name):
         return Task(each.name, each.a_hv, each.duration or 0.0)
-    except UsageError as error:
-        raise UsageError(f"{each.name}: {error}") from error

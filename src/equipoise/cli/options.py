@@ -1,12 +1,17 @@
-"""What several commands do with their options."""
+"""What options are: how their texts are read, and what may not be given together.
+
+Values are read where an option is declared: ``speed: Speed = None`` is a number in rad/s, or None.
+"""
 
 from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from cyclopts import Parameter
 
 from equipoise.errors import (
     EquipoiseError,
@@ -21,37 +26,70 @@ from equipoise.errors import (
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
 
+SIGNED = Parameter(negative="", allow_leading_hyphen=True)
+"""Of an option whose value may begin with a minus sign."""
+
+File = Annotated[str, Parameter(name="FILE", negative="")]
+StudyFile = Annotated[str, Parameter(name="STUDY", negative="")]
+StorePath = Annotated[str, Parameter(name="STORE", negative="")]
+Out = Annotated[str | None, Parameter(name=["--out", "-o"], negative="")]
+Many = Annotated[list[str] | None, Parameter(negative="", consume_multiple=False)]
+Text = Annotated[str | None, SIGNED]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
-"""As in `vibration.response`, which would bring NumPy into every start of the command line."""
+"""As in `structures.response`, which would bring NumPy into every start of the command line."""
 
 
-@contextmanager
-def naming(file: str) -> Iterator[None]:
-    """Put the file's name in front of what turns out wrong with its machine."""
-    try:
-        yield
-    except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
-        from equipoise.schema.files import printable
-
-        raise EquipoiseError(f"{printable(file)}: {error}") from error
+# -- texts as values -------------------------------------------------------------------------------
 
 
-def check_belonging(owner: str, given: object, **options: object) -> None:
-    """An option that would do nothing is told, not passed over."""
-    for name, value in options.items():
-        if value is not None and given is None:
-            raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
+def read_by(read: Callable[[str, str], Any], name: str | None = None) -> Parameter:
+    """An option whose text is read by a function of option and text; or an argument of a name."""
+
+    def convert(_: Any, tokens: Sequence[Any]) -> Any:
+        token = tokens[0]
+        return read(token.keyword or name or "", token.value)
+
+    return Parameter(
+        name=name, negative="", allow_leading_hyphen=True, n_tokens=1, converter=convert
+    )
+
+
+def size(dimension: str, wanted: str = "", name: str | None = None) -> Parameter:
+    """A quantity, in SI units; above zero where it is said what is `wanted` then."""
+
+    def read(option: str, text: str) -> float:
+        value = quantity(option, text, dimension)
+        if wanted and value <= 0:
+            raise UsageError(f"{option}: got {text!r}; {wanted}")
+        return value
+
+    return read_by(read, name)
+
+
+def count(least: int, most: int, name: str | None = None) -> Parameter:
+    """A whole number between two others."""
+
+    def read(option: str, text: str) -> int:
+        if not re.fullmatch("[+-]?[0-9]{1,9}", text) or not least <= int(text) <= most:
+            raise UsageError(f"{option}: got {text!r}; give a whole number from {least} to {most}")
+        return int(text)
+
+    return read_by(read, name)
+
+
+Speed = Annotated[float | None, size("angular speed")]
+Angle = Annotated[float | None, size("angle")]
 
 
 def quantity(option: str, text: str, dimension: str) -> float:
-    from equipoise.quantities import parse
+    """A size in SI units."""
+    from equipoise.quantities.reading import parse
 
-    try:
+    with blaming(option):
         return parse(text, dimension)  # type: ignore[arg-type]
-    except UsageError as error:
-        raise UsageError(f"{option}: {error}") from error
 
 
 def ends_of_range(text: str) -> list[str]:
@@ -67,11 +105,55 @@ def ends_of_range(text: str) -> list[str]:
     return parts
 
 
-def whole(option: str, text: str, least: int, most: int) -> int:
-    """A whole number between two others."""
-    if not re.fullmatch("[+-]?[0-9]{1,9}", text) or not least <= int(text) <= most:
-        raise UsageError(f"{option}: got {text!r}; give a whole number from {least} to {most}")
-    return int(text)
+# -- whose fault it is -----------------------------------------------------------------------------
+
+
+@contextmanager
+def naming(file: str) -> Iterator[None]:
+    """Put the file's name in front of what turns out wrong with its machine."""
+    try:
+        yield
+    except (ModelError, MobilityError, MotionError, MassError, ResponseError) as error:
+        from equipoise.schema.files import printable
+
+        raise EquipoiseError(f"{printable(file)}: {error}") from error
+
+
+@contextmanager
+def blaming(option: str) -> Iterator[None]:
+    """Put an option, or a file that it named, in front of what turns out wrong with it."""
+    try:
+        yield
+    except (ModelError, UsageError) as error:
+        raise UsageError(f"{option}: {error}") from error
+
+
+@contextmanager
+def blaming_by_place(options: Mapping[tuple[str, ...], str]) -> Iterator[None]:
+    """Name the option instead of the place in a file that does not have it.
+
+    options : place of a table or key, without numbers in lists -> what is said instead; of several
+    that fit, the longest, with what is left of the place behind it.
+    """
+    try:
+        yield
+    except ModelError as error:
+        place = error.keys
+        known = next((place[:n] for n in range(len(place), 0, -1) if place[:n] in options), None)
+        if known is None:
+            raise
+        rest = ".".join(place[len(known) :])
+        raise UsageError(": ".join(filter(None, [options[known], rest, error.what]))) from error
+
+
+def check_belonging(owner: str, given: object, **options: object) -> None:
+    """An option that would do nothing is told, not passed over."""
+    for name, value in options.items():
+        if value is not None and not given:
+            raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
+
+
+# -- where results may go --------------------------------------------------------------------------
 
 
 def check_folder(option: str, path: str) -> None:
@@ -83,15 +165,11 @@ def check_folder(option: str, path: str) -> None:
         raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
 
 
-def check_new(machine: Machine, path: str) -> None:
-    """A new model file must have a place to go, and take no other's."""
-    from equipoise.schema.models import files_of
+def check_new(model: Machine | Tool, path: str) -> list[Path]:
+    """A new model file, and what is written beside it, must have a place to go and take no other's.
 
-    check_new_files(path, lambda name: files_of(machine, name))
-
-
-def check_new_files(path: str, files: Callable[[str], Iterable[Path]]) -> None:
-    """New files, told by the name of the first, must have a place to go and take no other's."""
+    Returns the files.
+    """
     from equipoise.schema.files import printable
 
     if not path:
@@ -100,36 +178,48 @@ def check_new_files(path: str, files: Callable[[str], Iterable[Path]]) -> None:
         raise UsageError(f"--out: {printable(path)} is a directory; give the name of a file")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(f"{printable(path)}: there is no such folder; make it, or choose another")
-    for file in files(path):
+    files = files_of(model, path)
+    for file in files:
         if os.path.lexists(file):
             raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
+    return files
 
 
-def check_target(
-    option: str, path: str, file: str, machine: Machine, others: Sequence[str] = ()
-) -> None:
-    """Results must not take the place of what they come from, and must have a place to go.
+def files_of(model: Machine | Tool, path: str) -> list[Path]:
+    """The files in which a model is saved: its own, and tables beside it."""
+    from equipoise.handheld.model import Tool
+    from equipoise.schema import models, tools
 
-    others : further files that are read or written.
-    """
+    if isinstance(model, Tool):
+        return list(tools.files_of_tool(model, path))
+    return list(models.files_of(model, path))
+
+
+def sources_of(model: Machine | Tool, file: str) -> list[str]:
+    """The files from which a model was read."""
+    from equipoise.handheld.model import Tool
     from equipoise.schema.models import tables_of
+    from equipoise.schema.tools import parts_of
 
-    tables = tables_of(machine).values()
-    sources = [file, *(os.path.join(os.path.dirname(file), table.file) for table in tables)]
-    check_result_file(option, path, sources, others)
+    parts = parts_of(model) if isinstance(model, Tool) else tables_of(model).values()
+    folder = os.path.dirname(file)
+    return [file, *(os.path.join(folder, part.file) for part in parts if part.file)]
 
 
 def check_result_file(
-    option: str, path: str, sources: Sequence[str], others: Sequence[str] = ()
+    option: str, path: str, sources: Sequence[str], others: Iterable[str | None] = ()
 ) -> None:
-    """The same, told what it comes from."""
+    """Results must not take the place of what they come from, and must have a place to go.
+
+    others : further files that are written.
+    """
     if not path:
         raise UsageError(f"{option}: got an empty name; give the name of a file")
     if os.path.isdir(path):
         raise UsageError(f"{option}: {path} is a directory; give the name of a file")
     if not os.path.isdir(os.path.dirname(path) or "."):
         raise UsageError(f"{option}: {path}: there is no such folder; make it, or choose another")
-    if os.path.abspath(path) in map(os.path.abspath, others):
+    if os.path.abspath(path) in (os.path.abspath(other) for other in others if other):
         raise UsageError(f"{option}: {path} has another part in this command; give another name")
     if os.path.exists(path) and any(
         os.path.exists(source) and os.path.samefile(source, path) for source in sources

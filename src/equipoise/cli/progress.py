@@ -1,73 +1,237 @@
-"""Progress of a search on standard error: a bar in a terminal, a few lines in a log."""
+"""Progress on standard error: a bar in a terminal, a line now and then in a log.
+
+In a log there are the fewer lines the longer it takes.  Where EQUIPOISE_PROGRESS is ``off`` there
+is neither.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
 from time import monotonic
+from typing import TYPE_CHECKING, Any
 
-Told = Callable[[int, int, float], None]
-LINES = 10
-"""Lines in a log."""
-SECONDS = 5.0
-"""Between lines in a log about work that is quick as a rule."""
+if TYPE_CHECKING:
+    from rich.console import RenderableType
+
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.outcomes import Outcome, Progress
+    from equipoise.studies.study import Study
+
+SECONDS, GROWTH, LONGEST = 5.0, 0.5, 600.0
+"""The first line in a log comes after so many seconds, the next after this share of the time so
+far, and at the latest after so many s.
+"""
+SURE, LATEST = 0.02, 60.0
+"""Share of the designs, or time in s, after which a rate is one: loops are compiled at first."""
+
+
+@dataclass(frozen=True)
+class Step:
+    """How far work is.
+
+    done, total : parts of it.
+    share : how far it is in words; at : of the moment, such as a rate.
+    more : further lines, by what they tell.
+    """
+
+    done: int
+    total: int
+    share: str
+    at: str = ""
+    more: Mapping[str, str] = field(default_factory=dict)
 
 
 @contextmanager
-def told() -> Iterator[Told]:
-    """Yield what a search calls with its generation, the most there can be, and the best cost."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield _line
+def _shown(first: float = SECONDS) -> Iterator[Callable[[Callable[[], Step], bool], None]]:
+    """Yield what shows a step; it is asked for when it is shown, and always where it is the last.
+
+    first : time to the first line in a log, s.
+    """
+    if sys.stderr is None or os.environ.get("EQUIPOISE_PROGRESS") == "off":
+        yield lambda step, last: None
+        return
+    if not sys.stderr.isatty():
+        yield _Log(first).add
         return
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    from rich.live import Live
 
-    columns = (
-        TextColumn("generation {task.completed:.0f} of at most {task.total:.0f}"),
-        BarColumn(),
-        TextColumn("cost {task.fields[cost]:.4g}"),
-        TimeRemainingColumn(),
-    )
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=None, cost=float("nan"))
+    bar = _Bar()
+    with Live(bar, console=Console(stderr=True), transient=True, refresh_per_second=4):
+        yield bar.add
 
-        def show(generation: int, most: int, cost: float) -> None:
-            bar.update(task, completed=generation, total=max(most, generation), cost=cost)
 
-        yield show
+class _Log:
+    """A line now and then."""
+
+    def __init__(self, first: float) -> None:
+        self.start, self.next = monotonic(), first
+
+    def add(self, step: Callable[[], Step], last: bool) -> None:
+        after = monotonic() - self.start
+        if after < self.next and not last:
+            return
+        self.next = after + min(max(SECONDS, GROWTH * after), LONGEST)
+        told = step()
+        more = (f"{name}: {text}" for name, text in told.more.items() if text)
+        line = "; ".join([", ".join(filter(None, [told.share, told.at])), *more])
+        with suppress(OSError):  # who does not want to read it gets the result all the same
+            print(line, file=sys.stderr)
+
+
+class _Bar:
+    """A bar, and further lines below it."""
+
+    def __init__(self) -> None:
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        self.step: Callable[[], Step] | None = None
+        columns = (TextColumn("{task.fields[share]}"), BarColumn(), TextColumn("{task.fields[at]}"))
+        self.bar = Progress(*columns)
+        self.task = self.bar.add_task("", total=None, share="begins", at="")
+
+    def add(self, step: Callable[[], Step], last: bool) -> None:
+        self.step = step
+
+    def __rich__(self) -> RenderableType:
+        from rich.console import Group
+        from rich.text import Text
+
+        if self.step is None:
+            return self.bar
+        told = self.step()
+        total = told.total if told.done else None
+        self.bar.update(self.task, completed=told.done, total=total, share=told.share, at=told.at)
+        lines = (Text(f"{name}: {text}") for name, text in told.more.items() if text)
+        return Group(self.bar, *lines)
+
+
+# -- of one computation ----------------------------------------------------------------------------
 
 
 @contextmanager
 def counted(what: str) -> Iterator[Callable[[int, int], None]]:
     """Yield what long work calls with how many of its parts are done, and how many there are."""
-    if sys.stderr is None or not sys.stderr.isatty():
-        yield _counter(what)
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-
-    columns = (TextColumn(what), BarColumn(), MofNCompleteColumn())
-    with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("", total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    with _shown() as show:
+        yield lambda done, total: show(
+            lambda: Step(done, total, f"{what} {done} of {total}"), False
+        )
 
 
-def _counter(what: str) -> Callable[[int, int], None]:
-    """Lines in a log, but only where there is time to read them."""
-    last = monotonic()
+@contextmanager
+def generations() -> Iterator[Callable[[int, int, float], None]]:
+    """Yield what a search calls with its generation, the most there can be, and the best cost."""
+    start = monotonic()
 
-    def count(done: int, total: int) -> None:
-        nonlocal last
-        if monotonic() - last > SECONDS:
-            last = monotonic()
-            with suppress(OSError):
-                print(f"{what} {done} of {total}", file=sys.stderr)
+    def step(done: int, most: int, cost: float) -> Step:
+        left = (most - done) * (monotonic() - start) / done
+        share, at = f"generation {done} of at most {most}", f"cost {cost:.4g}"
+        return Step(done, max(done, most), share, f"{at}, at most {time_told(left)} left")
 
-    return count
+    with _shown(0.0) as show:
+        yield lambda done, most, cost: show(lambda: step(done, most, cost), False)
 
 
-def _line(generation: int, most: int, cost: float) -> None:
-    if generation == 1 or generation % max(1, most // LINES) == 0:
-        with suppress(OSError):  # who does not want to read it gets the result all the same
-            print(f"generation {generation} of at most {most}, cost {cost:.4g}", file=sys.stderr)
+# -- of many designs -------------------------------------------------------------------------------
+
+
+@contextmanager
+def swept(units: Mapping[str, Unit]) -> Iterator[Callable[[Progress], None]]:
+    """Yield what many designs tell how far they are; `units` are those of the objectives."""
+    seen: list[Progress] = []
+    with _shown() as show:
+
+        def tell(progress: Progress) -> None:
+            seen[:] = [progress]
+            at = monotonic()
+            if progress.done < progress.total:
+                show(lambda: _on_the_way(progress, units, monotonic() - at), False)
+
+        yield tell
+        if seen:
+            show(lambda: _in_the_end(seen[0], units), True)
+
+
+class Watched:
+    """Computes designs of a study, and tells how far it is each time."""
+
+    def __init__(self, study: Study, told: Callable[[Progress], None]) -> None:
+        from equipoise.studies.outcomes import Tally
+
+        self.study, self.told = study, told
+        self.tally = Tally(study.outputs, 0)
+        self.compute: Callable[[Any], Outcome] | None = None
+
+    def __call__(self, values: Any) -> Outcome:
+        """Compute designs (P, d)."""
+        from equipoise.studies.evaluate import evaluator
+        from equipoise.studies.outcomes import Block
+
+        if self.compute is None:
+            self.compute = evaluator(self.study)
+        outcome = self.compute(values)
+        self.tally.add(Block(values, outcome), computed=True)
+        return outcome
+
+    def tell(self, total: int) -> None:
+        """Tell how far it is, of so many designs in all, or the most there can be."""
+        self.tally.total = total
+        self.told(self.tally.progress())
+
+
+def _on_the_way(progress: Progress, units: Mapping[str, Unit], ago: float) -> Step:
+    share = 100 * progress.done / progress.total if progress.total else 100.0
+    return Step(
+        progress.done,
+        progress.total,
+        f"{share:.0f} %, {progress.done} of {progress.total} designs",
+        ", ".join(filter(None, [rate_told(progress.rate), left_told(progress, ago)])),
+        _best_and_failures("best so far", progress, units),
+    )
+
+
+def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> Step:
+    computed = f"{last.computed} designs computed in {time_told(last.seconds)}"
+    rate = rate_told(last.computed / max(last.seconds, 1e-9))
+    return Step(last.done, last.total, computed, rate, _best_and_failures("best", last, units))
+
+
+def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit]) -> dict[str, str]:
+    from equipoise.terminal.tables import number
+
+    best = (
+        f"{output} {number(units[output].of_si(value))} {units[output].name}".strip()
+        for output, value in progress.best.items()
+    )
+    failures = (f"{what} {count}" for what, count in progress.failures.items())
+    return {name: ", ".join(best), "failed": ", ".join(failures)}
+
+
+def left_told(progress: Progress, ago: float = 0.0) -> str:
+    """Time that is left, of what was told some seconds ago; not before it can be known."""
+    early = progress.done < SURE * progress.total and progress.seconds < LATEST
+    if progress.left is None or early:
+        return ""
+    return f"{time_told(max(0.0, progress.left - ago))} left"
+
+
+def rate_told(rate: float | None) -> str:
+    """Designs a second."""
+    if not rate:
+        return ""
+    return f"{float(f'{rate:.3g}'):.0f} designs/s" if rate >= 100 else f"{rate:.3g} designs/s"
+
+
+def time_told(seconds: float) -> str:
+    """A time as one says it."""
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 60:
+        return f"{minutes} min {rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min"

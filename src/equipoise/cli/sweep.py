@@ -1,37 +1,59 @@
-"""The commands `sweep` and `resume`."""
+"""The commands `sweep`, `resume` and `tolerance`: all designs of a study, computed."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.app import OUT, SIGNED, STORE, STUDY, app
-from equipoise.cli.options import naming, whole
+from cyclopts import Parameter
+
+from equipoise.cli.options import Out, StorePath, StudyFile, blaming_by_place, count, naming
+from equipoise.cli.outputs import Drawn, Printed
+from equipoise.cli.progress import Watched, rate_told, swept, time_told
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from equipoise.schema.study_units import Unit
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
     from equipoise.terminal.swept import Summary
 
-MOST_WORKERS = 1000
+MOST_WORKERS, MOST_DESIGNS = 1000, 10_000_000
 TOLD = 3
 """Designs that are told in the end."""
 
 
-@app.command
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Computers:
+    """Who computes."""
+
+    workers: Annotated[int | None, count(1, MOST_WORKERS)] = None
+    """Threads or processes of this machine, one a processor if not given."""
+    cluster: str | None = None
+    """Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786."""
+
+    def __post_init__(self) -> None:
+        if self.cluster is not None and self.workers is not None:
+            raise UsageError(
+                "--workers belongs to this machine, and --cluster computes elsewhere; give one of "
+                "them"
+            )
+
+
 def sweep(
-    study: Annotated[str, STUDY],
+    study: StudyFile,
     /,
     *,
-    out: Annotated[str | None, OUT] = None,
-    workers: Annotated[str | None, SIGNED] = None,
-    cluster: str | None = None,
-    json: bool = False,
+    out: Out = None,
+    computers: Computers = Computers(),
+    outputs: Printed = Printed(),
 ) -> None:
     """Compute every design of a study into a store, from which any interruption can be resumed.
 
@@ -41,12 +63,6 @@ def sweep(
         Path of a study file, or the name of a bundled example.
     out
         The store, a new folder.
-    workers
-        Threads or processes of this machine, one a processor if not given.
-    cluster
-        Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786.
-    json
-        Print one JSON object in SI units, and nothing else.
     """
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
@@ -55,24 +71,28 @@ def sweep(
     asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
-    count = _workers(workers, cluster)
     units = units_of(asked)
-    with naming(study), _going_on(out):
-        store, last = _told(
+    with naming(study):
+        _compute(
+            lambda told: run.run_study(
+                asked,
+                out,
+                workers=computers.workers,
+                cluster=computers.cluster,
+                progress=told,
+            ),
+            out,
             units,
-            lambda told: run.run_study(asked, out, workers=count, cluster=cluster, progress=told),
+            outputs,
         )
-        _give(store, last, units, json)
 
 
-@app.command
 def resume(
-    store: Annotated[str, STORE],
+    store: StorePath,
     /,
     *,
-    workers: Annotated[str | None, SIGNED] = None,
-    cluster: str | None = None,
-    json: bool = False,
+    computers: Computers = Computers(),
+    outputs: Printed = Printed(),
 ) -> None:
     """Compute what is missing in a store, as if nothing had ever stopped.
 
@@ -80,33 +100,52 @@ def resume(
     ----------
     store
         Path of a store, as `equipoise sweep` makes it.
-    workers
-        Threads or processes of this machine, one a processor if not given.
-    cluster
-        Address of a Dask scheduler whose workers compute instead, such as tcp://192.168.0.7:8786.
-    json
-        Print one JSON object in SI units, and nothing else.
     """
     from equipoise.schema import study_units
     from equipoise.schema.study_units import units_in
     from equipoise.studies.store import open_store
 
-    count = _workers(workers, cluster)
     units = units_in(open_store(store))
-    with _going_on(store):
-        found, last = _told(
-            units,
-            lambda told: study_units.resume(store, workers=count, cluster=cluster, progress=told),
-        )
-        _give(found, last, units, json)
+    _compute(
+        lambda told: study_units.resume(
+            store, workers=computers.workers, cluster=computers.cluster, progress=told
+        ),
+        store,
+        units,
+        outputs,
+    )
 
 
-def _workers(workers: str | None, cluster: str | None) -> int | None:
-    if cluster is not None and workers is not None:
-        raise UsageError(
-            "--workers belongs to this machine, and --cluster computes elsewhere; give one of them"
-        )
-    return None if workers is None else whole("--workers", workers, 1, MOST_WORKERS)
+def _compute(
+    work: Callable[[Callable[[Progress], None]], Store],
+    path: str,
+    units: dict[str, Unit],
+    outputs: Printed,
+) -> None:
+    """Compute with progress on standard error, and give what came of it.
+
+    work : computes a store, which is at the `path`, and tells of its progress.
+    """
+    last: list[Progress] = []
+    with _going_on(path):
+        with swept(units) as told:
+
+            def tell(progress: Progress) -> None:
+                last[:] = [progress]
+                told(progress)
+
+            store = work(tell)
+        (end,) = last
+        summary = _summary(store, end)
+
+        def show() -> None:
+            from equipoise.terminal.swept import print_swept
+
+            rate = rate_told(end.computed / max(end.seconds, 1e-9))
+            run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
+            print_swept(summary, units, run)
+
+        outputs.print(lambda: _values(summary, end), show)
 
 
 @contextmanager
@@ -119,39 +158,6 @@ def _going_on(store: str) -> Iterator[None]:
             raise
         words = f"what is stored stays; go on by: equipoise resume {quote(store)}"
         raise KeyboardInterrupt(words) from None
-
-
-def _told(
-    units: dict[str, Unit], work: Callable[[Callable[[Progress], None]], Store]
-) -> tuple[Store, Progress]:
-    """Compute with progress on standard error; returns how far it was in the end, too."""
-    from equipoise.cli.progress_studies import swept
-
-    last: list[Progress] = []
-
-    with swept(units) as told:
-
-        def tell(progress: Progress) -> None:
-            last[:] = [progress]
-            told(progress)
-
-        store = work(tell)
-    return store, last[0]
-
-
-def _give(store: Store, last: Progress, units: dict[str, Unit], json: bool) -> None:
-    summary = _summary(store, last)
-    if json:
-        from equipoise.schema.output import json_text
-
-        print(json_text(_values(summary, last)))
-    else:
-        from equipoise.cli.progress_studies import rate_told, time_told
-        from equipoise.terminal.swept import print_swept
-
-        rate = rate_told(last.computed / max(last.seconds, 1e-9))
-        run = f", {time_told(last.seconds)}, {rate}" if last.computed else ", nothing was missing"
-        print_swept(summary, units, run)
 
 
 def _summary(store: Store, last: Progress) -> Summary:
@@ -185,3 +191,51 @@ def _values(summary: Summary, last: Progress) -> dict[str, Any]:
         "best": None if summary.best is None else summary.best.to_dict(),
         "note": summary.note or None,
     }
+
+
+# -- tolerances ------------------------------------------------------------------------------------
+
+
+def tolerance(
+    study: StudyFile,
+    /,
+    *,
+    designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
+    outputs: Drawn = Drawn(),
+) -> None:
+    """What manufacturing tolerances do to the figures of a machine, and which to tighten first.
+
+    Parameters
+    ----------
+    study
+        Path of a study file whose numbers have tolerances, or the name of a bundled example.
+    designs
+        Machines that are drawn, instead of as many as the study has.
+    """
+    from equipoise.schema.studies import load_study
+    from equipoise.schema.study_units import units_of
+    from equipoise.studies.tolerances import tolerance as of_study
+
+    asked = load_study(study)
+    given: dict[tuple[str, ...], str] = {}
+    if designs is not None:
+        given = {("sampling", "designs"): "--designs"}
+    with naming(study):
+        if designs is not None:
+            asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
+        units = units_of(asked)
+        with blaming_by_place(given), swept(units) as told:
+            watched = Watched(asked, told)
+            found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
+
+    def drawings() -> Mapping[str, Figure]:
+        from equipoise.plotting.studies import tolerance_drawings
+
+        return tolerance_drawings(found, units)
+
+    def show() -> None:
+        from equipoise.terminal.tolerance import print_tolerances
+
+        print_tolerances(found, units)
+
+    outputs.give(drawings, found.to_dict, show)

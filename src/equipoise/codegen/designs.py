@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.source import Source
-from equipoise.mechanism.builder import size_of_bodies
-from equipoise.mechanism.columns import linkage_of, with_columns, wrong
+from equipoise.mechanism.family import linkage_of, with_columns, wrong
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import size_of_bodies
 
 Array = np.ndarray[Any, Any]
 

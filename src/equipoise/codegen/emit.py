@@ -5,6 +5,7 @@ Signals go by their names in the output of an analysis.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from equipoise.codegen.figures import Figure, Gathered
@@ -12,36 +13,18 @@ from equipoise.codegen.forces import write_demands, write_joints
 from equipoise.codegen.motion import Writer, write_motion
 from equipoise.codegen.source import Source, source_of
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.columns import can_vary
+from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import Call, Rotation, RunningAngle
+from equipoise.mechanism.outputs import DECLARED, declared
+from equipoise.mechanism.steps import Call, Reaction, Rotation, RunningAngle
 
-FRAME_SIGNALS = {
-    "shaking_force.x": "{shaking force}.real",
-    "shaking_force.y": "{shaking force}.imag",
-    "shaking_force": "length({shaking force})",
-    "shaking_moment": "{shaking moment}",
-    "drive_torque": "{drive torque}",
-    "frame_force.x": "{frame force}.real",
-    "frame_force.y": "{frame force}.imag",
-    "frame_force": "length({frame force})",
-    "frame_moment": "{frame moment}",
-}
-OF_POINTS = ("x", "y", "vx", "vy", "ax", "ay")
-OF_LINKS = ("angular_velocity", "angular_acceleration")
-
-
-def needs_joints(signal: str) -> bool:
-    """Whether a signal needs the pass over the joints."""
-    return signal.startswith(("joints.", "gears."))
-
-
-def needs_forces(signal: str) -> bool:
-    """Whether a signal needs masses."""
-    return signal in FRAME_SIGNALS or needs_joints(signal)
+_LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
+"""Values in the expression of an output: of the machine, or of the member of a family."""
+ORDERS = {"position": 0, "velocity": 1, "acceleration": 2}
+TURNING = {"angular velocity": 1, "angular acceleration": 2}
+"""How often a position, or an angle, is differentiated by time."""
 
 
 def expression(writer: Writer, signal: str) -> str:
@@ -51,47 +34,54 @@ def expression(writer: Writer, signal: str) -> str:
     ------
     UsageError : there is no such signal, or a loop cannot have it.
     """
-    if signal in FRAME_SIGNALS:
-        text = FRAME_SIGNALS[signal]
-        what = text[text.index("{") + 1 : text.index("}")]
-        return text.replace(f"{{{what}}}", writer.name(what))
-    kind, _, rest = signal.partition(".")
-    found = None
-    if kind in ("joints", "gears"):
-        found = _joint(writer, rest)
-    elif kind == "points":
-        found = _point(writer, *rest.rpartition(".")[::2])
-    elif kind == "links":
-        found = _link(writer, *rest.rpartition(".")[::2])
-    if found is None:
+    one, item = declared(signal) or (None, "")
+    whole = _whole(writer, one.loop, item) if one is not None and one.loop else None
+    if one is None or whole is None:
         raise UsageError(unknown(signal, _known(writer), "signal"))
-    return found
+    parts = {"": "{}", "size": "length({})", "x": "({}).real", "y": "({}).imag"}
+    return parts[one.part].format(whole)
 
 
 def _known(writer: Writer) -> Sequence[str]:
     named = writer.linkage.named_reactions
     joints = [f"{'gears' if r.kind == 'gear' else 'joints'}.{name}" for name, r in named]
-    return [*FRAME_SIGNALS, *joints]
+    return [*(one.name for one in DECLARED.values() if one.loop and not one.is_family), *joints]
 
 
-def _joint(writer: Writer, name: str) -> str | None:
-    reactions = dict(writer.linkage.named_reactions)
-    if name in reactions:
-        return f"length({writer.name(reactions[name].force)})"
-    name, _, part = name.rpartition(".")
-    if name not in reactions:
+def _whole(writer: Writer, loop: str, item: str) -> str | None:
+    """The expression of an output with identifiers instead of names; None where one is missing."""
+    found = {
+        match[0]: _of_member(writer, match[1], item) if match[2] else _of_machine(writer, match[1])
+        for match in _LOOKED_UP.finditer(loop)
+    }
+    if None in found.values():
         return None
-    reaction = reactions[name]
+    return _LOOKED_UP.sub(lambda match: str(found[match[0]]), loop)
+
+
+def _of_machine(writer: Writer, value: str) -> str:
+    return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
+
+
+def _of_member(writer: Writer, value: str, item: str) -> str | None:
+    if value in ORDERS:
+        return _point(writer, item, ORDERS[value])
+    if value in TURNING:
+        known = item in writer.machine.links
+        return _in_time(writer, writer.body(item)[3:], TURNING[value]) if known else None
+    reaction = dict(writer.linkage.named_reactions).get(item)
+    if reaction is None:
+        return None
     sign = _sign(writer, reaction)
     force = f"({sign} * {writer.name(reaction.force)})"
-    if part in ("force_x", "force_y"):
-        return f"{force}.{'real' if part == 'force_x' else 'imag'}"
-    if part == "moment" and reaction.couple is not None:
-        slider = next(s for s in writer.machine.sliders if s.name == reaction.name)
-        to, *_ = writer.point(slider.link, slider.point)
-        at = writer.name(f"p({reaction.at})")
-        return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
-    return None
+    if value == "joint force":
+        return force
+    if reaction.couple is None:
+        return None
+    slider = next(s for s in writer.machine.sliders if s.name == reaction.name)
+    to, *_ = writer.point(slider.link, slider.point)
+    at = writer.name(f"p({reaction.at})")
+    return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
 
 
 def _sign(writer: Writer, reaction: Reaction) -> float:
@@ -100,9 +90,7 @@ def _sign(writer: Writer, reaction: Reaction) -> float:
     return 1.0 if reaction.kind == "gear" or order(reaction.on) > order(reaction.by) else -1.0
 
 
-def _point(writer: Writer, name: str, part: str) -> str | None:
-    if part not in OF_POINTS:
-        return None
+def _point(writer: Writer, name: str, times: int) -> str | None:
     if name in writer.points:
         values = [writer.name(f"{key}({name})") for key in ("p", "p1", "p2")]
     else:
@@ -110,14 +98,7 @@ def _point(writer: Writer, name: str, part: str) -> str | None:
         if not links:
             return None
         values = writer.point(links[0], name)
-    times = {"v": 1, "a": 2}.get(part[0], 0)
-    return f"({_in_time(writer, values, times)}).{'real' if part[-1] == 'x' else 'imag'}"
-
-
-def _link(writer: Writer, name: str, part: str) -> str | None:
-    if part not in OF_LINKS or name not in writer.machine.links:
-        return None
-    return _in_time(writer, writer.body(name)[3:], 1 + OF_LINKS.index(part))
+    return _in_time(writer, values, times)
 
 
 def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
@@ -148,9 +129,10 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
         raise UsageError("groups of loops, and fingers in soil, cannot be computed in a loop")
     writer = Writer(linkage)
     write_motion(writer)
-    if any(map(needs_forces, gathered.signals)):
+    wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
+    if any(one.needs == "masses" for one in wanted):
         write_demands(writer)
-    if any(map(needs_joints, gathered.signals)):
+    if any("{joint " in (one.loop or "") for one in wanted):
         write_joints(writer)
     signals = [writer.sheet.put(f"signal {s}", expression(writer, s)) for s in gathered.signals]
     return source_of(writer.sheet, signals, writer.numbers(), gathered)

@@ -9,11 +9,11 @@ import numpy as np
 
 from equipoise.codegen.motion import Find, Writer, write_step
 from equipoise.errors import MassError
-from equipoise.mechanism.builder import demand_names, planar
+from equipoise.mechanism.applied import load_at
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load
+from equipoise.mechanism.steps import demand_names, planar
 
 Array = np.ndarray[Any, Any]
 Held = tuple[str, str, str]

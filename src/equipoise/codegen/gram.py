@@ -17,8 +17,8 @@ import numpy as np
 
 from equipoise.codegen.figures import MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
-from equipoise.mechanism.columns import massive_link, with_columns, wrong
 from equipoise.mechanism.dynamics import Forces, SliderForce, forces
+from equipoise.mechanism.family import massive_link, with_columns, wrong
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move

@@ -10,10 +10,18 @@ import numpy as np
 
 from equipoise.codegen.source import Sheet
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import planar, size_of_bodies
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.steps import Call, Rotation, RunningAngle, Step, p, u
+from equipoise.mechanism.steps import (
+    Call,
+    Rotation,
+    RunningAngle,
+    Step,
+    p,
+    planar,
+    size_of_bodies,
+    u,
+)
 
 Find = Callable[[Linkage], Any]
 

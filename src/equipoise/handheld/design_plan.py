@@ -9,8 +9,8 @@ from typing import ClassVar, Literal
 from equipoise.errors import ModelError
 from equipoise.handheld.shaft import places
 from equipoise.handheld.station import Station
+from equipoise.keys import Frozen
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
 
 Measure = Literal["rms", "peak"]
 MEASURES: tuple[Measure, ...] = ("rms", "peak")

@@ -30,8 +30,8 @@ from equipoise.handheld.station import (
     is_damped,
     wrong_station,
 )
-from equipoise.mechanism.checks import not_finite, positive, unknown, wrong_text
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import Frozen, wrong_values
+from equipoise.mechanism.checks import positive, unknown, wrong_text
 from equipoise.mechanism.model import Machine
 
 __all__ = [
@@ -195,10 +195,10 @@ def _problems(tool: Tool) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a tool, the first things first."""
     yield from _too_much(tool)
     yield from _wrong_names(tool)
-    yield from not_finite("shaft", tool.shaft)
-    yield from not_finite("shaft.stations", tool.stations)
+    yield from wrong_values("shaft", tool.shaft)
+    yield from wrong_values("shaft.stations", tool.stations)
     for key in ("excitations", "operation", "work", "design"):
-        yield from not_finite(key, getattr(tool, key))
+        yield from wrong_values(key, getattr(tool, key))
     yield from wrong_shaft(tool.shaft)
     for where, station in places("shaft.stations", tool.stations):
         yield from wrong_station(where, station, tool.shaft.length)

@@ -10,8 +10,8 @@ from math import inf, pi
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.keys import Frozen
 from equipoise.mechanism.checks import positive, unknown
-from equipoise.mechanism.frozen import Frozen
 
 Theory = Literal["euler-bernoulli", "timoshenko"]
 THEORIES = ("euler-bernoulli", "timoshenko")

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.handheld.shaft import negative
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import Frozen
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""

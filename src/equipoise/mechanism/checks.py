@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
-from math import inf, isfinite, pi
-from typing import TYPE_CHECKING, Any
+from math import pi
+from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
-from equipoise.quantities.units import HUGE, TINY
+from equipoise.keys import wrong_values
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.frozen import Frozen
     from equipoise.mechanism.model import (
         Gear,
         Link,
@@ -53,7 +52,7 @@ def _listed(names: list[str]) -> str:
 def problems(machine: Machine) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
     yield from _too_much(machine)
-    yield from not_finite("", machine)
+    yield from wrong_values("", machine)
     yield from _wrong_points("frame", machine.frame)
     if not machine.links:
         yield ModelError("links", "there is no link; give at least the drive's")
@@ -67,9 +66,6 @@ def problems(machine: Machine) -> Iterator[ModelError]:
         yield from _wrong_gear(f"gears[{number}]", gear, machine)
     for number, load in enumerate(machine.loads, 1):
         yield from _wrong_load(f"loads[{number}]", load, machine)
-    for joint, side in machine.assembly.items():
-        if side not in SIDES:
-            yield ModelError(f"assembly.{joint}", f"got {side!r}; give one of {_listed([*SIDES])}")
     if machine.position is not None:
         yield from _wrong_position(machine.position, machine)
 
@@ -105,41 +101,10 @@ def _names(bodies: Mapping[str, Mapping[str, Vector]]) -> Iterator[tuple[str, st
             yield f"points of {body}", point
 
 
-def not_finite(where: str, value: Any) -> Iterator[ModelError]:
-    """Complain of every number below a value that is not finite, or of no usual size."""
-    for place, size in _numbers(where, value):
-        if not isfinite(size):
-            yield ModelError(place, f"got {size}; give a finite number")
-        elif abs(size) > HUGE or 0 < abs(size) < TINY:
-            yield ModelError(place, f"got {size:g} in SI units, which no machine can have")
-
-
 def positive(where: str, value: float | None, unit: str) -> Iterator[ModelError]:
     """Complain of a number, where it is given, that is not above 0."""
     if value is not None and value <= 0:
         yield ModelError(where, f"got {value:g} {unit}; give more than 0")
-
-
-def _numbers(where: str, value: Any) -> Iterator[tuple[str, float]]:
-    if isinstance(value, bool | str) or value is None:
-        return
-    if isinstance(value, int | float):
-        yield where, value
-    elif isinstance(value, Mapping):
-        for key, item in value.items():
-            yield from _numbers(f"{where}.{key}".lstrip("."), item)
-    elif isinstance(value, tuple | list):
-        for number, item in enumerate(value, 1):
-            yield from _numbers(f"{where}[{number}]", item)
-    else:
-        yield from _numbers_of(where, value)
-
-
-def _numbers_of(where: str, value: Frozen) -> Iterator[tuple[str, float]]:
-    for key, item in vars(value).items():
-        if key[0] != "_" and not (key in value.endless and item == inf):
-            place = where if key in value.flat else f"{where}.{key}".lstrip(".")
-            yield from _numbers(place, item)
 
 
 def _wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
@@ -169,13 +134,6 @@ def _wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
         return
     if link.mass is None or link.inertia is None:
         return
-    if link.mass < 0:
-        yield ModelError(f"{where}.mass", f"got {link.mass:g} kg; a mass cannot be negative")
-    if link.inertia < 0:
-        yield ModelError(
-            f"{where}.inertia",
-            f"got {link.inertia:g} kg m^2; no body has a negative moment of inertia",
-        )
     if link.mass == 0 and link.inertia > 0:
         yield ModelError(
             f"{where}.inertia",
@@ -227,8 +185,6 @@ def _wrong_gear(where: str, gear: Gear, machine: Machine) -> Iterator[ModelError
             where,
             f"the ratio is {gear.speed_ratio:g}; no pair of gears has that, it would be rigid",
         )
-    if not 0 <= gear.pressure_angle < pi / 2:
-        yield ModelError(f"{where}.pressure_angle", "give an angle from 0 deg to less than 90 deg")
 
 
 def _wrong_load(where: str, load: Load, machine: Machine) -> Iterator[ModelError]:

@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ChangePointError, MotionError, RangeError
-from equipoise.mechanism.builder import Group, initial_state
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import needed_references, run, running_angle
+from equipoise.mechanism.steps import Group, initial_state, needed_references, run, running_angle
 
 Array = np.ndarray[Any, Any]
 

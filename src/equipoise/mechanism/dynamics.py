@@ -18,8 +18,7 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import planar
-from equipoise.mechanism.loads import load_demands, spring_demands
+from equipoise.mechanism.applied import load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
@@ -33,7 +32,7 @@ from equipoise.mechanism.reactions import (
     full,
     reactions,
 )
-from equipoise.mechanism.steps import p, u
+from equipoise.mechanism.steps import p, planar, u
 
 __all__ = [
     "CAUSES",

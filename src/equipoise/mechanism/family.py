@@ -1,20 +1,30 @@
-"""Machines of the same build solved together: designs of one linkage, or a single one.
+"""Machines of the same build side by side: designs whose numbers are columns, one row a design.
 
 Their steps differ in nothing but parameters.  With the parameters stacked, one run of the steps
 solves all machines at all their crank angles.
+
+Everything that puts a linkage together from numbers (`mechanism.linkage`) works on columns as well
+as on numbers.  So the steps of all designs are made in one go.  What a single machine is refused
+for is here a design of which `wrong` is true.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import combinations
+from math import pi
+from typing import Any, TypeVar
 
 import numpy as np
 
+from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import Linkage
-from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.steps import Call, State, Step, p, run, u
+from equipoise.mechanism.linkage import Linkage, ordered
+from equipoise.mechanism.model import FRAME, Machine, Vector
+from equipoise.mechanism.steps import Call, State, Step, p, planar, run, u
+from equipoise.quantities.units import HUGE, TINY
 
 Array = np.ndarray[Any, Any]
 Triple = tuple[Array, Array, Array]
@@ -108,3 +118,194 @@ def _stacked(calls: Sequence[Any]) -> Call:
 def column(values: Iterable[Any]) -> Array:
     """One value for each machine, (P, 1)."""
     return np.array(list(values))[:, None]
+
+
+Columns = Mapping[str, Array]
+"""Path of a number -> its values (P, 1), SI units."""
+Value = TypeVar("Value")
+
+PAIR = {"x", "y", "distance", "direction"}
+HOLDERS = {
+    "drive": (re.compile("drive"), {"speed", "acceleration"}),
+    "gravity": (re.compile("gravity"), PAIR),
+    "frame": (re.compile(r"frame\.points\.(?P<point>.+)"), PAIR),
+    "point": (re.compile(r"links\.(?P<link>.+?)\.points\.(?P<point>.+)"), PAIR),
+    "center": (re.compile(r"links\.(?P<link>.+)\.center_of_mass"), PAIR),
+    "link": (re.compile(r"links\.(?P<link>.+)"), {"mass", "inertia"}),
+    "slider": (re.compile(r"sliders\[(?P<number>\d+)\]"), {"direction", "angle"}),
+    "gear": (re.compile(r"gears\[(?P<number>\d+)\]"), {"start", "pressure_angle"}),
+    "spring": (re.compile(r"springs\[(?P<number>\d+)\]"), {"stiffness", "free_length"}),
+}
+"""What has numbers that may be columns, by its path in the model file, and their keys."""
+
+
+def can_vary(machine: Machine, path: str) -> bool:
+    """Whether a number of a machine, by its path in the model file, may be a column."""
+    try:
+        with_columns(machine, {path: np.ones((1, 1))})
+    except UsageError:
+        return False
+    return True
+
+
+def with_columns(machine: Machine, columns: Columns) -> Machine:
+    """A machine some of whose numbers are columns.
+
+    It passes no checks and serves `linkage_of` alone.
+
+    Raises
+    ------
+    UsageError : there is no such number, or it cannot be a column.
+    """
+    parts: dict[str, dict[str, Array]] = {}
+    for path, column in columns.items():
+        whole, _, part = path.rpartition(".")
+        parts.setdefault(whole, {})[part] = column
+    result = machine
+    for whole, found in parts.items():
+        result = _put(result, whole, found)
+    return result
+
+
+def linkage_of(machine: Machine, base: Linkage) -> Linkage:
+    """The linkage of a machine with columns, in the order in which its base is solved."""
+    joints = replace(base.joints, sliders=machine.sliders, gears=machine.gears)
+    needed = base.needed_references
+    start = {f"reference({name})": base.cycle.reference(name, np.zeros(1)) for name in needed}
+    with np.errstate(all="ignore"):
+        return ordered(machine, joints, start)
+
+
+def massive_link(path: str) -> str | None:
+    """The link whose mass, centre of mass or moment of inertia a path leads to."""
+    whole, _, part = path.rpartition(".")
+    for kind in ("center", "link"):
+        pattern, keys = HOLDERS[kind]
+        found = pattern.fullmatch(whole)
+        if found is not None and part in keys:
+            return found["link"]
+    return None
+
+
+def wrong(machine: Machine, base: Linkage, columns: Columns) -> Array:
+    """Which of the designs (P,) no machine can have: the checks of `Machine`, on columns."""
+    count = max((len(column) for column in columns.values()), default=1)
+    found = np.zeros((count, 1), dtype=bool)
+    with np.errstate(all="ignore"):
+        for column in columns.values():
+            size = np.abs(column)
+            found |= ~((size <= HUGE) & ((size >= TINY) | (size == 0)))
+        for right in _demands(machine, base):
+            found |= np.logical_not(right)
+    return found[:, 0]
+
+
+def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
+    """What has to be true of the numbers of a machine: flags, or columns of them."""
+    for body in (FRAME, *machine.links):
+        points = machine.points_of(body)
+        places = [planar(points[point]) for point in points if point in base.joints.pins]
+        yield from (one != other for one, other in combinations(places, 2))
+    for link in machine.links.values():
+        if link.mass is not None and link.inertia is not None:
+            yield (link.mass >= 0) & (link.inertia >= 0)
+            yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
+    for gear in machine.gears:
+        yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
+    for spring in machine.springs:
+        yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)
+
+
+# -- putting columns in ----------------------------------------------------------------------------
+
+
+def _put(machine: Machine, whole: str, parts: Mapping[str, Array]) -> Machine:
+    for kind, (pattern, keys) in HOLDERS.items():
+        found = pattern.fullmatch(whole)
+        if found is not None and parts.keys() <= keys:
+            try:
+                return _PUT[kind](machine, found, parts)
+            except (KeyError, IndexError):
+                break
+    told = " and ".join(f"{whole}.{part}".lstrip(".") for part in parts)
+    raise UsageError(f"got {told}; the machine has no such number that can be a column")
+
+
+def _drive(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    return _with(machine, drive=_with(machine.drive, **parts))
+
+
+def _gravity(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    return _with(machine, gravity=_pair(machine.gravity, parts))
+
+
+def _frame(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    place = _pair(machine.frame[found["point"]], parts)
+    return _with(machine, frame={**machine.frame, found["point"]: place})
+
+
+def _point(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    points = machine.links[found["link"]].points
+    place = _pair(points[found["point"]], parts)
+    return _with_link(machine, found["link"], points={**points, found["point"]: place})
+
+
+def _center(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    center = machine.links[found["link"]].center_of_mass
+    if center is None:
+        raise KeyError(found["link"])
+    return _with_link(machine, found["link"], center_of_mass=_pair(center, parts))
+
+
+def _link(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+    if machine.links[found["link"]].mass is None:
+        raise KeyError(found["link"])
+    return _with_link(machine, found["link"], **parts)
+
+
+def _listed(name: str) -> Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]:
+    def put(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
+        values, place = list(getattr(machine, name)), int(found["number"]) - 1
+        if place < 0:
+            raise IndexError
+        values[place] = _with(values[place], **parts)
+        return _with(machine, **{name: tuple(values)})
+
+    return put
+
+
+_PUT: dict[str, Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]] = {
+    "drive": _drive,
+    "gravity": _gravity,
+    "frame": _frame,
+    "point": _point,
+    "center": _center,
+    "link": _link,
+    "slider": _listed("sliders"),
+    "gear": _listed("gears"),
+    "spring": _listed("springs"),
+}
+
+
+def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
+    """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
+    x: Any
+    y: Any
+    x, y = place
+    if parts.keys() & {"distance", "direction"}:
+        distance = parts.get("distance", np.hypot(x, y))
+        direction = parts.get("direction", np.arctan2(y, x))
+        x, y = distance * np.cos(direction), distance * np.sin(direction)
+    return parts.get("x", x), parts.get("y", y)
+
+
+def _with(value: Value, **changes: Any) -> Value:
+    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
+    result = object.__new__(type(value))
+    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
+    result.__dict__.update(kept, **changes)
+    return result
+
+
+def _with_link(machine: Machine, name: str, **changes: Any) -> Machine:
+    return _with(machine, links={**machine.links, name: _with(machine.links[name], **changes)})

@@ -6,22 +6,37 @@ They are part of the model; `equipoise.planting` computes with them.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from itertools import pairwise
 from math import pi
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.keys import (
+    ROW,
+    Conditions,
+    File,
+    Frozen,
+    Listing,
+    Point,
+    Table,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+)
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine, Vector
 
 WAYS = ("forward", "backward")
+PARTS = ("resistance", "per_depth", "per_speed", "per_depth_and_speed")
+"""Of the resistance of soil."""
+RESISTS = "soil resists, give 0 or more"
 
 
-@dataclass(frozen=True)
+@declared
 class SoilTable(Frozen):
     """Resistance of the soil against depth: linear between its rows, constant beyond them.
 
@@ -29,80 +44,120 @@ class SoilTable(Frozen):
     file : name of the CSV file that it came from.
     """
 
-    shapes: ClassVar[dict[str, str]] = {"depth": "row", "resistance": "row", "file": "text"}
-
-    depth: tuple[float, ...]
-    resistance: tuple[float, ...]
-    file: str = field(default="", compare=False)
+    depth: tuple[float, ...] = inside(ROW)
+    resistance: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
 
 
-@dataclass(frozen=True)
+@declared
 class Soil(Frozen):
     """What the soil does to the tip below its surface: a force against the motion over ground.
 
-    Its size is the sum of `resistance` (N), `per_depth` (N/m) times the depth of the tip,
-    `per_speed` (N s/m) times its speed over ground, `per_depth_and_speed` (N s/m2) times both, and
-    the table's value at that depth.
+    Its size is the sum of all parts: `per_depth` times the depth of the tip, `per_speed` times its
+    speed over ground, `per_depth_and_speed` times both, and the table's value at that depth.
     """
 
-    shapes: ClassVar[dict[str, str]] = dict.fromkeys(
-        ("resistance", "per_depth", "per_speed", "per_depth_and_speed"), "number"
+    resistance: float = key(
+        "force", "constant part of the force", default=0.0, at_least=0, why=RESISTS
+    )
+    per_depth: float = key(
+        "stiffness", "force for each unit of depth", default=0.0, at_least=0, why=RESISTS
+    )
+    per_speed: float = key(
+        "damping",
+        "force for each unit of the tip's speed over ground",
+        default=0.0,
+        at_least=0,
+        why=RESISTS,
+    )
+    per_depth_and_speed: float = key(
+        "damping per length",
+        "force for each unit of depth times speed",
+        default=0.0,
+        at_least=0,
+        why=RESISTS,
+    )
+    table: SoilTable | None = key(
+        File("soil"),
+        "CSV file beside this one: `depth [mm],resistance [N]`",
+        default=None,
+        example="soil.csv",
     )
 
-    resistance: float = 0.0
-    per_depth: float = 0.0
-    per_speed: float = 0.0
-    per_depth_and_speed: float = 0.0
-    table: SoilTable | None = None
 
-
-@dataclass(frozen=True)
+@declared
 class Planting(Frozen):
-    """The planting finger and the field that it works in.
+    """The planting finger and the field that it works in."""
 
-    tip : point of a link that goes into the soil.
-    forward_speed : of the machine over ground, m/s; or instead of it
-    hill_spacing : distance of hills along a row, m, with units_per_turn hills in a turn of the
-        drive.
-    travel : whether the machine drives along x (forward) or against it (backward).
-    depth : of the tip's lowest point below the soil's surface, m; or instead of it
-    surface : height of the soil's surface in the frame, m.
-    finger_from : point of the tip's link from which the finger points to the tip; None for the
-        first other point of that link.
-    release : crank angle (rad) at which the seedling is let go; None for the lowest point.
-    tray : two points (m, in the frame): the edge of the seedling tray, where the finger picks up.
-    acceleration_limit : largest acceleration of the tip that is wanted, m/s2.
-    soil_acceleration_limit : the same while it is in the soil.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        "tip": "text",
-        "forward_speed": "number?",
-        "hill_spacing": "number?",
-        "units_per_turn": "count",
-        "travel": "text",
-        "depth": "number?",
-        "surface": "number?",
-        "finger_from": "text?",
-        "release": "number?",
-        "tray": "segment?",
-        "acceleration_limit": "number?",
-        "soil_acceleration_limit": "number?",
+    file_order = ("tip", "forward_speed", "hill_spacing", "depth", "surface", "release",
+             "acceleration_limit", "soil_acceleration_limit", "units_per_turn", "travel",
+             "finger_from", "tray", "soil")  # fmt: skip
+    conditions: ClassVar[Conditions] = {
+        "allOf": [
+            {"oneOf": [{"required": [one]}, {"required": [other]}]}
+            for one, other in (("forward_speed", "hill_spacing"), ("depth", "surface"))
+        ]
     }
 
-    tip: str
-    forward_speed: float | None = None
-    depth: float | None = None
-    hill_spacing: float | None = None
-    units_per_turn: int = 1
-    travel: Literal["forward", "backward"] = "forward"
-    surface: float | None = None
-    finger_from: str | None = None
-    release: float | None = None
-    tray: tuple[Vector, Vector] | None = None
-    acceleration_limit: float | None = None
-    soil_acceleration_limit: float | None = None
-    soil: Soil | None = None
+    tip: str = key(Text(), "point of a moving link that goes into the soil", example="P")
+    forward_speed: float | None = key(
+        "speed",
+        "of the machine over ground, 0 or more",
+        default=None,
+        example="0.6 m/s",
+        at_least=0,
+        why='give its size, and travel = "backward" for a machine that drives against x',
+    )
+    depth: float | None = key(
+        "length",
+        "of the tip's lowest point below the surface",
+        default=None,
+        example="4 cm",
+        above=0,
+    )
+    hill_spacing: float | None = key(
+        "length",
+        "of hills along a row, instead of `forward_speed`",
+        default=None,
+        example="15 cm",
+        above=0,
+    )
+    units_per_turn: int = key(
+        Whole(1), "hills planted in a row in one turn of the drive", default=1, at_least=1
+    )
+    travel: Literal["forward", "backward"] = key(
+        Text(WAYS),
+        "`forward`: the machine drives along x, `backward`: against it",
+        default="forward",
+    )
+    surface: float | None = key(
+        "length", "height of the soil's surface in the frame, instead of `depth`", default=None
+    )
+    finger_from: str | None = key(
+        Text(),
+        "root of the finger, from which it points to the tip; the first other point of the tip's "
+        "link if left out",
+        default=None,
+    )
+    release: float | None = key(
+        "angle",
+        "crank angle at which the seedling is let go; the lowest point if left out",
+        default=None,
+    )
+    tray: tuple[Vector, Vector] | None = key(
+        Listing(Point(), (2,)),
+        "both ends of the edge of the seedling tray, in the frame",
+        default=None,
+    )
+    acceleration_limit: float | None = key(
+        "acceleration", "largest acceleration of the tip that is wanted", default=None, above=0
+    )
+    soil_acceleration_limit: float | None = key(
+        "acceleration", "the same while the tip is in the soil", default=None, above=0
+    )
+    soil: Soil | None = key(
+        Table(Soil), "what the soil does to the tip below its surface", default=None
+    )
 
     def forward(self, speed: float) -> float:
         """Velocity of the machine along x, m/s, at a speed of the drive, rad/s."""
@@ -128,10 +183,6 @@ def wrong_planting(machine: Machine) -> Iterator[ModelError]:
     yield from _wrong_travel(planting)
     if (planting.depth is None) == (planting.surface is None):
         yield ModelError("planting", "give either depth or surface")
-    for key in ("depth", "acceleration_limit", "soil_acceleration_limit"):
-        value = getattr(planting, key)
-        if value is not None and value <= 0:
-            yield ModelError(f"planting.{key}", f"got {value:g} in SI units; give more than 0")
     if planting.tray is not None and planting.tray[0] == planting.tray[1]:
         yield ModelError("planting.tray", "its two points are the same; give both ends of the edge")
     if planting.soil is not None:
@@ -151,33 +202,10 @@ def _wrong_travel(planting: Planting) -> Iterator[ModelError]:
     if (planting.forward_speed is None) == (planting.hill_spacing is None):
         yield ModelError("planting", "give either forward_speed or hill_spacing")
         return
-    if planting.travel not in WAYS:
-        yield ModelError(
-            "planting.travel", f"got {planting.travel!r}; give 'forward' (along x) or 'backward'"
-        )
-    if planting.forward_speed is not None and planting.forward_speed < 0:
-        yield ModelError(
-            "planting.forward_speed",
-            f'got {planting.forward_speed:g} m/s; give its size, and travel = "backward" for a '
-            "machine that drives against x",
-        )
-    if planting.hill_spacing is not None and planting.hill_spacing <= 0:
-        yield ModelError(
-            "planting.hill_spacing", f"got {planting.hill_spacing:g} m; give more than 0"
-        )
-    if planting.units_per_turn < 1:
-        yield ModelError(
-            "planting.units_per_turn", f"got {planting.units_per_turn}; give 1 or more"
-        )
 
 
 def _wrong_soil(soil: Soil) -> Iterator[ModelError]:
-    values = {key: getattr(soil, key) for key in soil.shapes}
-    for key, value in values.items():
-        if value < 0:
-            yield ModelError(
-                f"planting.soil.{key}", f"got {value:g} in SI units; soil resists, give 0 or more"
-            )
+    values = {name: getattr(soil, name) for name in PARTS}
     if not any(values.values()) and soil.table is None:
         yield ModelError("planting.soil", f"give at least one of {', '.join(values)} and table")
     if soil.table is not None:

@@ -3,6 +3,10 @@
 Links are taken in the smallest groups that can be solved: a geared link, a dyad, and only where
 neither fits a group for Newton's method.  Each group becomes steps for motion and, in reverse
 order, steps for forces.
+
+A linkage whose crank cannot turn fully is solved at given crank angles, if those can be reached.
+Without a whole cycle nothing tells the running angles of links that drive gears, except the way
+from crank angle 0, where the start angles of gears hold.
 """
 
 from __future__ import annotations
@@ -11,24 +15,30 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
+from math import ceil, degrees, pi
+from typing import Any
 
 import numpy as np
 
-from equipoise.errors import MobilityError, ModelError
-from equipoise.mechanism import dyads, gears
-from equipoise.mechanism.builder import (
+from equipoise.errors import ChangePointError, MobilityError, ModelError, RangeError
+from equipoise.mechanism import groups
+from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN, Cycle, close
+from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
+from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.steps import (
     Builder,
     Group,
     Guide,
     Outer,
     Reaction,
+    State,
+    Step,
     initial_state,
+    needed_references,
     pin_reaction,
+    plain_angle,
+    run,
 )
-from equipoise.mechanism.cycle import Cycle, close
-from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
-from equipoise.mechanism.model import FRAME, Machine, Slider
-from equipoise.mechanism.steps import State, Step, needed_references, run
 
 
 @dataclass(frozen=True)
@@ -200,7 +210,7 @@ def _geared(builder: Builder, joints: Structure, unknown: list[str]) -> Group | 
     for gear in joints.gears:
         ready = gear.driven in unknown and {gear.driver, gear.carrier} <= known.keys()
         if ready and joints.freedom([gear.driven], known) == 0:
-            return gears.geared(builder, joints, gear)
+            return groups.geared(builder, joints, gear)
     return None
 
 
@@ -236,9 +246,9 @@ def _by_joints(
             "replace one by a pin"
         )
     if pins:
-        build = {"RRR": dyads.rrr, "RRP": dyads.rrp, "PRR": dyads.rrp, "PRP": dyads.prp}[kinds]
+        build = {"RRR": groups.rrr, "RRP": groups.rrp, "PRR": groups.rrp, "PRP": groups.prp}[kinds]
         return build(builder, first, second, pins[0])
-    slide = {"RPR": dyads.rpr, "RPP": dyads.rpp, "PPR": dyads.rpp}[kinds]
+    slide = {"RPR": groups.rpr, "RPP": groups.rpp, "PPR": groups.rpp}[kinds]
     return slide(builder, first, second, between[0])
 
 
@@ -255,3 +265,82 @@ def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
             guide = Guide.seen_from(slider, other)
             result.append(Outer(link, other, guide.base, guide))
     return result
+
+
+Array = np.ndarray[Any, Any]
+
+
+def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePointError) -> State:
+    """State at crank angles (N,) of a linkage whose cycle ended with `error`.
+
+    Raises
+    ------
+    MotionError : one of the crank angles is out of reach.
+    """
+    if any(group.kind == "loops" for group in linkage.groups):
+        raise error
+    start = linkage.start(theta)
+    if linkage.needed_references:
+        for side in (1, -1):
+            _add_references(linkage, start, theta * side >= 0, side, error)
+    with np.errstate(all="ignore"):
+        state = run(linkage.motion, start)
+    _check(linkage, state, theta, error, "asked for")
+    return state
+
+
+def middle_angle(
+    linkage: Linkage, link: str, theta: Array, error: RangeError | ChangePointError
+) -> Array:
+    """Angle of a link (N,) in the middle of the range that each crank angle lies in.
+
+    Within a range a link swings less than half a turn to either side of that.
+    """
+    middles = np.zeros_like(theta)
+    for low, high in getattr(error, "ranges", ()):
+        middle = 0.5 * (low + high)
+        inside = np.abs(np.mod(theta - middle + pi, 2 * pi) - pi) <= 0.5 * (high - low)
+        middles[inside] = middle
+    with np.errstate(all="ignore"):
+        state = run(linkage.motion, linkage.start(middles))
+    return plain_angle(state, link)
+
+
+def _add_references(
+    linkage: Linkage,
+    state: State,
+    chosen: Array,
+    side: int,
+    error: RangeError | ChangePointError,
+) -> None:
+    """Follow the running angles from crank angle 0 to the farthest on one side."""
+    theta = state["theta"]
+    far = float(np.max(np.abs(theta[chosen]), initial=0.0))
+    way = np.linspace(0.0, far, 2 + ceil(far / (2 * pi) * POINTS_PER_TURN))
+    with np.errstate(all="ignore"):
+        followed = run(linkage.motion, linkage.start(side * way))
+    _check(linkage, followed, side * way, error, "on the way from 0 deg, where gears start, at")
+    for name in linkage.needed_references:
+        reference = state.setdefault(f"reference({name})", np.zeros_like(theta))
+        reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
+
+
+def _check(
+    linkage: Linkage,
+    state: State,
+    theta: Array,
+    error: RangeError | ChangePointError,
+    doing: str,
+) -> None:
+    """Raise the error again, with the crank angle, where a dyad cannot be closed."""
+    for group in linkage.groups:
+        if group.number is None:
+            continue
+        number = np.broadcast_to(state[group.number], theta.shape)
+        bad = ~(number > CHANGE_POINT)
+        if np.any(bad):
+            angle = degrees(theta[int(np.argmax(bad))])
+            told = f"{error} ({doing} {angle:.4g} deg)"
+            if isinstance(error, RangeError):
+                raise RangeError(told, error.ranges) from None
+            raise ChangePointError(told, error.crank_angle) from None

@@ -7,16 +7,37 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from fractions import Fraction
 from itertools import chain
-from math import hypot, radians
+from math import hypot, pi, radians
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.checks import FRAME, problems, unknown
+from equipoise.keys import (
+    NO_INERTIA,
+    ROW,
+    VERSION,
+    Conditions,
+    File,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Named,
+    Number,
+    Point,
+    Quantity,
+    Table,
+    Tables,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import FRAME, SIDES, problems, unknown
 from equipoise.mechanism.field import Planting, wrong_planting
-from equipoise.mechanism.frozen import Frozen
 from equipoise.mechanism.motor import Motor, wrong_motor
 from equipoise.mechanism.spring import Spring, wrong_springs
 from equipoise.mechanism.support import Row, Support, wrong_support
@@ -44,113 +65,151 @@ Vector = tuple[float, float]
 """Components along x (forward) and y (up)."""
 
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
+MESHES = ("external", "internal")
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 
 
-@dataclass(frozen=True)
+@declared
 class Link(Frozen):
     """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
 
-    Attributes
-    ----------
-    points : name -> (x, y) in m; a point whose name another link or the frame also has is a pin.
-    mass : kg, or None where it is not known (then no forces are computed).
-    center_of_mass : (x, y) in m.
-    inertia : kg m2, about the centre of mass.
+    A point whose name another link or the frame also has is a pin.  Without a mass no forces are
+    computed.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "points": "pairs",
-        "mass": "number?",
-        "center_of_mass": "pair?",
-        "inertia": "number?",
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {
+            "mass": ["center_of_mass", "inertia"],
+            "center_of_mass": ["mass", "inertia"],
+            "inertia": ["mass", "center_of_mass"],
+        }
     }
 
-    points: Mapping[str, Vector]
-    mass: float | None = None
-    center_of_mass: Vector | None = None
-    inertia: float | None = None
+    points: Mapping[str, Vector] = key(
+        Named(Point()),
+        "in the link's own axes; links that share a name are pinned together there",
+        example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
+    )
+    mass: float | None = key(
+        "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
+    )
+    center_of_mass: Vector | None = key(
+        Point(), "needed for forces; in the link's own axes", default=None
+    )
+    inertia: float | None = key(
+        "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
+    )
 
     @property
     def has_mass(self) -> bool:
         return self.mass is not None
 
 
-@dataclass(frozen=True)
+@declared
 class Drive(Frozen):
-    """The link that is driven, at `speed` (rad/s, positive counterclockwise).
+    """The link that is driven."""
 
-    acceleration : rad/s2, of the drive link at every crank angle that is analysed.
-    flywheel : moment of inertia of what turns with the drive link beside it, kg m2.
-    motor : what drives it, where the speed is not to be taken as constant.
-    """
+    link: str = key(
+        Text(),
+        "the driven link; it shares exactly one point with the frame, about which it turns",
+        example="crank",
+    )
+    speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
+    acceleration: float = key(
+        "angular acceleration", "of the driven link, at every crank angle analysed", default=0.0
+    )
+    flywheel: float = key(
+        "inertia",
+        "of what turns with the driven link beside it",
+        default=0.0,
+        at_least=0,
+        why=NO_INERTIA,
+    )
+    motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
 
-    shapes: ClassVar[dict[str, str]] = {
-        "link": "text",
-        **dict.fromkeys(("speed", "acceleration", "flywheel"), "number"),
-    }
 
-    link: str
-    speed: float
-    acceleration: float = 0.0
-    flywheel: float = 0.0
-    motor: Motor | None = None
-
-
-@dataclass(frozen=True)
+@declared
 class Slider(Frozen):
-    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning in it.
+    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
 
-    through : point of `on` on the line.
-    direction : angle (rad) of the line in the axes of `on`.
-    angle : angle (rad) of the sliding link's x axis from the line.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("link", "point", "on", "through"), "text"),
-        "direction": "number",
-        "angle": "number",
-    }
-
-    link: str
-    point: str
-    on: str
-    through: str
-    direction: float
-    angle: float = 0.0
+    link: str = key(Text(), "the sliding link", example="piston")
+    point: str = key(Text(), "its point on the line", example="C")
+    on: str = key(Text(), 'the guiding link, or `"frame"`', example="frame")
+    through: str = key(Text(), "a point of the guide on the line", example="A")
+    direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
+    angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
 
     @property
     def name(self) -> str:
         return f"{self.link} on {self.on}"
 
 
-@dataclass(frozen=True)
+@declared
 class Gear(Frozen):
-    """A pair of gears, both pinned to the same carrier.
+    """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
 
-    ratio : speed of driven over speed of driver, both relative to the carrier; negative for an
-        external mesh.  Either this or `teeth`.
-    teeth : numbers of teeth of driver and driven, with `mesh` telling external from internal.
-    start : angle (rad) of the driven link in the frame at crank angle 0.
-    pressure_angle : rad, of the teeth.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("driver", "driven", "carrier", "mesh"), "text"),
-        "ratio": "number?",
-        "teeth": "counts?",
-        "start": "number",
-        "pressure_angle": "number",
+    beside: ClassVar[Keys] = {
+        "between": Key(
+            "between",
+            Listing(Text(), (2,)),
+            "driver and driven link; the driver is the one that is moved already, and may be "
+            '`"frame"` where the carrier turns',
+            example=["crank", "wheel"],
+        ),
+        "mesh": Key(
+            "mesh",
+            Text(MESHES),
+            "goes with `teeth`",
+            default=None,
+            shown="external",
+        ),
+    }
+    file_order = ("between", "ratio", "teeth", "mesh")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
+        "dependentRequired": {"mesh": ["teeth"]},
     }
 
-    driver: str
-    driven: str
-    ratio: float | None = None
-    teeth: tuple[int, int] | None = None
-    mesh: Literal["external", "internal"] = "external"
-    carrier: str = FRAME
-    start: float = 0.0
-    pressure_angle: float = radians(20)
+    driver: str = inside(Text())
+    driven: str = inside(Text())
+    ratio: float | None = key(
+        Number(),
+        "speed of driven over driver, both relative to the carrier; negative for an external mesh",
+        default=None,
+        example=-2,
+    )
+    teeth: tuple[int, int] | None = key(
+        Listing(Whole(1), (2,)),
+        "of driver and driven, instead of `ratio`",
+        default=None,
+        example=[20, 40],
+    )
+    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
+    carrier: str = key(Text(), "link to which both are pinned", default=FRAME, example="frame")
+    start: float = key("angle", "of the driven link in the frame at crank angle 0", default=0.0)
+    pressure_angle: float = key(
+        "angle",
+        "of the teeth; it sets the radial part of the tooth force",
+        default=radians(20),
+        at_least=0,
+        below=pi / 2,
+        why="give an angle from 0 deg to less than 90 deg",
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Gear:
+        if "mesh" in given and "teeth" not in given:
+            raise ModelError(
+                "mesh",
+                f"got {given['mesh']!r} without teeth; leave it out, the sign of ratio tells: "
+                "negative for external",
+            )
+        return cls(*given.pop("between"), **given)
+
+    @classmethod
+    def to_table(cls, value: Gear) -> dict[str, Any]:
+        mesh = {} if value.teeth is None else {"mesh": value.mesh}
+        return {"between": (value.driver, value.driven), **mesh, **super().to_table(value)}
 
     @property
     def name(self) -> str:
@@ -175,7 +234,7 @@ class Gear(Frozen):
         return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
 
 
-@dataclass(frozen=True)
+@declared
 class LoadTable(Frozen):
     """A load over one turn, linear between its rows and from the last row to the first.
 
@@ -184,102 +243,138 @@ class LoadTable(Frozen):
     file : name of the CSV file that it came from.
     """
 
-    shapes: ClassVar[dict[str, str]] = {"crank_angle": "row", "values": "rows", "file": "text"}
-
-    crank_angle: tuple[float, ...]
-    values: tuple[tuple[float, ...], ...]
-    file: str = field(default="", compare=False)
+    crank_angle: tuple[float, ...] = inside(ROW)
+    values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
+    file: str = inside(Text(), default="", compare=False)
 
 
-@dataclass(frozen=True)
+@declared
 class Load(Frozen):
     """A force at a point of a link, or a torque on a link, from outside the machine.
 
-    force : (x, y) in N, in the frame's axes.
-    torque : N m, positive counterclockwise.
-    start, stop : crank angles (rad) between which it acts; it may pass through 0.  Without them
-        it acts always.
-    table : the load against crank angle, instead of force or torque.
+    Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "link": "text",
-        "point": "text?",
-        "force": "pair?",
-        **dict.fromkeys(("torque", "start", "stop"), "number?"),
+    file_order = ("link", "point", "force", "torque", "table", "from", "to")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
+        "dependentRequired": {"from": ["to"], "to": ["from"], "force": ["point"]},
     }
 
-    link: str
-    point: str | None = None
-    force: Vector | None = None
-    torque: float | None = None
-    start: float | None = None
-    stop: float | None = None
-    table: LoadTable | None = None
+    link: str = key(Text(), "the loaded link", example="coupler")
+    point: str | None = key(Text(), "where a force acts; not for torques", default=None)
+    force: Vector | None = key(
+        Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
+    )
+    torque: float | None = key("torque", "positive counterclockwise", default=None)
+    start: float | None = key(
+        "angle",
+        "crank angle at which it begins to act; it may pass through 0",
+        name="from",
+        default=None,
+    )
+    stop: float | None = key("angle", "crank angle at which it ends", name="to", default=None)
+    table: LoadTable | None = key(
+        File("load"),
+        "CSV file beside this one: `crank_angle [deg],force_x [N],force_y [N]` or "
+        "`crank_angle [deg],torque [N m]`",
+        default=None,
+        example="force.csv",
+    )
 
 
-@dataclass(frozen=True)
+@declared
 class Position(Frozen):
-    """Where the machine is, roughly, at one crank angle (rad): the start of Newton's method.
+    """Where the machine is, roughly, at one crank angle: the start of Newton's method."""
 
-    points : name -> (x, y) in the frame, m.  angles : link -> angle in the frame, rad.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        "crank_angle": "number",
-        "points": "pairs",
-        "angles": "numbers",
-    }
-
-    crank_angle: float = 0.0
-    points: Mapping[str, Vector] = field(default_factory=dict)
-    angles: Mapping[str, float] = field(default_factory=dict)
+    crank_angle: float = key(
+        "angle",
+        "at which it holds; 0 where gears are among these links",
+        default=0.0,
+    )
+    points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
+    angles: Mapping[str, float] = key(
+        Named(Quantity("angle")), "of links in the frame", factory=dict
+    )
 
 
-@dataclass(frozen=True)
+@declared
+class Frame(Frozen):
+    """The part that stands still; a machine has its points by name."""
+
+    wanted = "a mapping of names to two numbers"
+
+    points: Mapping[str, Vector] = key(
+        Named(Point()),
+        "points that stand still, in the frame's axes; a link with a point of that name is pinned "
+        "there",
+        example={"A": ["0 mm", "0 mm"]},
+    )
+
+    @classmethod
+    def checked(cls, value: Any) -> Any:
+        return Named(Point()).check(value)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Mapping[str, Vector]:
+        points: Mapping[str, Vector] = given["points"]
+        return points
+
+    @classmethod
+    def to_table(cls, value: Any) -> dict[str, Any]:
+        return {"points": value}
+
+
+@declared
 class Machine(Frozen):
-    """A planar linkage with its drive, loads, springs and gravity.
+    """A planar linkage with its drive, loads, springs and gravity."""
 
-    Attributes
-    ----------
-    frame : name -> (x, y) of the fixed points, m.
-    links : name -> `Link`, in the order of the file.
-    assembly : name of a dyad's inner joint -> side on which it is assembled.
-    gravity : (x, y) in m/s2.
-    position : rough position, needed only where dyads do not suffice.
-    planting : what a planting finger does in the field, where it is one.
-    support : the body that carries the linkage, where the frame does not stand still.
-    rows : the linkages on it; one, as the file has it, where there are none.
-    balance : what may be changed to quieten it, and what is to become small.
-    springs : linear springs between its links and the frame.
-    """
+    beside: ClassVar[Keys] = {"schema": VERSION}
+    file_order = ("schema", "title", "description", "gravity", "drive", "frame", "links",
+                  "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
+                  "support", "rows", "balance")  # fmt: skip
 
-    shapes: ClassVar[dict[str, str]] = {
-        "title": "text",
-        "frame": "pairs",
-        "links": "values",
-        "assembly": "texts",
-        **dict.fromkeys(("sliders", "gears", "loads", "rows", "springs"), "list"),
-        "gravity": "pair",
-        "description": "text",
-    }
-
-    title: str
-    drive: Drive
-    frame: Mapping[str, Vector]
-    links: Mapping[str, Link]
-    assembly: Mapping[str, str] = field(default_factory=dict)
-    sliders: tuple[Slider, ...] = ()
-    gears: tuple[Gear, ...] = ()
-    loads: tuple[Load, ...] = ()
-    gravity: Vector = STANDARD_GRAVITY
-    position: Position | None = None
-    description: str = ""
-    planting: Planting | None = None
-    support: Support | None = None
-    rows: tuple[Row, ...] = ()
-    balance: Balance | None = None
-    springs: tuple[Spring, ...] = ()
+    title: str = key(Text(), "shown in reports", example="Slider-crank")
+    drive: Drive = key(Table(Drive), "the link that is driven")
+    frame: Mapping[str, Vector] = key(Table(Frame), "the part that stands still")
+    links: Mapping[str, Link] = key(Named(Table(Link)), "moving links by name")
+    assembly: Mapping[str, str] = key(
+        Named(Text(SIDES)),
+        "side on which the inner joint of each dyad lies, by name of the joint",
+        factory=dict,
+    )
+    sliders: tuple[Slider, ...] = key(Tables(Table(Slider)), "sliding joints", default=())
+    gears: tuple[Gear, ...] = key(Tables(Table(Gear)), "pairs of gears", default=())
+    loads: tuple[Load, ...] = key(
+        Tables(Table(Load)), "forces and torques from outside", default=()
+    )
+    gravity: Vector = key(
+        Listing(Quantity("acceleration"), (2,)),
+        'along x and y; `["0 m/s^2", "0 m/s^2"]` for a machine that lies flat',
+        default=STANDARD_GRAVITY,
+        shown=["0 m/s^2", "-9.80665 m/s^2"],
+    )
+    position: Position | None = key(
+        Table(Position), "rough position, needed only where dyads do not suffice", default=None
+    )
+    description: str = key(Text(), "further text", default="")
+    planting: Planting | None = key(
+        Table(Planting), "what a finger does in the field", default=None
+    )
+    support: Support | None = key(Table(Support), "what carries the linkages", default=None)
+    rows: tuple[Row, ...] = key(
+        Tables(Table(Row)),
+        "equal linkages on one shaft; the one of this file if left out",
+        default=(),
+    )
+    balance: Balance | None = key(
+        Table("equipoise.mechanism.balance:Balance"),
+        "what may be changed to quieten it, and what is to become small",
+        default=None,
+    )
+    springs: tuple[Spring, ...] = key(
+        Tables(Table(Spring)), "linear springs between links and frame", default=()
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -13,10 +13,9 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.linkage import Linkage, assemble
-from equipoise.mechanism.model import Machine, unknown
-from equipoise.mechanism.steps import State, p, plain_angle, running_angle, u
-from equipoise.mechanism.swinging import middle_angle, solve_swinging
+from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
+from equipoise.mechanism.model import Machine, Slider, unknown
+from equipoise.mechanism.steps import Group, State, p, plain_angle, running_angle, u
 from equipoise.quantities.units import HUGE
 
 Array = np.ndarray[Any, Any]
@@ -110,6 +109,31 @@ class PointMotion:
         return self.acceleration_vector.imag
 
 
+@dataclass(frozen=True, eq=False)
+class SliderMotion:
+    """Motion along the guide of a sliding joint; arrays (N,).
+
+    travel : m, of the slider's point from the guide's point along the guide's direction.
+    travel_1, travel_2 : first and second derivative by crank angle, m.
+    """
+
+    travel: Array
+    travel_1: Array
+    travel_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, as seen from the guide."""
+        return self.travel_1 * self.speed
+
+    @property
+    def along_acceleration(self) -> Array:
+        """m/s2, as seen from the guide."""
+        return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
+
+
 class Named(dict[str, Value]):
     """A dict that says which names there are when one is asked for that is not."""
 
@@ -176,6 +200,59 @@ class Motion:
         """Motion of each link's centre of mass, for links whose mass is known."""
         links = (name for name, link in self.machine.links.items() if link.has_mass)
         return Named("link with mass", ((link, self._mass_center(link)) for link in links))
+
+    @cached_property
+    def sliders(self) -> Mapping[str, SliderMotion]:
+        """Motion along the guide of each sliding joint, by name."""
+        sliders = self.machine.sliders
+        return Named("slider", ((slider.name, self._slider(slider)) for slider in sliders))
+
+    @cached_property
+    def transmission(self) -> Mapping[str, Array]:
+        """Transmission angle (N,) of each dyad, rad, by its inner joint.
+
+        Between two bars it is the angle at their pin, 0 to pi; where one of the links slides, that
+        between the other and the normal of the guide, or between the two guides, 0 to pi / 2 and
+        counted from where the dyad jams.
+        """
+        dyads = (group for group in self.linkage.groups if group.number is not None)
+        return Named("dyad", ((group.joint, self._transmission(group)) for group in dyads))
+
+    def _slider(self, slider: Slider) -> SliderMotion:
+        point, base = self.points[slider.point], self.points[slider.through]
+        rotation, w, a = (self.state[name] for name in u(slider.on))
+        way = kernels.along_line(
+            point.place - base.place,
+            point.place_1 - base.place_1,
+            point.place_2 - base.place_2,
+            self._full(rotation * np.exp(1j * slider.direction), complex),
+            w,
+            a,
+        )
+        return SliderMotion(*(part.real for part in way), self.speed, self.acceleration)
+
+    def _transmission(self, group: Group) -> Array:
+        assert group.number is not None
+        if all(reaction.kind == "pin" for reaction in group.reactions):
+            first, second, pin = (self.state[f"p({reaction.at})"] for reaction in group.reactions)
+            return self._full(np.abs(np.angle((first - pin) / (second - pin))))
+        number = self.state[group.number]
+        if [reaction.kind for reaction in group.reactions] == ["pin", "pin", "slider"]:
+            number = self._of_block(group, number)
+        return self._full(np.arcsin(np.sqrt(np.clip(number, 0.0, 1.0))))
+
+    def _of_block(self, group: Group, number: Any) -> Any:
+        """Squared sine of a block on a guide, but where the block comes to the guide's pivot.
+
+        There the dyad's own number has to be smooth, and is it by being a little too small.
+        """
+        block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
+        slider = next(one for one in self.machine.sliders if one.name == group.reactions[2].name)
+        along = self.state[f"u({slider.on})"] * np.exp(1j * slider.direction)
+        way = block - pivot
+        apart = np.abs(way) ** 2
+        there = apart > 0
+        return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), number)
 
     def _link(self, link: str) -> LinkMotion:
         _, first, second = (self.state[name] for name in u(link))

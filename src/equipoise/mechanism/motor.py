@@ -3,22 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import (
+    NO_INERTIA,
+    ROW,
+    Conditions,
+    File,
+    Frozen,
+    Number,
+    Text,
+    declared,
+    inside,
+    key,
+)
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
 
-UNITS = {"no_load_speed": " rad/s", "stall_torque": " N m", "ratio": ""}
 MEAN_SPEEDS = ("held", "free")
 
 
-@dataclass(frozen=True)
+@declared
 class MotorTable(Frozen):
     """Torque of a motor against its speed: linear between its rows, and beyond them as between
     the last two.
@@ -27,48 +35,59 @@ class MotorTable(Frozen):
     file : name of the CSV file that it came from.
     """
 
-    shapes: ClassVar[dict[str, str]] = {"speed": "row", "torque": "row", "file": "text"}
-
-    speed: tuple[float, ...]
-    torque: tuple[float, ...]
-    file: str = field(default="", compare=False)
+    speed: tuple[float, ...] = inside(ROW)
+    torque: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
 
 
-@dataclass(frozen=True)
+@declared
 class Motor(Frozen):
-    """The motor or engine that turns the crank.
+    """The motor or engine that turns the crank; its torque and speed are sizes.
 
-    no_load_speed, stall_torque : rad/s and N m, both sizes: torque falls in a straight line from
-        the one at standstill to zero at the other.  Instead of them
-    table : torque against speed, of the motor.
-    ratio : turns of the motor in one turn of the crank, more than 0.
-    inertia : of its rotor about its own axis, kg m2.
-    mean_speed : held, if the motor is so set that the crank turns at the drive's speed in the
-        mean: its curve is shifted along the speed; free, if the curve holds as it is and the speed
-        follows from it.
+    Torque falls in a straight line from the one at standstill to zero at no load, or follows the
+    table.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("no_load_speed", "stall_torque"), "number?"),
-        **dict.fromkeys(("ratio", "inertia"), "number"),
-        "mean_speed": "text",
+    file_order = ("no_load_speed", "stall_torque", "table", "ratio", "inertia", "mean_speed")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {"required": ["no_load_speed", "stall_torque"], "properties": {"table": False}},
+            {"required": ["table"], "properties": {"no_load_speed": False, "stall_torque": False}},
+        ]
     }
 
-    no_load_speed: float | None = None
-    stall_torque: float | None = None
-    table: MotorTable | None = None
-    ratio: float = 1.0
-    inertia: float = 0.0
-    mean_speed: Literal["held", "free"] = "held"
+    no_load_speed: float | None = key(
+        "angular speed",
+        "of the motor, at which its torque is 0",
+        default=None,
+        example="3000 rpm",
+        above=0,
+    )
+    stall_torque: float | None = key(
+        "torque", "of the motor at standstill", default=None, example="2 N m", above=0
+    )
+    table: MotorTable | None = key(
+        File("motor"),
+        "CSV file beside this one, instead of these two: `speed [rpm],torque [N m]`",
+        default=None,
+        example="motor.csv",
+    )
+    ratio: float = key(
+        Number(), "turns of the motor in one turn of the driven link", default=1.0, above=0
+    )
+    inertia: float = key(
+        "inertia", "of its rotor about its own axis", default=0.0, at_least=0, why=NO_INERTIA
+    )
+    mean_speed: Literal["held", "free"] = key(
+        Text(MEAN_SPEEDS),
+        "`held`: the motor is so set that the mean speed is the drive's `speed`; `free`: its curve "
+        "holds as it is, and the speed follows from it",
+        default="held",
+    )
 
 
 def wrong_motor(machine: Machine) -> Iterator[ModelError]:
-    """Everything that is wrong with a machine's motor and flywheel."""
-    if machine.drive.flywheel < 0:
-        yield ModelError(
-            "drive.flywheel",
-            f"got {machine.drive.flywheel:g} kg m^2; no body has a negative moment of inertia",
-        )
+    """Everything that is wrong with a machine's motor."""
     motor = machine.drive.motor
     if motor is None:
         return
@@ -79,19 +98,6 @@ def wrong_motor(machine: Machine) -> Iterator[ModelError]:
     ):
         yield ModelError(where, "give either no_load_speed and stall_torque, or table")
         return
-    for key in ("no_load_speed", "stall_torque", "ratio"):
-        value = getattr(motor, key)
-        if value is not None and value <= 0:
-            yield ModelError(f"{where}.{key}", f"got {value:g}{UNITS[key]}; give more than 0")
-    if motor.inertia < 0:
-        yield ModelError(
-            f"{where}.inertia",
-            f"got {motor.inertia:g} kg m^2; no body has a negative moment of inertia",
-        )
-    if motor.mean_speed not in MEAN_SPEEDS:
-        yield ModelError(
-            f"{where}.mean_speed", unknown(motor.mean_speed, MEAN_SPEEDS, "choice of mean speed")
-        )
     if motor.table is not None:
         yield from _wrong_table(f"{where}.table", motor.table)
 

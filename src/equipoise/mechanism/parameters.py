@@ -1,9 +1,14 @@
-"""Every output is linear in the inertial parameters: the regressor, and the base parameters.
+"""Every output is linear in inertial parameters and springs: regressor, and base parameters.
 
 The parameters of a link are its mass, its two first moments and its moment of inertia, the last
 three about the origin of the link's axes.  Without loads and springs an output is
 ``values @ regressor``.  Several parameters always act together; the base parameters are the
 combinations that the outputs can tell apart.
+
+A spring makes drive and joints bear what is linear in its stiffness and its pull.  With the vector
+d from the link's point to the frame's, it exerts k d + f d / |d|, where k is its stiffness and
+f = -k l0 the pull that a free length l0 takes off.  So drive torque and joint forces are those
+without the spring, plus k times the first row and f times the second.
 """
 
 from __future__ import annotations
@@ -16,11 +21,12 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import planar
+from equipoise.mechanism.applied import demands_of, spring_direction, spring_vector
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, massless, place_of
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import JointForce, MeshForce, reactions
+from equipoise.mechanism.reactions import Demand, JointForce, MeshForce, reactions
+from equipoise.mechanism.steps import planar
 
 Array = np.ndarray[Any, Any]
 
@@ -237,3 +243,38 @@ def independent_columns(matrix: Array, tolerance: float = 1e-9) -> tuple[list[in
     factors = np.linalg.lstsq(matrix[:, kept], matrix, rcond=None)[0]
     factors[np.abs(factors) < tolerance] = 0.0
     return kept, factors
+
+
+def spring_columns(
+    motion: Motion, link: str, point: str, to: str
+) -> tuple[Array, dict[str, Array]]:
+    """Drive torque (2, N) and the force in each joint by name (2, N), complex.
+
+    First row: of a spring of 1 N/m without a free length; second row: of a pull of 1 N towards the
+    frame's point; each alone.  Shaking force and moment, and force and moment on the frame, have
+    nothing of a spring.  Gears press on the flank that all forces of the machine together choose.
+
+    Raises
+    ------
+    MassError : there are gears, and a link has no mass given.
+    ModelError : the ends meet, so that a pull has no direction.
+    UsageError : there is no such link or point.
+    """
+    _check(motion.machine, link, point, to)
+    units = np.stack([spring_vector(motion, point, to), spring_direction(motion, link, point, to)])
+    zero = np.zeros(units.shape)
+    demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
+    demands |= demands_of(motion, [(link, point, units, 0.0)])
+    like = forces(motion).solved if motion.machine.gears else None
+    solved = reactions(motion, demands, like)
+    return solved.drive_torque, {name: joint.value for name, joint in solved.joints.items()}
+
+
+def _check(machine: Machine, link: str, point: str, to: str) -> None:
+    if link not in machine.links:
+        raise UsageError(unknown(link, machine.links, "link"))
+    points = machine.links[link].points
+    if point not in points:
+        raise UsageError(unknown(point, points, f"point of {link}"))
+    if to not in machine.frame:
+        raise UsageError(unknown(to, machine.frame, "point of the frame"))

@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.builder import Reaction
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion, Named
-from equipoise.mechanism.steps import Call, State, Step, run
+from equipoise.mechanism.steps import Call, Reaction, State, Step, run
 
 Array = np.ndarray[Any, Any]
 Demand = tuple[Any, Any]

@@ -1,47 +1,40 @@
-"""Linear springs between a point of a link and a point of the frame: as values, and their force."""
+"""Linear springs between a point of a link and a point of the frame, as values."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from math import degrees
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
-from equipoise.mechanism import kernels
+from equipoise.keys import Frozen, Text, declared, key
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import SpringChoice
     from equipoise.mechanism.model import Machine
-    from equipoise.mechanism.motion import Motion
 
 MOST = 200
 """Far beyond any machine, as in `mechanism.checks`."""
 
-ROUNDING = 1e-12
-"""Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
 
-
-@dataclass(frozen=True)
+@declared
 class Spring(Frozen):
-    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`.
+    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
 
-    stiffness : N/m, more than 0.
-    free_length : m, at which it exerts nothing; shorter than this it pushes.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("link", "point", "to"), "text"),
-        **dict.fromkeys(("stiffness", "free_length"), "number"),
-    }
-
-    link: str
-    point: str
-    to: str
-    stiffness: float
-    free_length: float = 0.0
+    link: str = key(Text(), "the link that it pulls", example="rocker")
+    point: str = key(
+        Text(), "its point on the link, not one that is pinned to the frame", example="C"
+    )
+    to: str = key(Text(), "its point on the frame", example="S")
+    stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
+    free_length: float = key(
+        "length",
+        "at which it exerts nothing; shorter it pushes",
+        default=0.0,
+        shown="0 m",
+        at_least=0,
+        why="a length cannot be negative, give 0 or more",
+    )
 
 
 def wrong_springs(machine: Machine) -> Iterator[ModelError]:
@@ -51,7 +44,6 @@ def wrong_springs(machine: Machine) -> Iterator[ModelError]:
         yield ModelError("springs", f"got {count}; at most {MOST} are computed with")
     for number, spring in enumerate(machine.springs, 1):
         yield from wrong_ends(f"springs[{number}]", spring, machine)
-        yield from _wrong_numbers(f"springs[{number}]", spring)
 
 
 def wrong_ends(where: str, spring: Spring | SpringChoice, machine: Machine) -> Iterator[ModelError]:
@@ -71,53 +63,3 @@ def wrong_ends(where: str, spring: Spring | SpringChoice, machine: Machine) -> I
             f"{spring.point!r} is pinned to the frame, where a spring does nothing; give a point "
             "that moves",
         )
-
-
-def _wrong_numbers(where: str, spring: Spring) -> Iterator[ModelError]:
-    if spring.stiffness <= 0:
-        yield ModelError(f"{where}.stiffness", f"got {spring.stiffness:g} N/m; give more than 0")
-    if spring.free_length < 0:
-        yield ModelError(
-            f"{where}.free_length",
-            f"got {spring.free_length:g} m; a length cannot be negative, give 0 or more",
-        )
-
-
-def spring_force(motion: Motion, spring: Spring) -> Any:
-    """Force of a spring on its link's point (N,), N, complex; minus this on the frame's.
-
-    Raises
-    ------
-    ModelError : its ends meet, so that a spring with a free length points nowhere.
-    """
-    if spring.free_length:
-        spring_direction(motion, spring.link, spring.point, spring.to)
-    to = complex(*motion.machine.frame[spring.to])
-    place = motion.points[spring.point].place
-    return kernels.spring(place, to, spring.stiffness, spring.free_length)
-
-
-def spring_vector(motion: Motion, point: str, to: str) -> Any:
-    """From a moving point to a point of the frame (N,), m, complex."""
-    return complex(*motion.machine.frame[to]) - motion.points[point].place
-
-
-def spring_direction(motion: Motion, link: str, point: str, to: str) -> Any:
-    """Unit vector from a moving point to a point of the frame (N,), complex.
-
-    Raises
-    ------
-    ModelError : they meet.
-    """
-    along = spring_vector(motion, point, to)
-    length = abs(along)
-    coordinates = abs(motion.points[point].place) + abs(complex(*motion.machine.frame[to]))
-    meeting = length <= ROUNDING * coordinates
-    if meeting.any():
-        angle = degrees(motion.crank_angle[meeting.argmax()])
-        raise ModelError(
-            "springs",
-            f"{point!r} of {link!r} meets {to!r} at crank angle {angle:.6g} deg, where a spring "
-            "with a free length points nowhere; give another point, or a free_length of 0",
-        )
-    return along / length

@@ -1,4 +1,4 @@
-"""Steps: the computation of a linkage as a list that can be read, run or written out.
+"""Steps of the computation, and what assembling a linkage keeps track of to make them.
 
 A linkage is a sequence of kernel calls with named inputs and outputs.  NumPy runs the list as it
 stands; because a step is nothing but names, numbers and a kernel, the same list can be written
@@ -15,11 +15,16 @@ Names of values in a state
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any, Literal, Protocol
 
 import numpy as np
+
+from equipoise.errors import ModelError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.model import FRAME, Machine, Slider, Vector
 
 State = dict[str, Any]
 
@@ -110,3 +115,212 @@ def p(point: str) -> tuple[str, str, str]:
 def u(link: str) -> tuple[str, str, str]:
     """Names of a link's rotation and its two derivatives."""
     return f"u({link})", f"w({link})", f"a({link})"
+
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Reaction:
+    """A joint's force, as the calls find it: on body `on`, by body `by`, at point `at`.
+
+    name : of the joint; kind : "pin", "slider" or "gear".
+    force, couple : names of values in the state; the couple is about `at`, None for pins.
+    """
+
+    name: str
+    kind: str
+    on: str
+    by: str
+    at: str
+    force: str
+    couple: str | None = None
+
+
+@dataclass(frozen=True)
+class Group:
+    """Links that are solved together.
+
+    kind : by a dyad's kernel, by their gear, or by Newton's method on loop equations.
+    motion : steps that find their position and derivatives.
+    forces : steps that find the reactions in their joints, once all later groups are done.
+    number : name of the dyad's own number, negative where it cannot be closed; None for others.
+    joint : inner joint of the dyad.  dead : says what the links do where the number is zero.
+    """
+
+    kind: Literal["dyad", "geared", "loops"]
+    links: tuple[str, ...]
+    motion: tuple[Step, ...]
+    forces: tuple[Step, ...]
+    reactions: tuple[Reaction, ...]
+    number: str | None = None
+    joint: str = ""
+    dead: str = ""
+
+
+@dataclass(frozen=True)
+class Guide:
+    """A sliding joint seen from a known body.
+
+    The line runs through point `base` of the known body along the unit vector `along` in that
+    body's axes; the other link's `point` stays on it, and its x axis has the direction `turn`
+    relative to the line.
+    """
+
+    name: str
+    base: str
+    along: complex
+    point: str
+    turn: complex
+
+    @classmethod
+    def seen_from(cls, slider: Slider, known: str) -> Guide:
+        """The line is the same whichever of the two bodies is known."""
+        if slider.on == known:
+            along, turn = np.exp(1j * slider.direction), np.exp(1j * slider.angle)
+            return cls(slider.name, slider.through, along, slider.point, turn)
+        along, turn = np.exp(-1j * slider.angle), np.exp(-1j * slider.direction)
+        return cls(slider.name, slider.point, along, slider.through, turn)
+
+
+@dataclass(frozen=True)
+class Outer:
+    """Joint of an unknown link to a known body: a pin at `point`, or else a guide."""
+
+    link: str
+    body: str
+    point: str
+    guide: Guide | None = None
+
+
+@dataclass
+class Builder:
+    """Bodies and points known so far.
+
+    rank : body -> position in the order of solution.  anchors : body -> the point from which its
+    other points are reached and about which its moments are taken.  sides : joints whose
+    assembly side was asked for.  motion : steps so far.
+    """
+
+    machine: Machine
+    rank: dict[str, int] = field(default_factory=dict)
+    anchors: dict[str, str] = field(default_factory=dict)
+    points: set[str] = field(default_factory=set)
+    motion: list[Step] = field(default_factory=list)
+    sides: set[str] = field(default_factory=set)
+    running: set[str] = field(default_factory=set)
+    _now: State = field(init=False)
+    _ran: int = field(init=False, default=0)
+
+    def __post_init__(self) -> None:
+        self._now = initial_state(self.machine, np.zeros(1))
+
+    @property
+    def now(self) -> State:
+        """State at crank angle 0 that the steps so far lead to; run when someone asks."""
+        with np.errstate(all="ignore"):
+            run(self.motion[self._ran :], self._now)
+        self._ran = len(self.motion)
+        return self._now
+
+    def add(self, anchors: dict[str, str], points: Iterable[str] = ()) -> None:
+        """Record links as known, in the order given, with their anchors."""
+        for link in anchors:
+            self.rank[link] = len(self.rank)
+        self.anchors.update(anchors)
+        self.points.update(points)
+
+    def arm(self, link: str, origin: str, point: str) -> complex:
+        """Vector from one point of a link to another, in the link's axes."""
+        points = self.machine.points_of(link)
+        return planar(points[point]) - planar(points[origin])
+
+    def size(self) -> Any:
+        """Size of the largest body, m; 1 where all are points."""
+        return size_of_bodies(self.machine)
+
+    def reach(self, body: str, point: str) -> list[Step]:
+        """Calls that make a point of a known body available."""
+        if point in self.points:
+            return []
+        self.points.add(point)
+        anchor = self.anchors[body]
+        arm = self.arm(body, anchor, point)
+        return [Call(kernels.point, (*p(anchor), *u(body)), (arm,), p(point))]
+
+    def running_angle(self, body: str) -> list[Step]:
+        """Calls that make the running angle of a known body available."""
+        if body in self.running:
+            return []
+        self.running.add(body)
+        return [RunningAngle(body)]
+
+    def carrier_of(self, bodies: Iterable[str]) -> str:
+        """Among the known bodies at a pin, the one that carries it: the first to be solved."""
+        return min((b for b in bodies if b in self.rank), key=lambda b: self.rank[b])
+
+    def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
+        """+1 or -1 for the side on which the file assembles a dyad."""
+        self.sides.add(joint)
+        side = self.machine.assembly.get(joint)
+        if side not in words:
+            given = "missing" if side is None else f"got {side!r}"
+            raise ModelError(
+                f"assembly.{joint}", f'{given}; give "{words[0]}" or "{words[1]}": {meaning}'
+            )
+        return 1.0 if side == words[0] else -1.0
+
+    def hand_over(self, body: str, at: str, force: str, couple: str | None = None) -> Call:
+        """Call that passes a reaction on to the body that exerts it."""
+        demand = demand_names(body)
+        inputs = (*demand, f"p({self.anchors[body]})", f"p({at})", force)
+        if couple is None:
+            return Call(kernels.transfer, inputs, (), demand)
+        return Call(kernels.transfer_couple, (*inputs, couple), (), demand)
+
+
+def planar(place: Vector) -> complex:
+    """A vector as a complex number; of columns, a column of them."""
+    x, y = place
+    return x + 1j * y
+
+
+def size_of_bodies(machine: Machine) -> Any:
+    """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
+    bodies = [machine.frame, *(link.points for link in machine.links.values())]
+    size = reduce(np.maximum, map(_size, bodies))
+    return size + (size == 0)
+
+
+def _size(points: Mapping[str, Vector]) -> Any:
+    """Diagonal of the rectangle around some points, m, as `model.size_of`; of columns too."""
+    xs, ys = zip(*points.values(), strict=True)
+    spans = (reduce(np.maximum, values) - reduce(np.minimum, values) for values in (xs, ys))
+    return np.hypot(*spans)
+
+
+def demand_names(link: str) -> tuple[str, str]:
+    """Names of what a link's joints must supply: force, and moment about its anchor."""
+    return f"F({link})", f"M({link})"
+
+
+def pin_reaction(point: str, on: str, by: str) -> Reaction:
+    return Reaction(point, "pin", on, by, point, f"R({point}/{on})")
+
+
+def guide_reaction(guide: Guide, on: str, by: str, at: str) -> Reaction:
+    key = f"({guide.name}/{on})"
+    return Reaction(guide.name, "slider", on, by, at, f"R{key}", f"C{key}")
+
+
+def initial_state(machine: Machine, theta: Array) -> State:
+    """State in which only the frame and the drive link are known, at crank angles (N,)."""
+    state: State = {"theta": theta}
+    for name, place in machine.frame.items():
+        here = planar(place) + np.complex128()  # unlike Python's, it divides by 0 without an error
+        state.update({f"p({name})": here, f"p1({name})": 0j, f"p2({name})": 0j})
+    state.update({f"u({FRAME})": 1 + 0j, f"w({FRAME})": 0.0, f"a({FRAME})": 0.0})
+    drive = machine.drive.link
+    state.update({f"u({drive})": np.exp(1j * theta), f"w({drive})": 1.0, f"a({drive})": 0.0})
+    state.update({f"phi({FRAME})": np.zeros_like(theta), f"phi({drive})": theta})
+    return state

@@ -7,13 +7,27 @@ axes while the machine stands still: x forward, y up, z to the right of who look
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from math import cos, hypot, pi, sin
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.frozen import Frozen
+from equipoise.keys import (
+    Conditions,
+    Flag,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Named,
+    OneOr,
+    Point,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.keys import Direction as DirectionKind
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
@@ -30,12 +44,6 @@ HELD = ("surge", "heave", "sway")
 """What a pivot takes away."""
 AXES = ("roll", "yaw", "pitch")
 UP = pi / 2
-UNITS = {
-    "stiffness": "N/m",
-    "damping": "N s/m",
-    "torsional_stiffness": "N m/rad",
-    "torsional_damping": "N m s/rad",
-}
 MOST = {"mounts": 200, "gauges": 200, "rows": 200}
 
 
@@ -49,38 +57,101 @@ def unit_vector(direction: Direction) -> Place:
     return (0.0 if abs(x) < 1e-15 else x, 0.0 if abs(y) < 1e-15 else y, 0.0)
 
 
-@dataclass(frozen=True)
+OF_POINT = ("direction", "stiffness", "damping", "preload", "one_sided")
+OF_AXIS = ("torsional_stiffness", "torsional_damping", "torsional_preload")
+
+
+def _point_or_axis(**conditions: Any) -> dict[str, Any]:
+    """JSON Schema of a table that has a point or an axis, with the keys that go with it."""
+    branches = [
+        {
+            "required": [one],
+            "properties": dict.fromkeys((*others, other), False),
+            **(
+                {"anyOf": [{"required": [with_]} for with_ in conditions[one]]}
+                if conditions
+                else {}
+            ),
+        }
+        for one, other, others in (("point", "axis", OF_AXIS), ("axis", "point", OF_POINT))
+    ]
+    return {"oneOf": branches}
+
+
+def _check_company(given: Mapping[str, Any]) -> None:
+    """Refuse keys of a point beside an axis, and the other way round."""
+    if ("point" in given) == ("axis" in given):
+        return  # told by the checks of the machine
+    others, has = (OF_AXIS, "a point") if "point" in given else (OF_POINT, "an axis")
+    for one in others:
+        if one in given:
+            raise ModelError(one, f"has no place beside {has}; leave it out")
+
+
+@declared
 class Mount(Frozen):
     """A spring and damper between support and ground, along a line or about an axis.
 
-    point : of the support, at which it acts; with `stiffness` (N/m) and `damping` (N s/m).
-    direction : in which it pushes the support; it stays so when the support moves.
     preload : force (N), about an axis torque (N m), with which it pushes in the drawn position;
         None where the weight settles.
-    one_sided : it can push only, like a float on the ground.
-    axis : roll, yaw or pitch, about which it turns back; with `torsional_stiffness` (N m/rad) and
-        `torsional_damping` (N m s/rad), instead of a point.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "point": "place?",
-        "direction": "direction",
-        **dict.fromkeys(("stiffness", "damping"), "number"),
-        "preload": "number?",
-        "one_sided": "flag",
-        "axis": "text?",
-        **dict.fromkeys(("torsional_stiffness", "torsional_damping"), "number"),
+    beside: ClassVar[Keys] = {
+        "torsional_preload": Key(
+            "torsional_preload",
+            Quantity("torque"),
+            "torque with which it turns the support in the drawn position; as `preload`",
+            default=None,
+        )
     }
+    file_order = ("point", "axis", "direction", "stiffness", "damping", "torsional_stiffness",
+             "torsional_damping", "preload", "torsional_preload", "one_sided")  # fmt: skip
+    conditions: ClassVar[Conditions] = _point_or_axis(
+        point=("stiffness", "damping"), axis=OF_AXIS[:2]
+    )
 
-    point: Place | None = None
-    direction: Direction = UP
-    stiffness: float = 0.0
-    damping: float = 0.0
-    preload: float | None = None
-    one_sided: bool = False
-    axis: str | None = None
-    torsional_stiffness: float = 0.0
-    torsional_damping: float = 0.0
+    point: Place | None = key(
+        Point(space=True),
+        "of the support, at which it acts",
+        default=None,
+        example=["0 mm", "300 mm"],
+    )
+    direction: Direction = key(
+        DirectionKind(),
+        "in which it pushes the support; it stays fixed in space",
+        default=UP,
+    )
+    stiffness: float = key("stiffness", "along the direction", default=0.0, at_least=0)
+    damping: float = key("damping", "along the direction", default=0.0, at_least=0)
+    preload: float | None = key(
+        "force",
+        "force with which it pushes in the drawn position; if left out, the weight rests on the "
+        "mounts there",
+        default=None,
+    )
+    one_sided: bool = key(
+        Flag(), "it can push only, like a float or a wheel on the ground", default=False
+    )
+    axis: str | None = key(
+        Text(AXES), "about which it turns back, instead of `point`", default=None
+    )
+    torsional_stiffness: float = key(
+        "torsional stiffness", "about the axis", default=0.0, at_least=0
+    )
+    torsional_damping: float = key("torsional damping", "about the axis", default=0.0, at_least=0)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Mount:
+        _check_company(given)
+        about = given.pop("torsional_preload", None)
+        return cls(**given) if about is None else cls(**given, preload=about)
+
+    @classmethod
+    def to_table(cls, value: Mount) -> dict[str, Any]:
+        table = super().to_table(value)
+        if value.axis is not None and "preload" in table:
+            table["torsional_preload"] = table.pop("preload")
+        return table
 
     @property
     def spring(self) -> float:
@@ -93,74 +164,109 @@ class Mount(Frozen):
         return self.damping if self.axis is None else self.torsional_damping
 
 
-@dataclass(frozen=True)
+@declared
 class Gauge(Frozen):
     """Where the support's motion is read: the displacement of a point along a direction, or the
-    rotation about an axis (roll, yaw or pitch).
+    rotation about an axis.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "point": "place?",
-        "direction": "direction",
-        "axis": "text?",
-    }
+    conditions: ClassVar[Conditions] = _point_or_axis()
 
-    point: Place | None = None
-    direction: Direction = UP
-    axis: str | None = None
+    point: Place | None = key(
+        Point(space=True),
+        "of the support, whose displacement is read",
+        default=None,
+        example=["0 mm", "1 m"],
+    )
+    direction: Direction = key(DirectionKind(), "along which it is read", default=UP)
+    axis: str | None = key(Text(AXES), "about which the rotation is read", default=None)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Gauge:
+        _check_company(given)
+        return cls(**given)
 
 
-@dataclass(frozen=True)
+@declared
 class Row(Frozen):
-    """One of several equal linkages on the support, all driven by one shaft.
+    """One of several equal linkages on the support, all driven by one shaft."""
 
-    phase : rad, by which its crank is ahead.  lateral : z of its plane, m.
-    offset : (x, y) by which it stands beside the linkage of the file, m.
-    """
+    phase: float = key(
+        "angle", "by which its crank angle is larger than that of the drive", default=0.0
+    )
+    lateral: float = key("length", "z of its plane", default=0.0)
+    offset: tuple[float, float] = key(
+        Listing(Quantity("length"), (2,)),
+        "x and y by which it stands beside the linkage of the file",
+        default=(0.0, 0.0),
+    )
 
-    shapes: ClassVar[dict[str, str]] = {"phase": "number", "lateral": "number", "offset": "pair"}
 
-    phase: float = 0.0
-    lateral: float = 0.0
-    offset: tuple[float, float] = (0.0, 0.0)
-
-
-@dataclass(frozen=True)
+@declared
 class Support(Frozen):
-    """The rigid body that carries the linkages, without their moving links.
+    """The rigid body that carries the linkages, without their moving links."""
 
-    mass : kg, with everything that is fixed to it, motor and flywheel included.
-    center_of_mass : of it, m.
-    inertia : kg m2, about the centre of mass: one number about the lateral axis, or three about x,
-        y and z (roll, yaw and pitch).
-    products : integrals of x y, y z and z x over its mass, about the centre of mass, kg m2.
-    pivot_inertia : kg m2, about the pivot and the lateral axis, instead of `inertia`.
-    pivot : (x, y) of the pin that carries it, m.
-    freedoms : how it can move, names from `FREEDOMS`; about the pivot where there is one.  Empty
-        for pitch alone with a pivot, and for surge, heave and pitch without.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        "mass": "number",
-        "center_of_mass": "place",
-        "inertia": "row",
-        "products": "row",
-        "pivot_inertia": "number?",
-        "pivot": "pair?",
-        "freedoms": "names",
-        "mounts": "values",
-        "gauges": "values",
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {"required": ["inertia"], "properties": {"pivot_inertia": False}},
+            {
+                "required": ["pivot_inertia", "pivot"],
+                "properties": {"inertia": False, "products": False},
+            },
+        ],
+        "if": {"required": ["products"]},
+        "then": {"properties": {"inertia": {"type": "array"}}},
     }
 
-    mass: float
-    center_of_mass: Place
-    inertia: tuple[float, ...] = ()
-    products: tuple[float, ...] = ()
-    pivot_inertia: float | None = None
-    pivot: tuple[float, float] | None = None
-    freedoms: tuple[str, ...] = ()
-    mounts: Mapping[str, Mount] = field(default_factory=dict)
-    gauges: Mapping[str, Gauge] = field(default_factory=dict)
+    mass: float = key(
+        "mass",
+        "of the support with all that is fixed to it, motor and flywheel too",
+        example="60 kg",
+        above=0,
+    )
+    center_of_mass: Place = key(
+        Point(space=True), "in the frame's axes", example=["0 mm", "300 mm"]
+    )
+    inertia: tuple[float, ...] = key(
+        OneOr(
+            Quantity("inertia"),
+            3,
+            right="one moment of inertia, or a list of three, about x, y and z",
+        ),
+        "about the centre of mass and an axis along z; or a list of three, about axes along x, y "
+        "and z (roll, yaw, pitch)",
+        default=(),
+        example="4 kg m^2",
+        above=0,
+    )
+    products: tuple[float, ...] = key(
+        Listing(Quantity("inertia"), (3,), "a list of three, of x y, y z and z x"),
+        "integrals of x y, y z and z x over the mass, about its centre; they go with three moments "
+        "of inertia",
+        default=(),
+    )
+    pivot_inertia: float | None = key(
+        "inertia", "about the pivot, instead of `inertia`", default=None
+    )
+    pivot: tuple[float, float] | None = key(
+        Point(), "of the pin on the ground that carries the support", default=None
+    )
+    freedoms: tuple[str, ...] = key(
+        Listing(
+            Text(FREEDOMS),
+            right='a list such as ["heave", "pitch"]; leave it out for the usual ones',
+        ),
+        "how it can move: along x, y, z or about x, y, z; if left out pitch with a pivot, and "
+        "surge, heave and pitch without",
+        default=(),
+        example=["heave", "pitch"],
+    )
+    mounts: Mapping[str, Mount] = key(
+        Named(Table(Mount)), "springs and dampers by name", factory=dict
+    )
+    gauges: Mapping[str, Gauge] = key(
+        Named(Table(Gauge)), "readings of its motion by name", factory=dict
+    )
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -205,9 +311,7 @@ def wrong_support(machine: Machine) -> Iterator[ModelError]:
 
 def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
     for number, name in enumerate(support.freedoms, 1):
-        if name not in FREEDOMS:
-            yield ModelError(f"support.freedoms[{number}]", unknown(name, FREEDOMS, "freedom"))
-        elif support.pivot is not None and name in HELD:
+        if support.pivot is not None and name in HELD:
             yield ModelError(
                 f"support.freedoms[{number}]",
                 f"the pivot is a pin in the ground, which leaves no {name}; leave out one of them",
@@ -217,8 +321,6 @@ def _wrong_freedoms(support: Support) -> Iterator[ModelError]:
 
 
 def _wrong_body(support: Support) -> Iterator[ModelError]:
-    if support.mass <= 0:
-        yield ModelError("support.mass", f"got {support.mass:g} kg; give more than 0")
     if bool(support.inertia) == (support.pivot_inertia is not None):
         yield ModelError("support", "give either inertia or pivot_inertia")
         return
@@ -234,10 +336,6 @@ def _wrong_body(support: Support) -> Iterator[ModelError]:
             "support.inertia",
             f"got one value, but the support can {_out_of_plane(support)}; give three, about x, y "
             "and z",
-        )
-    elif min(support.inertia) <= 0:
-        yield ModelError(
-            "support.inertia", f"got {min(support.inertia):g} kg m^2; give more than 0"
         )
     elif len(support.inertia) == 3:
         yield from _wrong_moments(support)
@@ -298,15 +396,12 @@ def _wrong_mount(where: str, mount: Mount) -> Iterator[ModelError]:
     along = {key: getattr(mount, key) for key in ("stiffness", "damping")}
     about = {key: getattr(mount, key) for key in ("torsional_stiffness", "torsional_damping")}
     own, other = (along, about) if mount.axis is None else (about, along)
-    for key, value in own.items():
-        if value < 0:
-            yield ModelError(f"{where}.{key}", f"got {value:g} {UNITS[key]}; give 0 or more")
     if not any(own.values()):
         yield ModelError(where, f"give at least one of {' and '.join(own)}")
     place = "a point" if mount.axis is None else "an axis"
-    for key, value in other.items():
+    for name, value in other.items():
         if value:
-            yield ModelError(f"{where}.{key}", f"has no place in a mount with {place}")
+            yield ModelError(f"{where}.{name}", f"has no place in a mount with {place}")
     if mount.one_sided and mount.axis is not None:
         yield ModelError(f"{where}.one_sided", "only a mount with a point can push on one side")
     if mount.one_sided and mount.preload is not None and not mount.stiffness:
@@ -316,8 +411,6 @@ def _wrong_mount(where: str, mount: Mount) -> Iterator[ModelError]:
 def _wrong_reading(where: str, item: Mount | Gauge) -> Iterator[ModelError]:
     if (item.point is None) == (item.axis is None):
         yield ModelError(where, "give either point or axis")
-    if item.axis is not None and item.axis not in AXES:
-        yield ModelError(f"{where}.axis", unknown(item.axis, AXES, "axis"))
     if item.axis is not None and item.direction != UP:
         yield ModelError(f"{where}.direction", "goes with a point, not with an axis")
     if isinstance(item.direction, tuple) and hypot(*item.direction) == 0:

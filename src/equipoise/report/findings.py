@@ -72,7 +72,7 @@ class Findings(_Found):
     @cached_property
     def analysis(self) -> Analysis:
         """Motion and forces; errors as `equipoise.analyze`."""
-        from equipoise.pipeline import analyze
+        from equipoise.results.analysis import analyze
 
         return analyze(self.machine, self.angles)
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from equipoise.balancing.naming import CAUSES, body_named, joint_named, output_named
 from equipoise.i18n import say
+from equipoise.mechanism.assessment import FourBar
 from equipoise.mechanism.dynamics import JointForce, SliderForce
-from equipoise.mechanism.fourbar import FourBar
 from equipoise.mechanism.model import Machine
 from equipoise.report.document import Block, Points, Row, Table
 from equipoise.report.numbers import PER_RPM, angle, number, percent, place, span

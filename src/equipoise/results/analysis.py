@@ -1,8 +1,8 @@
-"""An analysis as plain data: figures, nested lists for JSON, columns for tables."""
+"""An analysis: motion and forces of a machine, as plain data, tables and blocks."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.dynamics import Forces, SliderForce, VectorSignal, massless
-from equipoise.mechanism.fourbar import FourBar, four_bar
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import Motion, Named
+from equipoise.mechanism import kernels
+from equipoise.mechanism.assessment import FourBar, four_bar
+from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
+from equipoise.mechanism.model import Machine, Vector
+from equipoise.mechanism.motion import Motion, Named, move
+from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
-from equipoise.signals import Figures, Periodic, figures
+from equipoise.signals import Figures, Periodic
 
 if TYPE_CHECKING:
     import pandas
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 
+LATERAL = ("roll_moment", "yaw_moment")
+"""Moments about x and y, from linkages side by side."""
 LEAST_ANGLES = 90
 """In a turn, from which harmonics are taken: those that matter end before half of it."""
 
@@ -62,10 +66,40 @@ class Analysis(Result):
         return four_bar(self.machine)
 
     @cached_property
+    def outputs(self) -> Outputs:
+        """Every output of motion and forces, by name."""
+        return Outputs.of(self)
+
+    @cached_property
     def summary(self) -> Mapping[str, Figures]:
-        """Mean, RMS, peak and extremes of each output of the forces, by name."""
-        signals = outputs(self).items()
-        return Named("output", ((name, figures(self.crank_angle, s)) for name, s in signals))
+        """Mean, RMS, peak and extremes of outputs, by name."""
+        return Named("output", ((one.name, one.figures) for one in self.outputs.summed))
+
+    @cached_property
+    def together(self) -> Mapping[str, Array]:
+        """Shaking force (complex), shaking, roll and yaw moment, and drive torque (N,) of all rows.
+
+        Each row's crank is ahead by its phase.  Moments are about the drive's pivot of the first,
+        but for the shaking moment, which is about the point that the forces have.  Empty where
+        there is one row, or the crank angles are not those of a whole cycle.
+        """
+        rows = self.machine.rows
+        if len(rows) < 2 or not self.motion.whole_cycle or self.solved is None:
+            return {}
+        found, count = self.solved, len(self.crank_angle)
+        force = found.shaking_force
+        signals = np.array([force.x, force.y, found.shaking_moment, found.drive_torque])
+        one = Periodic.of(signals, self.motion.turns)
+        whole = {"shaking_force": np.zeros(count, complex)}
+        whole |= {name: np.zeros(count) for name in ("shaking_moment", *LATERAL, "drive_torque")}
+        for row in rows:
+            x, y, moment, torque = one.shifted(row.phase).samples(count)
+            whole["shaking_force"] += x + 1j * y
+            whole["shaking_moment"] += moment + kernels.cross(complex(*row.offset), x + 1j * y)
+            whole["roll_moment"] -= row.lateral * y
+            whole["yaw_moment"] += row.lateral * x
+            whole["drive_torque"] += torque
+        return whole
 
     @property
     def has_orders(self) -> bool:
@@ -75,15 +109,15 @@ class Analysis(Result):
 
     @cached_property
     def by_order(self) -> Mapping[str, Periodic]:
-        """Shaking force and moment, drive torque, and acceleration of the common centre of mass
-        (``mass_center.ax``, ``mass_center.ay``, m/s2), by order.
+        """Outputs by order: shaking force and moment, drive torque, and acceleration of the common
+        centre of mass (``mass_center.ax``, ``mass_center.ay``, m/s2).
 
         Raises
         ------
         MassError : masses are missing.
         UsageError : the crank angles are not equally spaced over the whole cycle.
         """
-        found = self.forces
+        _ = self.forces
         if not self.motion.whole_cycle:
             raise UsageError("orders need crank angles over the whole cycle; give a number of them")
         in_a_turn = len(self.crank_angle) // self.motion.turns
@@ -92,18 +126,7 @@ class Analysis(Result):
                 f"got {in_a_turn} crank angles in a turn; orders need {LEAST_ANGLES} and more, or "
                 "high ones are taken for low ones"
             )
-        mass = self.machine.mass
-        signals = {
-            "shaking_force.x": found.shaking_force.x,
-            "shaking_force.y": found.shaking_force.y,
-            "shaking_moment": found.shaking_moment,
-            "drive_torque": found.drive_torque,
-        }
-        if mass:
-            signals["mass_center.ax"] = -found.shaking_force.x / mass
-            signals["mass_center.ay"] = -found.shaking_force.y / mass
-        turns = self.motion.turns
-        return Named("output", ((name, Periodic.of(s, turns)) for name, s in signals.items()))
+        return Named("output", ((one.name, one.periodic) for one in self.outputs.ordered))
 
     def to_dict(self, split: bool = False) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
@@ -116,10 +139,10 @@ class Analysis(Result):
         """Every array as an `xarray.Dataset` over crank angle (rad); loads xarray."""
         import xarray
 
-        coordinate = {"crank_angle": self.crank_angle}
+        coordinate = {"crank_angle": ("crank_angle", self.crank_angle, {"units": "rad"})}
         arrays = {
-            name: ("crank_angle", values, {"units": unit_of(name)})
-            for name, values in columns(self)
+            one.name: ("crank_angle", one.values, {"units": one.unit, "long_name": one.label()})
+            for one in self.outputs.arrays
         }
         return xarray.Dataset(arrays, coordinate, attrs=_heading(self))
 
@@ -128,44 +151,28 @@ class Analysis(Result):
         import pandas
 
         index = pandas.Index(self.crank_angle, name="crank_angle")
-        return pandas.DataFrame(dict(columns(self)), index=index)
-
-
-def outputs(analysis: Analysis) -> dict[str, Array]:
-    """Scalar signals of the forces (N,), in the order in which they are printed."""
-    found = analysis.solved
-    if found is None:
-        return {}
-    result = {
-        "shaking_force.x": found.shaking_force.x,
-        "shaking_force.y": found.shaking_force.y,
-        "shaking_force": found.shaking_force.size,
-        "shaking_moment": found.shaking_moment,
-        "drive_torque": found.drive_torque,
-        "frame_force": found.frame_force.size,
-        "frame_moment": found.frame_moment,
-    }
-    for name, joint in found.joints.items():
-        result[f"joints.{name}"] = joint.size
-        if isinstance(joint, SliderForce):
-            result[f"joints.{name}.moment"] = joint.moment
-    for name, mesh in found.gears.items():
-        result[f"gears.{name}"] = mesh.size
-    return result
+        return pandas.DataFrame({one.name: one.values for one in self.outputs.arrays}, index=index)
 
 
 def to_dict(analysis: Analysis, split: bool = False) -> Values:
     """Nested values in SI units; arrays are (N,)."""
     result = _heading(analysis)
     result["crank_angle"] = analysis.crank_angle
-    result["links"] = {name: _link(link) for name, link in analysis.motion.links.items()}
-    result["points"] = {name: _point(point) for name, point in analysis.motion.points.items()}
-    if analysis.solved is None:
+    result |= {"links": {}, "points": {}}
+    found = analysis.solved
+    if found is None:
         result["missing"] = massless(analysis.machine)
     else:
-        result.update(_forces(analysis.solved))
-        if split:
-            result.update(_split(analysis.solved))
+        for family, joints in (("joints", found.joints), ("gears", found.gears)):
+            result[family] = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
+        result["about"] = {"x": found.about.real, "y": found.about.imag}
+    for one in analysis.outputs.arrays:
+        values = result
+        for key in one.path[:-1]:
+            values = values.setdefault(key, {})
+        values[one.path[-1]] = one.values
+    if found is not None and split:
+        result.update(_split(found))
     result["summary"] = _summary(analysis)
     return result
 
@@ -189,51 +196,6 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
     return found
 
 
-def columns(analysis: Analysis) -> Iterator[tuple[str, Array]]:
-    """Every array (N,) of the output but the crank angle, named by its place: ``points.P.vx``."""
-    values = to_dict(analysis)
-    for key in ("crank_angle", "about", "summary"):
-        values.pop(key, None)
-    yield from _flat("", values)
-
-
-UNITS = {
-    "crank_angle": "rad",
-    "angle": "rad",
-    "angular_velocity": "rad/s",
-    "angular_acceleration": "rad/s^2",
-    "vx": "m/s",
-    "vy": "m/s",
-    "ax": "m/s^2",
-    "ay": "m/s^2",
-    "force_x": "N",
-    "force_y": "N",
-    "normal": "N",
-    "tangential": "N",
-    "radial": "N",
-}
-"""Units by the last part of a column's name, where that alone tells."""
-
-
-def unit_of(name: str) -> str:
-    """SI unit of a column, such as ``points.P.vx``."""
-    first, _, last = name.rpartition(".")
-    if last in UNITS:
-        return UNITS[last]
-    if last in ("x", "y"):
-        return "m" if first.startswith("points.") else "N"
-    return "N m"
-
-
-def _flat(prefix: str, values: Values) -> Iterator[tuple[str, Array]]:
-    for key, value in values.items():
-        name = f"{prefix}.{key}" if prefix else key
-        if isinstance(value, dict):
-            yield from _flat(name, value)
-        elif isinstance(value, np.ndarray):
-            yield name, value
-
-
 def _heading(analysis: Analysis) -> Values:
     motion = analysis.motion
     heading: Values = {
@@ -244,50 +206,6 @@ def _heading(analysis: Analysis) -> Values:
     if motion.whole_cycle:
         heading["turns"] = motion.turns
     return heading
-
-
-def _link(link: Any) -> Values:
-    keys = ("angle", "angular_velocity", "angular_acceleration")
-    return {key: getattr(link, key) for key in keys}
-
-
-def _point(point: Any) -> Values:
-    return {key: getattr(point, key) for key in ("x", "y", "vx", "vy", "ax", "ay")}
-
-
-def _vector(signal: VectorSignal) -> Values:
-    return {"x": signal.x, "y": signal.y}
-
-
-def _forces(found: Forces) -> Values:
-    joints: Values = {}
-    for name, joint in found.joints.items():
-        joints[name] = {"on": joint.on, "by": joint.by, "force_x": joint.x, "force_y": joint.y}
-        if isinstance(joint, SliderForce):
-            joints[name].update(normal=joint.normal, moment=joint.moment)
-    gears = {
-        name: {
-            "on": mesh.on,
-            "by": mesh.by,
-            "force_x": mesh.x,
-            "force_y": mesh.y,
-            "tangential": mesh.tangential,
-            "radial": mesh.radial,
-        }
-        for name, mesh in found.gears.items()
-    }
-    return {
-        "joints": joints,
-        "gears": gears,
-        "about": {"x": found.about.real, "y": found.about.imag},
-        "shaking_force": _vector(found.shaking_force),
-        "shaking_moment": found.shaking_moment,
-        "weight": _vector(found.weight),
-        "weight_moment": found.weight_moment,
-        "frame_force": _vector(found.frame_force),
-        "frame_moment": found.frame_moment,
-        "drive_torque": found.drive_torque,
-    }
 
 
 def _split(found: Forces) -> Values:
@@ -304,7 +222,7 @@ def _split(found: Forces) -> Values:
 
 def _parts(parts: Mapping[str, Array]) -> Values:
     return {
-        name: _vector(VectorSignal(part)) if np.iscomplexobj(part) else part
+        name: {"x": part.real, "y": part.imag} if np.iscomplexobj(part) else part
         for name, part in parts.items()
     }
 
@@ -317,3 +235,36 @@ def _summary(analysis: Analysis) -> Values:
     if analysis.four_bar is not None:
         summary["four_bar"] = asdict(analysis.four_bar)
     return summary
+
+
+def analyze(
+    machine: Machine,
+    angles: int | Sequence[float] | np.ndarray[Any, Any] = 360,
+    speed: float | None = None,
+    acceleration: float | None = None,
+    about: str | Vector | complex | None = None,
+) -> Analysis:
+    """Motion and forces of a machine.
+
+    Parameters
+    ----------
+    angles : number of crank angles in each turn, equally spaced from 0 over the whole cycle (which
+        takes several turns where gears or loops need them), or the crank angles themselves, rad.
+    speed, acceleration : of the crank, rad/s and rad/s2; those of the machine where not given.
+    about : point about which moments are taken, a name or (x, y) in m; the drive pivot if None.
+
+    Returns
+    -------
+    Analysis whose forces are None where the machine lacks masses.
+
+    Raises
+    ------
+    MobilityError, MotionError, ModelError : the linkage cannot be moved so.
+    UsageError : an argument cannot be used.
+    """
+    motion = move(machine, angles, speed, acceleration)
+    if about is not None:
+        place_of(machine, about)  # a wrong point is told of a model without masses too
+    if massless(machine):
+        return Analysis(motion, None)
+    return Analysis(motion, forces(motion, about))

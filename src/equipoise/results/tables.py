@@ -15,7 +15,7 @@ from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Span, Ta
 from equipoise.signals import Figures, Periodic, figures
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.fourbar import FourBar
+    from equipoise.mechanism.assessment import FourBar
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.results.analysis import Analysis, columns, unit_of
+from equipoise.results.analysis import Analysis
 from equipoise.schema.files import FileError, make_folder, printable, write_bytes
 
 Array = np.ndarray[Any, Any]
@@ -32,16 +32,16 @@ def _plain(value: Any) -> Any:
 
 def to_csv(analysis: Analysis) -> str:
     """Every array against crank angle, one row a crank angle; units stand in the header."""
-    named = [("crank_angle", analysis.crank_angle), *columns(analysis)]
-    return csv_text([(name, unit_of(name), values) for name, values in named])
+    told = [(one.name, one.unit, one.values) for one in analysis.outputs.arrays]
+    return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
 
 
 def csv_text(table: Sequence[tuple[str, str, Array]]) -> str:
     """Columns, as name, unit and values (N,), as the text of a CSV file."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([f"{name} [{unit}]" for name, unit, _ in table])
-    writer.writerows(np.column_stack([values for _, _, values in table]).tolist())
+    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit, _ in table])
+    writer.writerows(zip(*(values.tolist() for _, _, values in table), strict=True))
     return text.getvalue()
 
 

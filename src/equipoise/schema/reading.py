@@ -227,7 +227,7 @@ def _quantity(kind: Quantity, given: Any, place: Place, context: Context) -> Any
 
 def _text(kind: Text, given: Any, place: Place, context: Context) -> Any:
     if kind.names:
-        right = f"give {kind.wanted}"
+        right = f"give {choice(kind.names)}"
         return given if given in kind.names else context.wrong(place, given, right)
     return given if isinstance(given, str) else context.wrong(place, given, "give text in quotes")
 
@@ -244,9 +244,9 @@ def _number(kind: Number, given: Any, place: Place, context: Context) -> Any:
 
 def _whole(kind: Whole, given: Any, place: Place, context: Context) -> Any:
     whole = isinstance(given, int) and not isinstance(given, bool)
-    if kind.choices:
-        right = f"give {choice(kind.choices)}"
-        return given if whole and given in kind.choices else context.wrong(place, given, right)
+    if kind.names:
+        right = f"give {choice(kind.names)}"
+        return given if whole and given in kind.names else context.wrong(place, given, right)
     if not whole:
         return context.wrong(place, given, "give a whole number without quotes")
     if kind.least is not None and given < kind.least:

@@ -38,8 +38,7 @@ SPLIT = {"by_cause", "by_link"}
 
 def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
     """`equipoise analyze`, with ``--split`` and ``--orders`` where their keys are wanted."""
-    from equipoise.pipeline import analyze
-    from equipoise.results.analysis import LEAST_ANGLES, order_values
+    from equipoise.results.analysis import LEAST_ANGLES, analyze, order_values
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from equipoise.mechanism.outputs import declared
 from equipoise.planting.goals import dimension_of as of_planting
-from equipoise.results.analysis import unit_of
 from equipoise.studies.figures import OF_LISTS, PLACES
 
 if TYPE_CHECKING:
@@ -14,16 +14,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Support
 
-OF_UNITS = {
-    "rad": "angle",
-    "rad/s": "angular speed",
-    "rad/s^2": "angular acceleration",
-    "m": "length",
-    "m/s": "speed",
-    "m/s^2": "acceleration",
-    "N": "force",
-    "N m": "torque",
-}
 OF_BARS = {
     **dict.fromkeys("abcd", "length"),
     **dict.fromkeys(("transmission_min", "transmission_max", "swing"), "angle"),
@@ -73,25 +63,25 @@ def _of_analysis(path: str) -> str | None:
     if first == "by_order":
         return _by_order(rest)
     if first in ("by_cause", "by_link"):
-        return _signal(rest.removesuffix(f".{_last(rest)}"), rest)
+        return _of_part(rest)
     if _last(path) in PLACES:
         return "angle"
-    name = path.removesuffix(f".{_last(path)}") if _last(path) in OF_LISTS else path
-    return _signal(name, path)
+    return _of_output(path.removesuffix(f".{_last(path)}") if _last(path) in OF_LISTS else path)
 
 
-def _signal(name: str, path: str) -> str | None:
-    """Of a signal of forces, or of an array."""
-    first = name.partition(".")[0]
-    if first in ("links", "points", "crank_angle", "about"):
-        return "length" if first == "about" else OF_UNITS.get(unit_of(name))
-    if name.endswith((".moment", "_moment", "drive_torque")) or "_moment." in path:
-        return "torque"
-    if first == "drive_torque":
-        return "torque"
-    if first in ("joints", "gears", "shaking_force", "weight", "frame_force"):
-        return "force"
-    return None
+def _of_output(name: str) -> str | None:
+    """Of an output, or of what stands beside them."""
+    if name == "crank_angle" or name.startswith("about."):
+        return "angle" if name == "crank_angle" else "length"
+    found = declared(name)
+    return None if found is None else found[0].dimension
+
+
+def _of_part(path: str) -> str | None:
+    """Of what a cause or link adds to an output, which stands first."""
+    words = path.split(".")
+    names = (".".join(words[:count]) for count in range(len(words), 0, -1))
+    return next((found[0].dimension for found in map(declared, names) if found), None)
 
 
 def _by_order(rest: str) -> str | None:
@@ -102,7 +92,7 @@ def _by_order(rest: str) -> str | None:
         return "angle"
     if last == "orders":
         return None
-    return "acceleration" if name.startswith("mass_center.") else _signal(name, name)
+    return _of_output(name)
 
 
 def _of_plant(path: str) -> str | None:
@@ -117,7 +107,7 @@ def _of_plant(path: str) -> str | None:
         return kinds.get(rest, "angle") if rest != "in_soil" else None
     if first == "forces":
         name = rest.removesuffix(f".{last}").removesuffix(".in_air").removesuffix(".in_soil")
-        return "angle" if last in PLACES else _signal(name, name)
+        return "angle" if last in PLACES else _of_output(name)
     return of_planting(path)
 
 
@@ -167,12 +157,10 @@ def _of_balance(model: Machine | Tool, path: str) -> str | None:
     if first not in ("before", "after") or _last(path) == "area":
         return None
     kind, _, name = rest.partition(".")
-    if kind == "rows":
-        return "torque" if "moment" in name else "force"
     if kind == "planting":
         return of_planting(name)
     found = _of_respond(model, rest) if kind == "gauges" else None
-    return found or _signal(rest.removesuffix(f".{_last(path)}"), rest)
+    return found or _of_output(rest.removesuffix(f".{_last(path)}"))
 
 
 def _of_tool(path: str) -> str | None:

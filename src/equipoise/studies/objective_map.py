@@ -55,7 +55,7 @@ def dimension(model: Model, path: str) -> str | None:
 
 def linkage_of(model: Any) -> Machine:
     if not isinstance(model, Machine):
-        raise UsageError("a map is of a linkage, and this is a tool; use `equipoise tool --vary`")
+        raise UsageError("a map is of a linkage, and this is a tool; use `equipoise tool vary`")
     return model
 
 

@@ -11,7 +11,7 @@ from equipoise.signals import Figures, figures
 from equipoise.terminal.tables import PER_RPM, angle, number, span, table
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.fourbar import FourBar
+    from equipoise.mechanism.assessment import FourBar
     from equipoise.results.analysis import Analysis
 
 

@@ -7,7 +7,7 @@ from math import degrees
 from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts

@@ -1,10 +1,10 @@
-"""What `equipoise plant --fit` prints: goals and figures before and after."""
+"""What `equipoise plant fit` prints: goals and figures before and after."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, cast
 
-from equipoise.mechanism.advice import remarks
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
 from equipoise.planting.goals import dimension_of
 from equipoise.terminal.planting import EXTREMES, PATH, SOIL

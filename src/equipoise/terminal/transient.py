@@ -1,4 +1,4 @@
-"""What `equipoise respond --transient` prints."""
+"""What `equipoise simulate` prints."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ Guess = Callable[[Array], Array]
 
 NO_STEADY_STATE = (
     "no steady state was found; the machine may not settle into one. Look at it from rest "
-    "(--transient), or try another speed or more damping"
+    "(`equipoise simulate`), or try another speed or more damping"
 )
 SAMPLES = 720
 """In a turn, at which a solution is read off."""

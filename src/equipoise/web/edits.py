@@ -17,9 +17,8 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
-from equipoise.pipeline import analyze
 from equipoise.quantities import parse
-from equipoise.results.analysis import LEAST_ANGLES, Analysis
+from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Change, Drag, Setting
@@ -50,7 +49,7 @@ class Solved:
 
 
 def solved(design: Design) -> Solved:
-    """Compute a design; the errors are those of `pipeline.analyze`."""
+    """Compute a design; the errors are those of `analyze`."""
     turns = assemble(design.machine).cycle.turns
     count = min(ANGLES, max(LEAST_ANGLES, MOST_SAMPLES // turns))
     return Solved(design, analyze(design.machine, count))

@@ -6,7 +6,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.optimisation import default_plan
-from equipoise.cli.wishes import Freed, plan_of
+from equipoise.cli.plan import Freed, plan_of
 from equipoise.errors import MassError
 
 

@@ -26,9 +26,9 @@ from unit.mechanism.build import ORIGIN, body, slider_crank
 @pytest.mark.parametrize(
     ("weight", "key", "words"),
     [
-        (Weight("disk"), ".shape", "no shape is called 'disk'; did you mean 'disc'?"),
+        (Weight("disk"), ".shape", "got 'disk'; give 'any', 'point', 'disc', 'ring' or 'sector'"),
         (Weight("box"), ".shape",
-         "no shape is called 'box'; there are 'any', 'point', 'disc', 'ring', 'sector'"),
+         "got 'box'; give 'any', 'point', 'disc', 'ring' or 'sector'"),
         (Weight(radius=0.0), ".radius", "got 0 m; give more than 0"),
         (Weight(radius=-inf), ".radius", "got -inf; give a finite number"),
         (Weight(radius=nan), ".radius", "got nan; give a finite number"),

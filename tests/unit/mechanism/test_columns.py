@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.mechanism.columns import can_vary, linkage_of, with_columns, wrong
+from equipoise.mechanism.family import can_vary, linkage_of, with_columns, wrong
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Gear, Machine
 from support.batches import every_dyad

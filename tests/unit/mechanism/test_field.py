@@ -65,7 +65,7 @@ def test_depth_or_surface(changes: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("changes", "key", "words"),
     [
-        ({"travel": "left"}, "travel", "got 'left'; give 'forward' (along x) or 'backward'"),
+        ({"travel": "left"}, "travel", "got 'left'; give 'forward' or 'backward'"),
         ({"forward_speed": -0.6}, "forward_speed",
          'got -0.6 m/s; give its size, and travel = "backward" for a machine that drives against '
          "x"),
@@ -75,11 +75,11 @@ def test_depth_or_surface(changes: dict[str, Any]) -> None:
          "got 0 m; give more than 0"),
         ({"units_per_turn": 0}, "units_per_turn", "got 0; give 1 or more"),
         ({"units_per_turn": -2}, "units_per_turn", "got -2; give 1 or more"),
-        ({"depth": 0.0}, "depth", "got 0 in SI units; give more than 0"),
-        ({"depth": -0.04}, "depth", "got -0.04 in SI units; give more than 0"),
-        ({"acceleration_limit": 0.0}, "acceleration_limit", "got 0 in SI units; give more than 0"),
+        ({"depth": 0.0}, "depth", "got 0 m; give more than 0"),
+        ({"depth": -0.04}, "depth", "got -0.04 m; give more than 0"),
+        ({"acceleration_limit": 0.0}, "acceleration_limit", "got 0 m/s^2; give more than 0"),
         ({"soil_acceleration_limit": -5.0}, "soil_acceleration_limit",
-         "got -5 in SI units; give more than 0"),
+         "got -5 m/s^2; give more than 0"),
         ({"finger_from": "C"}, "finger_from",
          "no other point of coupler, the tip's link, is called 'C'; there are 'B'"),
         ({"finger_from": "D"}, "finger_from",
@@ -142,10 +142,16 @@ def test_what_is_right_is_kept() -> None:
 
 
 @pytest.mark.parametrize(
-    "key", ["resistance", "per_depth", "per_speed", "per_depth_and_speed"]
-)  # fmt: skip
-def test_soil_resists(key: str) -> None:
-    refused(f"planting.soil.{key}", "got -2 in SI units; soil resists, give 0 or more",
+    ("key", "unit"),
+    [
+        ("resistance", "N"),
+        ("per_depth", "N/m"),
+        ("per_speed", "N s/m"),
+        ("per_depth_and_speed", "N s/m^2"),
+    ],
+)
+def test_soil_resists(key: str, unit: str) -> None:
+    refused(f"planting.soil.{key}", f"got -2 {unit}; soil resists, give 0 or more",
             soil=Soil(**{key: -2.0}))  # fmt: skip
 
 
@@ -194,7 +200,7 @@ def test_planting_is_changed_key_by_key() -> None:
     assert machine.planting == PLANTING
     assert FOUR.with_planting(tip="C", forward_speed=0.6, depth=0.1).planting == PLANTING
     assert eq.assemble(deeper).cycle is cycle
-    with pytest.raises(ModelError, match=r"planting.depth: got -1 in SI units"):
+    with pytest.raises(ModelError, match=r"planting.depth: got -1 m"):
         machine.with_planting(depth=-1.0)
 
 

@@ -11,8 +11,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.advice import remarks
-from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.applied import load_at
+from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.model import FRAME
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank

@@ -250,7 +250,7 @@ def test_tables(angles: Any, values: Any, words: str) -> None:
 
 
 def test_sides_are_words() -> None:
-    words = "got 'up'; give one of 'left', 'right', 'forward', 'backward'"
+    words = "got 'up'; give 'left', 'right', 'forward' or 'backward'"
     refused("assembly.C", words, lambda: four_bar(1.0, 0.35, 0.9, 0.8, "up"))
 
 

@@ -45,7 +45,7 @@ def refused(where: str, words: str, motor: Motor) -> None:
         (replace(CURVE, inertia=-1e-3), ".inertia",
          "got -0.001 kg m^2; no body has a negative moment of inertia"),
         (replace(LINE, mean_speed="hold"), ".mean_speed",  # type: ignore[arg-type]
-         "no choice of mean speed is called 'hold'; did you mean 'held'?"),
+         "got 'hold'; give 'held' or 'free'"),
         (Motor(table=MotorTable((), ())), ".table",
          "the table has fewer than two rows; a curve needs two"),
         (Motor(table=MotorTable((1.0,), (1.0,))), ".table",

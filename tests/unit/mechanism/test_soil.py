@@ -10,8 +10,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MotionError
+from equipoise.mechanism.applied import resistance, soil_force
 from equipoise.mechanism.field import Planting, Soil, SoilTable
-from equipoise.mechanism.soil import resistance, soil_force
 from equipoise.mechanism.tip import surface_of
 from unit.mechanism.build import four_bar
 

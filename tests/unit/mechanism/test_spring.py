@@ -10,9 +10,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.advice import remarks
-from equipoise.mechanism.spring import spring_force
-from equipoise.mechanism.spring_columns import spring_columns
+from equipoise.mechanism.applied import spring_force
+from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.parameters import spring_columns
 from support.machines import make
 from unit.mechanism.build import ORIGIN, crank_rocker
 

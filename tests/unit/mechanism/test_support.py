@@ -50,7 +50,7 @@ def refused(where: str, words: str, support: Support) -> None:
         ({"pivot_inertia": 9.0}, "", "give either inertia or pivot_inertia"),
         ({"inertia": (1.0, 2.0)}, ".inertia", "got 2 values; give one or three"),
         ({"inertia": (0.0,)}, ".inertia", "got 0 kg m^2; give more than 0"),
-        ({"inertia": (1.0, -1.0, 1.0)}, ".inertia", "got -1 kg m^2; give more than 0"),
+        ({"inertia": (1.0, -1.0, 1.0)}, ".inertia[2]", "got -1 kg m^2; give more than 0"),
         ({"inertia": (1.0, 1.0, 2.1)}, ".inertia",
          "got 2.1 kg m^2 beside 1 and 1; no body has one moment of inertia above the sum of the "
          "others"),
@@ -69,7 +69,7 @@ def refused(where: str, words: str, support: Support) -> None:
          "got 0.6, 0.6 and 0.6 kg m^2 beside an inertia of 1, 1 and 1; no body has that, give "
          "smaller ones"),
         ({"freedoms": ("pich",)}, ".freedoms[1]",
-         "no freedom is called 'pich'; did you mean 'pitch'?"),
+         "got 'pich'; give 'surge', 'heave', 'sway', 'roll', 'yaw' or 'pitch'"),
         ({"freedoms": ("surge", "pitch", "surge")}, ".freedoms[3]", "'surge' is given twice"),
     ],
 )  # fmt: skip
@@ -152,7 +152,7 @@ def test_numbers_are_finite(where: str, make: Any, value: float) -> None:
         (replace(TURN, direction=0.0), ".direction", "goes with a point, not with an axis"),
         (replace(TURN, one_sided=True), ".one_sided",
          "only a mount with a point can push on one side"),
-        (replace(TURN, axis="rol"), ".axis", "no axis is called 'rol'; did you mean 'roll'?"),
+        (replace(TURN, axis="rol"), ".axis", "got 'rol'; give 'roll', 'yaw' or 'pitch'"),
         (replace(MOUNT, direction=(0.0, 0.0, 0.0)), ".direction",
          "got [0, 0, 0]; give a direction"),
         (Mount((0.0, 0.0), damping=1.0, preload=1.0, one_sided=True), ".one_sided",
@@ -168,7 +168,7 @@ def test_values_of_mounts(mount: Mount, key: str, words: str) -> None:
     [
         (Gauge(), "", "give either point or axis"),
         (Gauge((0.0, 0.0), axis="yaw"), "", "give either point or axis"),
-        (Gauge(axis="yae"), ".axis", "no axis is called 'yae'; did you mean 'yaw'?"),
+        (Gauge(axis="yae"), ".axis", "got 'yae'; give 'roll', 'yaw' or 'pitch'"),
         (Gauge(axis="yaw", direction=0.0), ".direction", "goes with a point, not with an axis"),
         (Gauge((0.0, 0.0), (0.0, 0.0, 0.0)), ".direction", "got [0, 0, 0]; give a direction"),
     ],

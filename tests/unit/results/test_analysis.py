@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.results.analysis import columns, outputs, unit_of
+from equipoise.errors import UsageError
+from equipoise.results.outputs import unit_of
 
 NAMES = sorted(eq.examples("linkage"))
 
@@ -45,10 +46,10 @@ def test_keys(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_every_array_has_one_value_a_crank_angle(name: str) -> None:
     found = analysis(name)
-    for key, values in columns(found):
-        assert values.shape == found.crank_angle.shape, key
-        assert values.dtype == float, key
-        assert np.all(np.isfinite(values)), key
+    for one in found.outputs:
+        assert one.values.shape == found.crank_angle.shape, one.name
+        assert one.values.dtype == float, one.name
+        assert np.all(np.isfinite(one.values)), one.name
 
 
 def test_values_are_those_of_the_analysis() -> None:
@@ -87,9 +88,10 @@ def test_a_machine_without_masses() -> None:
     values = found.to_dict()
     assert "missing for rocker" in values["missing"]
     assert not {"joints", "shaking_force", "drive_torque"} & values.keys()
-    assert list(values["summary"]) == ["four_bar"]
-    assert outputs(found) == {}
-    assert found.summary == {}
+    assert list(values["summary"]) == ["transmission.C", "four_bar"]
+    assert {one.group for one in found.outputs} == {"links", "points", "transmission"}
+    with pytest.raises(UsageError, match="no output is called 'drive_torque'; there are "):
+        found.outputs["drive_torque"]
 
 
 def test_turns_are_told_of_whole_cycles_only() -> None:
@@ -103,9 +105,9 @@ def test_turns_are_told_of_whole_cycles_only() -> None:
 def test_summary() -> None:
     found = analysis("quick-return", 90)
     summary = found.to_dict()["summary"]
-    assert list(found.summary) == list(outputs(found))
-    for name, signal in outputs(found).items():
-        told = summary[name]
+    assert list(found.summary) == [one.name for one in found.outputs.summed]
+    for name in found.summary:
+        signal, told = found.outputs[name].values, summary[name]
         assert told["max"] == signal.max()
         assert told["min"] == signal.min()
         assert told["mean"] == pytest.approx(signal.mean())
@@ -167,7 +169,7 @@ def test_frame_of_pandas(name: str) -> None:
     assert isinstance(frame, pandas.DataFrame)
     assert frame.index.name == "crank_angle"
     np.testing.assert_array_equal(frame.index, found.crank_angle)
-    assert list(frame.columns) == [key for key, _ in columns(found)]
+    assert list(frame.columns) == [one.name for one in found.outputs.arrays]
     np.testing.assert_array_equal(frame["drive_torque"], found.forces.drive_torque)
 
 
@@ -179,14 +181,15 @@ def test_dataset_of_xarray(name: str) -> None:
     assert dict(dataset.sizes) == {"crank_angle": 12}
     assert dataset.attrs["title"] == eq.load(name).title
     assert dataset.attrs["speed"] == found.motion.speed
-    assert list(dataset.data_vars) == [key for key, _ in columns(found)]
+    assert list(dataset.data_vars) == [one.name for one in found.outputs.arrays]
     for key, array in dataset.data_vars.items():
         assert array.attrs["units"] == unit_of(str(key))
+        assert array.attrs["long_name"] == found.outputs[str(key)].label()
     np.testing.assert_array_equal(dataset["drive_torque"], found.forces.drive_torque)
 
 
 def test_tables_without_masses() -> None:
-    names = [key for key, _ in columns(bare())]
+    names = [one.name for one in bare().outputs.arrays]
     assert "points.P.ax" in names
     assert not [name for name in names if name.startswith(("joints", "shaking", "drive"))]
 

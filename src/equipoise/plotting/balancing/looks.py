@@ -10,12 +10,12 @@ from matplotlib.lines import Line2D
 
 from equipoise import signals
 from equipoise.i18n import say, to_say
-from equipoise.pipeline import analyze
 from equipoise.plotting.analysis.looks import rounding, settled
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.hodograph import nothing_there
 from equipoise.plotting.style import LINES, MAIN, short, shown
 from equipoise.plotting.vibration.panels import Unit, by_phase, name_x, name_y
+from equipoise.results.analysis import analyze
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

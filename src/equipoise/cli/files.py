@@ -1,13 +1,18 @@
-"""Commands about files: `examples`, `check`, `schema`, `new`."""
+"""Commands about files: `examples`, `check`, `schema`, `new`; and `serve`, a file on a page."""
 
 from __future__ import annotations
 
+import gc
 import sys
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-from equipoise.cli.app import FILE, app
-from equipoise.cli.options import naming
+from cyclopts import Parameter
+
+from equipoise.cli.options import File, count, naming
 from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.web.session import Session
 
 STARTS = {
     # kind of file: text to start from, usual name, what comes next
@@ -17,19 +22,17 @@ STARTS = {
 }
 
 
-@app.command(name="examples")
-def examples_() -> None:
+def examples() -> None:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
-    from equipoise.schema.models import examples
+    from equipoise.schema import models
 
-    found = examples()
+    found = models.examples()
     width = max(map(len, found))
     for name, title in found.items():
         print(f"{name:<{width}}  {title}")
 
 
-@app.command
-def check(file: Annotated[str, FILE], /) -> None:
+def check(file: File, /) -> None:
     """Check a file and tell how the linkage or tool is built up, or what a study will compute.
 
     Parameters
@@ -59,7 +62,6 @@ def check(file: Annotated[str, FILE], /) -> None:
             print_check_of_study(found, units_of(found), file)
 
 
-@app.command
 def schema(*, tool: bool = False, study: bool = False) -> None:
     """Print the JSON Schema of the model file, for editors.
 
@@ -80,9 +82,12 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     print(json.dumps(schemas[_kind(tool, study)](), indent=2))
 
 
-@app.command
 def new(
-    file: Annotated[str | None, FILE] = None, /, *, tool: bool = False, study: bool = False
+    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    /,
+    *,
+    tool: bool = False,
+    study: bool = False,
 ) -> None:
     """Write a commented model file to start from.
 
@@ -110,3 +115,50 @@ def _kind(tool: bool, study: bool) -> str:
     if tool and study:
         raise UsageError("--tool and --study are two kinds of files; give one of them")
     return "tool" if tool else "study" if study else "linkage"
+
+
+def serve(
+    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    /,
+    *,
+    port: Annotated[int | None, count(0, 65535)] = None,
+    no_browser: bool = False,
+) -> None:
+    """Open a page in the browser on which the linkage moves and can be dragged and changed.
+
+    It is served on this machine, for this machine only, until Ctrl+C; nothing is sent elsewhere.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example; else one is picked on the page.
+    port
+        On which it is served; any that is free if not given.
+    no_browser
+        Print the address, and open no browser.
+    """
+    from equipoise.web import server
+    from equipoise.web.session import Session, opened_file
+
+    design = None if file is None else opened_file(file)
+
+    def begin() -> Session:
+        session = Session()
+        if design is not None:
+            session.open(design)
+        return session
+
+    with naming(file or ""):
+        begin()  # what is wrong with the machine is told before a page is opened
+
+    def tell(address: str) -> None:
+        print(address, flush=True)
+        print("press Ctrl+C to end", file=sys.stderr)
+        if not no_browser:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    gc.enable()  # other commands end before garbage matters
+    gc.freeze()
+    server.serve(begin, port or 0, tell)

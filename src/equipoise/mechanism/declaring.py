@@ -1,0 +1,232 @@
+"""How an output is declared: what it is called, what it measures, how it is had, what it is for.
+
+`mechanism.outputs` has the declarations.  `{}` in the name of a family stands for its members:
+``links.{}.angle`` is declared once for all links.
+
+    @output("drive_power", "power", "drive power", linear=True, loop="{drive torque} * {speed}")
+    def drive_power(found):
+        return found.forces.drive_torque * found.motion.speed
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
+
+from equipoise.i18n import Note, say, to_say
+from equipoise.quantities import SI, Dimension
+
+Array = np.ndarray[Any, Any]
+Needs = Literal["motion", "masses", "rows", "support"]
+Part = Literal["", "x", "y", "size"]
+Read = Callable[..., Any]
+"""From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
+
+KINEMATIC = "{what} is a part of the motion, which masses do not change"
+ONLY_READ = "{what} is only read; it is not known to be linear in the masses"
+"""Why balancing cannot take an output."""
+GROUPS = {
+    "links": "links",
+    "points": "points",
+    "sliders": "sliders",
+    "transmission": "transmission angles",
+    "forces": "frame and drive",
+    "joints": "joints",
+    "gears": "gears",
+    "rows": "all rows together",
+    "gauges": "gauges",
+}
+"""Groups of outputs and their headings, in the order in which they are offered."""
+
+
+def _only_one(_: Any) -> Iterable[str]:
+    return ("",)
+
+
+@dataclass(frozen=True)
+class Declared:
+    """One output, or a family of outputs.
+
+    name : by which it is found.
+    dimension : of its values, which are in SI units.
+    label : in English, for `say`; ``{name}`` stands for the member of a family.
+    read : has it from an analysis; None where it is told of a response instead (gauges).
+    part : of the vector that `read` gives, where that is one; its size goes by the vector's name.
+    needs : what a machine must have.
+    members : from a machine to the members that it may have; ``""`` where it is no family.
+    items : from an analysis to those that it has, where the machine alone does not tell.
+    spoken : a member in words.
+    reason : why balancing cannot take it; empty where it is linear in the masses.
+    loop : expression by which a compiled loop has it; ``{joint force:name}`` is looked up there.
+    about : whether it depends on the point about which moments are taken.
+    array : whether it stands among the arrays.  summed : whether it stands in the summary.
+    ordered : whether it is told by orders.
+    compared : measures that are told before and after balancing.
+    """
+
+    name: str
+    dimension: Dimension
+    label: str
+    read: Read | None
+    part: Part = ""
+    needs: Needs = "masses"
+    members: Callable[[Any], Iterable[str]] = _only_one
+    items: Callable[[Any], Iterable[str]] | None = None
+    spoken: Callable[[str], str] = str
+    reason: str = ""
+    loop: str | None = None
+    about: bool = False
+    array: bool = True
+    summed: bool = True
+    ordered: bool = False
+    compared: tuple[str, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return SI[self.dimension]
+
+    @property
+    def group(self) -> str:
+        """One of `GROUPS`."""
+        first = self.name.partition(".")[0]
+        return first if first in GROUPS else "forces"
+
+    @property
+    def is_family(self) -> bool:
+        """Whether it is declared once for several members."""
+        return "{}" in self.name
+
+    @property
+    def is_vector(self) -> bool:
+        """Whether its name stands for a vector, of which it is the size."""
+        return self.part == "size"
+
+    def named(self, item: str) -> str:
+        """The name of a member."""
+        return self.name.replace("{}", item)
+
+    def path(self, item: str = "") -> tuple[str, ...]:
+        """Keys that lead to a member in nested values; members may have dots in their names."""
+        return tuple(item if key == "{}" else key for key in self.name.split("."))
+
+    def item_of(self, name: str) -> str | None:
+        """The member that goes by a name; None where none can."""
+        if not self.is_family:
+            return "" if name == self.name else None
+        before, after = self.name.split("{}")
+        inside = name[len(before) : len(name) - len(after)]
+        return inside if inside and self.named(inside) == name else None
+
+    def note(self, item: str = "") -> Note:
+        """What it is called, to be said in any language."""
+        found = Note(self.label, **({"name": self.spoken(item)} if self.is_family else {}))
+        if self.part in ("x", "y"):
+            both = to_say("{what}, {axis}") if self.is_family else to_say("{what} {axis}")
+            found = Note(both, what=found, axis=self.part)
+        return Note(to_say("all rows: {what}"), what=found) if self.needs == "rows" else found
+
+    def say(self, item: str = "", of_one: bool = False) -> str:
+        """What it is called, in the language that is spoken; where that lacks it, in English.
+
+        of_one : whether it is of one row of several.
+        """
+        said = self.note(item).said()
+        if not Note(self.label).is_translated:
+            said = f"{said} (en)"
+        return say("one row: {what}", what=said) if of_one and self.needs == "masses" else said
+
+    def items_of(self, found: Any) -> Iterable[str]:
+        """Members that an analysis has; ``""`` where it is no family."""
+        return self.members(found.machine) if self.items is None else self.items(found)
+
+    def values(self, found: Any, item: str = "") -> Array:
+        """Values (N,) of an analysis; the component, or the size, of what is a vector."""
+        whole = self.vector(found, item)
+        if self.part == "size":
+            return np.abs(whole)
+        return whole if not self.part else whole.real if self.part == "x" else whole.imag
+
+    def vector(self, found: Any, item: str = "") -> Array:
+        """The same, complex (N,) of a vector, whichever of its parts this is."""
+        assert self.read is not None
+        whole: Array = self.read(found, item) if self.is_family else self.read(found)
+        return whole
+
+
+DECLARED: dict[str, Declared] = {}
+"""Everything that is declared, by name, in the order in which it is told."""
+
+
+def output(
+    name: str,
+    dimension: Dimension,
+    label: str,
+    *,
+    parts: tuple[str, str] | None = None,
+    linear: bool | str = False,
+    needs: Needs = "masses",
+    summed: tuple[bool, bool] | bool = True,
+    sized: bool = True,
+    **more: Any,
+) -> Callable[[Read], Read]:
+    """Declare an output by the function that has it from an analysis.
+
+    Parameters
+    ----------
+    name, dimension, label, needs : as in `Declared`, as are all others.
+    parts : names of the components along x and y of what is a vector; `name` is then its size.
+    linear : whether it is linear in the masses of the links; or the sentence why not.
+    summed : whether it stands in the summary; of a vector, its size and its components.
+    sized : whether the size of a vector is told.
+    """
+    reason = "" if linear is True else linear or (KINEMATIC if needs == "motion" else ONLY_READ)
+    of_size, of_parts = summed if isinstance(summed, tuple) else (summed, summed)
+
+    def declare(read: Read) -> Read:
+        one = Declared(name, dimension, label, read, needs=needs, reason=reason, **more)
+        if parts is None:
+            DECLARED[name] = replace(one, summed=of_size)
+            return read
+        DECLARED[parts[0]] = replace(one, name=parts[0], part="x", summed=of_parts)
+        DECLARED[parts[1]] = replace(one, name=parts[1], part="y", summed=of_parts)
+        if sized:
+            DECLARED[name] = replace(one, part="size", array=False, summed=of_size, ordered=False)
+        return read
+
+    return declare
+
+
+@contextmanager
+def declaring() -> Iterator[None]:
+    """Inside, outputs may be declared that are forgotten at the end."""
+    before = dict(DECLARED)
+    try:
+        yield
+    finally:
+        DECLARED.clear()
+        DECLARED.update(before)
+
+
+def declared(name: str) -> tuple[Declared, str] | None:
+    """The declaration of an output, and its member, by the name of the output; None if unknown.
+
+    Balancing calls ``joints.B.x`` what is a component of a vector, and ``roll_moment`` what only
+    all rows together have.
+    """
+    found = [(one, item) for one in DECLARED.values() for item in [one.item_of(name)]]
+    known = [(one, item) for one, item in found if item is not None]
+    if known:  # joints.B.moment is the moment in B, and no force in a joint B.moment
+        return max(known, key=lambda pair: len(pair[0].name))
+    if f"rows.{name}" in DECLARED:
+        return DECLARED[f"rows.{name}"], ""
+    whole, _, axis = name.rpartition(".")
+    vector = declared(whole) if whole and axis in ("x", "y") else None
+    if vector is None or not vector[0].is_vector:
+        return None
+    one, item = vector
+    return replace(one, name=f"{one.name}.{axis}", part="x" if axis == "x" else "y"), item

@@ -1,0 +1,152 @@
+"""The outputs of an analysis, in the order in which `mechanism.outputs` declares them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby, product
+from typing import Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
+from equipoise.quantities import Dimension
+from equipoise.signals import Figures, Periodic, figures
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Output:
+    """One output of an analysis.
+
+    declared : what it is.  item : the member, such as a joint's name; empty where it is no family.
+    """
+
+    declared: Declared
+    item: str
+    analysis: Any
+
+    @property
+    def name(self) -> str:
+        """Such as ``joints.B.force_x``."""
+        return self.declared.named(self.item)
+
+    @property
+    def path(self) -> tuple[str, ...]:
+        """Keys that lead to it in nested values."""
+        return self.declared.path(self.item)
+
+    @property
+    def dimension(self) -> Dimension:
+        """Of its values, which are in SI units."""
+        return self.declared.dimension
+
+    @property
+    def unit(self) -> str:
+        """SI unit."""
+        return self.declared.unit
+
+    @property
+    def group(self) -> str:
+        """Under which heading it stands, one of `GROUPS`."""
+        return self.declared.group
+
+    def label(self) -> str:
+        """What it is called, in the language that is spoken."""
+        return self.declared.say(self.item, len(self.analysis.machine.rows) > 1)
+
+    @cached_property
+    def values(self) -> Array:
+        """(N,) over the crank angles."""
+        return self.declared.values(self.analysis, self.item)
+
+    @cached_property
+    def vector(self) -> Array:
+        """The same, complex (N,) where it is a vector or a part of one."""
+        return self.declared.vector(self.analysis, self.item)
+
+    @cached_property
+    def figures(self) -> Figures:
+        """Mean, RMS, peak and extremes."""
+        return figures(self.analysis.crank_angle, self.values)
+
+    @cached_property
+    def periodic(self) -> Periodic:
+        """The values by order; the crank angles must be those of a whole cycle."""
+        return Periodic.of(self.values, self.analysis.motion.turns)
+
+
+class Outputs:
+    """Every output that an analysis has; iterates `Output`, and finds one by its name.
+
+    What masses are missing for, or needs several rows, is left out where there are none.
+    """
+
+    def __init__(self, analysis: Any) -> None:
+        had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
+        self._found: dict[str, Output] = {}
+        for _, ones in groupby(had, key=lambda one: (one.group, one.is_family)):
+            items = [(one, dict.fromkeys(one.items_of(analysis))) for one in ones]
+            every = dict.fromkeys(item for _, own in items for item in own)
+            for item, (one, own) in product(every, items):
+                if item in own:
+                    self._found[one.named(item)] = Output(one, item, analysis)
+
+    @classmethod
+    def of(cls, analysis: Any) -> Outputs:
+        """The outputs of an analysis."""
+        return cls(analysis)
+
+    def __iter__(self) -> Iterator[Output]:
+        return iter(self._found.values())
+
+    def __len__(self) -> int:
+        return len(self._found)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._found
+
+    def __getitem__(self, name: str) -> Output:
+        if name not in self._found:
+            raise UsageError(unknown(name, self._found, "output"))
+        return self._found[name]
+
+    @property
+    def arrays(self) -> list[Output]:
+        """Those that stand among the arrays; the size of a vector is told by its components."""
+        return [one for one in self if one.declared.array]
+
+    @property
+    def summed(self) -> list[Output]:
+        """Those of which the summary tells figures."""
+        return [one for one in self if one.declared.summed]
+
+    @property
+    def ordered(self) -> list[Output]:
+        """Those that are told by orders."""
+        return [one for one in self if one.declared.ordered]
+
+    def grouped(self) -> dict[str, list[Output]]:
+        """Those of each group of `GROUPS` that has any."""
+        found = {group: [one for one in self if one.group == group] for group in GROUPS}
+        return {group: ones for group, ones in found.items() if ones}
+
+
+def _can_be_had(one: Declared, analysis: Any) -> bool:
+    if one.needs == "motion":
+        return True
+    return analysis.solved is not None and (one.needs == "masses" or bool(analysis.together))
+
+
+def unit_of(name: str) -> str:
+    """SI unit of an output, such as ``points.P.vx``; of the crank angle too."""
+    if name == "crank_angle":
+        return "rad"
+    found = declared(name)
+    if found is None:
+        raise UsageError(unknown(name, DECLARED, "output"))
+    return found[0].unit
