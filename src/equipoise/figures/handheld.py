@@ -681,7 +681,12 @@ def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
 
 
 def design_charts(found: ToolDesign) -> dict[str, Chart]:
-    """``design``: what the hand that gets most gets over the band, before and after.
+    """``design``."""
+    return {"design": design(found)}
+
+
+def design(found: ToolDesign) -> Chart:
+    """What the hand that gets most gets over the band, before and after.
 
     The worst hand over the band is made better; at some speeds another one may be worse.
     """
@@ -694,18 +699,18 @@ def design_charts(found: ToolDesign) -> dict[str, Chart]:
     marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))
     curves = (*old, *curves_of(found.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
-    design = found.tool.design
-    one = found.figures[MEASURES.index("rms" if design is None else design.measure)]
+    plan = found.tool.design
+    one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
     what = f"{one.told}: {shown(one.before)} → {shown(one.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     words = tuple(changes_told(found))
-    return {"design": Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)}
+    return Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)
 
 
 def _felt(tool: Tool, found: ToolDesign) -> list[Named]:
     """a_hv of the hands that count; of all tools in the order of the tool before."""
-    design = found.tool.design
-    hands = design.hands if design is not None and design.hands else ()
+    plan = found.tool.design
+    hands = plan.hands if plan is not None and plan.hands else ()
     felt = grips(respond_tool(tool, found.speed))
     return [Named(name, grip.a_hv) for name, grip in felt.items() if not hands or name in hands]
 

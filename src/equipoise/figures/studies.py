@@ -318,6 +318,11 @@ def told_best(found: Landscape) -> str:
     return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
 
 
+def landscape_charts(found: Landscape) -> dict[str, Chart]:
+    """``landscape``: the objective over its two numbers."""
+    return {"landscape": landscape(found)}
+
+
 def landscape(found: Landscape) -> Chart:
     """Lines of equal value with their values, the least of all, and the model as it is."""
     x, y = (

@@ -5,8 +5,18 @@ from __future__ import annotations
 import re
 from html import escape
 
+from equipoise.figures.style import (
+    EARTH,
+    FAINT,
+    INK,
+    LINES,
+    MAIN,
+    PALE,
+    SOIL,
+    STRESS,
+    STUBBLE,
+)
 from equipoise.plotting.cartoon import DARK, LIGHT
-from equipoise.plotting.style import EARTH, FAINT, INK, LINES, MAIN, PALE, SOIL, STRESS, STUBBLE
 
 GRID = "#e6e6e6"
 NAMES = {

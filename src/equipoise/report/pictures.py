@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING
 
 from equipoise.report.findings import Findings, ToolFindings
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from equipoise.figures import Picture as Drawn
 
 SECTIONS = ("motion", "planting", "forces", "joints", "vibration", "modes", "balance", "tool")
 """In the order in which they are shown."""
@@ -27,7 +26,7 @@ class Picture:
     name: str
     section: str
     caption: str
-    draw: Callable[[], Figure]
+    draw: Callable[[], Drawn]
 
 
 def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
@@ -44,7 +43,7 @@ def each(
     sections: Collection[str] = SECTIONS,
 ) -> Iterator[Picture]:
     """Those of some sections one by one: what only later ones need is not computed before."""
-    from equipoise.plotting.style import free_name
+    from equipoise.figures.style import free_name
     from equipoise.report.shown import of_linkage
     from equipoise.report.shown_tool import of_tool
 
@@ -56,11 +55,4 @@ def each(
         for name, caption, draw in entries:
             own = free_name(name, taken)
             taken[own] = None
-            yield Picture(own, section, caption, partial(_in_style, draw))
-
-
-def _in_style(draw: Callable[[], Figure]) -> Figure:
-    from equipoise.plotting.style import styled
-
-    with styled():
-        return draw()
+            yield Picture(own, section, caption, draw)

@@ -29,44 +29,44 @@ def of_tool(found: ToolFindings) -> Iterator[Part]:
 
 
 def _modes(modes: ToolModes) -> Iterator[Entry]:
-    from equipoise.plotting.tool.modes import modes_figures
+    from equipoise.figures.handheld import shapes
 
     caption = to_say("Shapes of the natural vibrations of the shaft.")
     for plane, name in enumerate(("modes", "modes-lateral")[: 1 if modes.alike else 2]):
-        yield from pages(name, caption, partial(modes_figures, modes, plane))
+        yield from pages(name, caption, partial(shapes, modes, plane))
 
 
 def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Entry]:
-    from equipoise.plotting.tool.transmission import transmission_figure
+    from equipoise.figures.handheld import transmission
 
     caption = to_say("Share of a shaking force that comes to what holds the tool.")
     planes = ("transmission", "transmission-lateral")[: 1 if found.tool.alike else 2]
     for plane, name in enumerate(planes):
-        yield name, caption, partial(transmission_figure, found, plane, modes)
+        yield name, caption, partial(transmission, found, plane, modes)
 
 
 def _moment(found: ToolFindings) -> Iterator[Entry]:
     if found.sweep is None or found.sweep.response is None:
         return
-    from equipoise.plotting.tool.response import moment_figure
+    from equipoise.figures.handheld import moment
 
     caption = to_say("Bending moment and displacement along the shaft.")
-    yield "moment", caption, partial(moment_figure, found.sweep.response, None)
+    yield "moment", caption, partial(moment, found.sweep.response, None)
 
 
 def _exposure(found: ToolExposure) -> Iterator[Entry]:
-    from equipoise.plotting.tool.exposure import acceleration_figure, exposure_figure
+    from equipoise.figures.handheld import acceleration, weighted
 
     caption = to_say("Acceleration of the hands against speed of the engine.")
-    yield "acceleration", caption, partial(acceleration_figure, found)
+    yield "acceleration", caption, partial(acceleration, found)
     caption = to_say("Daily exposure of the hands, with what is allowed.")
-    yield "exposure", caption, partial(exposure_figure, found)
+    yield "exposure", caption, partial(weighted, found)
 
 
 def _design(found: ToolFindings) -> Iterator[Entry]:
     if found.design is None:
         return
-    from equipoise.plotting.tool.design import design_figure
+    from equipoise.figures.handheld import design
 
     caption = to_say("What the hand that gets most gets over the band of speeds, before and after.")
-    yield "design", caption, partial(design_figure, found.design)
+    yield "design", caption, partial(design, found.design)
