@@ -27,8 +27,8 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
-from equipoise.pipeline import analyze
 from equipoise.quantities import Dimension, in_unit
+from equipoise.results.analysis import analyze
 from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.signals import Periodic
 

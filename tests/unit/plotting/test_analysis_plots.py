@@ -34,7 +34,7 @@ from equipoise.plotting.style import render
 from equipoise.results.analysis import Analysis
 from equipoise.scene import Scene
 from equipoise.signals import Periodic
-from unit.plotting.samples import long_cycle, one_link, sketched, words
+from unit.figures.samples import long_cycle, one_link, sketched, words
 from unit.plotting.test_layout import check_texts
 
 MOTION = ["linkage", "curves", "hodograph"]

@@ -23,7 +23,7 @@ from equipoise.plotting.balancing.front import front_figure
 from equipoise.plotting.balancing.looks import grams
 from equipoise.plotting.balancing.pieces import sector
 from equipoise.plotting.style import styled
-from unit.plotting.balance_samples import (
+from unit.figures.balance_samples import (
     MM,
     STEEL,
     arrows,
@@ -35,8 +35,8 @@ from unit.plotting.balance_samples import (
     phasing,
     pictures,
 )
-from unit.plotting.samples import words
-from unit.plotting.vibration_samples import check_texts
+from unit.figures.samples import words
+from unit.figures.vibration_samples import check_texts
 
 
 def key(figure: Figure) -> list[tuple[Text, Any]]:

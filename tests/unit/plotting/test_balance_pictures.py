@@ -23,7 +23,7 @@ from equipoise.plotting.balancing.looks import paired
 from equipoise.plotting.bars import bars as draw_bars
 from equipoise.plotting.style import Kind, render, styled
 from equipoise.plotting.vibration.panels import stack
-from unit.plotting.balance_samples import (
+from unit.figures.balance_samples import (
     EVERY,
     Pictures,
     found,
@@ -35,8 +35,8 @@ from unit.plotting.balance_samples import (
     phasing,
     pictures,
 )
-from unit.plotting.samples import words
-from unit.plotting.vibration_samples import check_texts
+from unit.figures.samples import words
+from unit.figures.vibration_samples import check_texts
 
 SIGNALS = ["force", "polar", "moment", "torque"]
 
@@ -89,7 +89,7 @@ def test_the_same_bytes_on_every_run() -> None:
 
 
 def test_the_same_bytes_in_another_process() -> None:
-    program = "from unit.plotting.balance_samples import hashed\nprint(hashed())\n"
+    program = "from unit.figures.balance_samples import hashed\nprint(hashed())\n"
     tests = str(Path(__file__).parents[2])
     run = subprocess.run(
         [sys.executable, "-c", program],

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import equipoise as eq
 from equipoise.plotting.decay import MOST_DRAWN, drawings
 from equipoise.plotting.style import render
-from unit.plotting.samples import words
+from unit.figures.samples import words
 
 TIME = np.linspace(0.0, 4.0, 2000)
 

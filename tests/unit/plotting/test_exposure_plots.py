@@ -14,7 +14,7 @@ from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.plotting.exposure import drawings
 from equipoise.plotting.style import render, styled
-from unit.plotting.samples import texts, words
+from unit.figures.samples import texts, words
 
 HOUR = 3600.0
 

@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.plotting.landscape import drawings, told
 from equipoise.plotting.style import STRESS, render
 from equipoise.studies.objective_map import Landscape
-from unit.plotting.samples import texts, words
+from unit.figures.samples import texts, words
 
 
 @cache

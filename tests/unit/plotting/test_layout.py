@@ -15,7 +15,7 @@ from equipoise.plotting.labels import Labels, spread
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.style import LARGE, SMALLEST, blank, heading, render, styled
 from equipoise.scene import hull
-from unit.plotting.samples import BUNDLED, drawn, long_cycle, odd_machines, one_link, texts, words
+from unit.figures.samples import BUNDLED, drawn, long_cycle, odd_machines, one_link, texts, words
 
 
 @pytest.mark.parametrize("kind", odd_machines())

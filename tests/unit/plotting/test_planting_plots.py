@@ -21,7 +21,7 @@ from equipoise.plotting.paths import Paths
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.stay import soil_spans
 from equipoise.plotting.style import render
-from unit.plotting.samples import (
+from unit.figures.samples import (
     BUNDLED,
     SOIL,
     arm,

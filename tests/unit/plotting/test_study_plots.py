@@ -17,7 +17,7 @@ from equipoise.schema.study_units import units_of
 from equipoise.studies.search import Searched
 from equipoise.studies.selection import Best
 from equipoise.studies.tolerances import Tolerances
-from unit.plotting.samples import texts, words
+from unit.figures.samples import texts, words
 
 pytest.importorskip("pymoo")
 

@@ -41,9 +41,9 @@ from equipoise.plotting.tool.shaft import MOST
 from equipoise.plotting.tool.speeds import turns
 from equipoise.plotting.tool.studies import UNITS, zeros_of
 from equipoise.schema.tools import load_tool
-from unit.plotting.samples import words
-from unit.plotting.tool_samples import MACHINES, SPEEDS, drawn_anew, hashed, machine, pictures
-from unit.plotting.vibration_samples import check_texts
+from unit.figures.samples import words
+from unit.figures.tool_samples import MACHINES, SPEEDS, drawn_anew, hashed, machine, pictures
+from unit.figures.vibration_samples import check_texts
 
 RPM = 30 / np.pi
 
@@ -122,7 +122,7 @@ def test_the_same_bytes_on_every_run() -> None:
 
 
 def test_the_same_bytes_in_another_process() -> None:
-    program = "from unit.plotting.tool_samples import hashed\nprint(hashed())\n"
+    program = "from unit.figures.tool_samples import hashed\nprint(hashed())\n"
     run = subprocess.run(
         [sys.executable, "-c", program],
         capture_output=True,

@@ -23,8 +23,8 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.free import vibrate_freely
 from equipoise.vibration.sweep import sweep_speed
 from equipoise.vibration.transient import from_rest
-from unit.plotting.samples import words
-from unit.plotting.vibration_samples import (
+from unit.figures.samples import words
+from unit.figures.vibration_samples import (
     KINDS,
     Drawn,
     check_texts,
@@ -91,7 +91,7 @@ def test_the_same_bytes_on_every_run() -> None:
 
 
 def test_the_same_bytes_in_another_process() -> None:
-    program = "from unit.plotting.vibration_samples import hashed\nprint(hashed())\n"
+    program = "from unit.figures.vibration_samples import hashed\nprint(hashed())\n"
     tests = str(Path(__file__).parents[2])
     run = subprocess.run(
         [sys.executable, "-c", program],

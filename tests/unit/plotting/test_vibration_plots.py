@@ -17,8 +17,8 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.free import vibrate_freely
 from equipoise.vibration.modes import Mode
 from equipoise.vibration.transient import from_rest
-from unit.plotting.samples import words
-from unit.plotting.vibration_samples import (
+from unit.figures.samples import words
+from unit.figures.vibration_samples import (
     RPM,
     falling,
     linkage,

@@ -21,8 +21,8 @@ from equipoise.plotting.vibration.curves import (
 from equipoise.plotting.vibration.map import marker_size
 from equipoise.vibration.free import Resonance
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from unit.plotting.samples import words
-from unit.plotting.vibration_samples import RPM, dashed_and_lost, pictures, plane, rig
+from unit.figures.samples import words
+from unit.figures.vibration_samples import RPM, dashed_and_lost, pictures, plane, rig
 
 
 @cache

@@ -4,20 +4,15 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from hashlib import sha256
-from itertools import combinations
 from math import pi
-from unittest.mock import patch
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 import equipoise as eq
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Gauge, Mount, Row
-from equipoise.plotting import vibration
-from equipoise.plotting.style import render, styled
+from equipoise.figures.pictures import pictures_of
+from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import vibrate_freely
 from equipoise.vibration.sweep import Sweep, sweep_speed
@@ -25,7 +20,7 @@ from equipoise.vibration.transient import from_rest
 
 RPM = 30 / pi
 G = 9.80665
-Drawn = dict[str, Figure]
+Drawn = dict[str, Chart]
 
 MOUNTS = {
     "rear spring": Mount(point=(-0.3, -0.2), stiffness=9000, damping=30),
@@ -153,21 +148,20 @@ def pictures(kind: str) -> Drawn:
     machine = MACHINES[kind]() if kind in MACHINES else eq.load(kind)
     support = machine.support
     assert support is not None
-    drawn = vibration.response_drawings(respond(machine, SPEEDS.get(kind)))
+    drawn = pictures_of(respond(machine, SPEEDS.get(kind)))
     slow, fast = (-3.0, -60.0) if SPEEDS.get(kind, 1.0) < 0 else (3.0, 60.0)
     if kind != "falling":
         sweep = sweep_speed(machine, slow, fast, speeds=16)
-        drawn |= named("sweep", vibration.sweep_drawings(sweep))
+        drawn |= named("sweep", pictures_of(sweep))
         if kind == "rig":
-            drawn |= named("lost", vibration.sweep_drawings(dashed_and_lost(sweep)))
-    drawn |= vibration.mode_drawings(vibrate_freely(machine))
+            drawn |= named("lost", pictures_of(dashed_and_lost(sweep)))
     if support.planar and kind in {"plane", "crowded", "walking-transplanter"}:
         driven = machine.drive.motor is not None
         transient = from_rest(machine, 0.5, drive=driven, samples=300)
-        drawn |= named("rest", vibration.transient_drawings(transient))
+        drawn |= named("rest", pictures_of(transient))
         if kind != "crowded":
             exact = respond(machine, model="exact", drive=driven)
-            drawn |= named("exact", vibration.response_drawings(exact))
+            drawn |= named("exact", pictures_of(exact))
     return drawn
 
 
@@ -187,41 +181,3 @@ MACHINES = {
 }
 SPEEDS = {"clockwise": -21.0, "falling": 21.0}
 KINDS = (*MACHINES, "riding-transplanter", "walking-transplanter")
-
-
-def hashed() -> str:
-    """Of some pictures as files."""
-    machine = space(("heave", "roll"))
-    drawn = vibration.mode_drawings(vibrate_freely(machine))
-    drawn |= vibration.sweep_drawings(sweep_speed(machine, 5, 30, speeds=5))
-    files = [render(figure, "svg") for figure in drawn.values()]
-    return sha256(b"".join(files)).hexdigest()
-
-
-def drawn_texts(figure: Figure) -> list[Text]:
-    """The texts that a picture really shows."""
-    found: list[Text] = []
-    draw = Text.draw
-
-    def record(self: Text, renderer: object) -> None:
-        if self.get_visible() and self.get_text():
-            found.append(self)
-        draw(self, renderer)
-
-    with styled(), patch.object(Text, "draw", record):
-        figure.draw_without_rendering()
-    return found
-
-
-def check_texts(name: str, figure: Figure) -> None:
-    """No text leaves the picture, and none covers another."""
-    found = drawn_texts(figure)
-    with styled():
-        boxes = [(text.get_text(), text.get_window_extent()) for text in found]
-    width, height = figure.get_size_inches() * figure.dpi
-    for text, box in boxes:
-        assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height, (name, text)
-    for (one, a), (other, b) in combinations(boxes, 2):
-        across = min(a.x1, b.x1) - max(a.x0, b.x0)
-        up = min(a.y1, b.y1) - max(a.y0, b.y0)
-        assert across <= 1 or up <= 4, (name, one, other)

@@ -5,15 +5,15 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from matplotlib.figure import Figure
-from matplotlib.text import Text
 
 import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.plotting.linkage import Sketch, sketch
-from equipoise.plotting.planting import drawings
+from equipoise.figures.layout import lay_out
+from equipoise.figures.planting import charts
+from equipoise.results.charts import Chart
 from equipoise.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
@@ -79,22 +79,10 @@ def read_off(name: str) -> PlantingFigures:
 
 
 @cache
-def drawn(name: str) -> dict[str, Figure]:
-    return drawings(read_off(name))
+def drawn(name: str) -> dict[str, Chart]:
+    return charts(read_off(name))
 
 
-def texts(figure: Figure) -> list[Text]:
-    """Every text that is drawn: not those of ticks outside their axes."""
-    outside = {
-        tick.label1
-        for axes in figure.axes
-        for axis in (axes.xaxis, axes.yaxis)
-        for tick in axis.get_major_ticks()
-        if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
-    }
-    found = (text for text in figure.findobj(Text) if text.get_visible() and text.get_text())
-    return [text for text in found if text not in outside]
-
-
-def words(figure: Figure) -> str:
-    return "\n".join(text.get_text() for text in texts(figure))
+def words(chart: Chart) -> str:
+    """Every text of a chart as it is drawn."""
+    return "\n".join(text.text for text in lay_out(chart).words)

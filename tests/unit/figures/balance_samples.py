@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from hashlib import sha256
 from math import pi
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.text import Annotation
 
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
@@ -18,15 +14,15 @@ from equipoise.balancing.pareto import Front, trade_off
 from equipoise.balancing.phase_search import Phasing, choose_phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
-from equipoise.plotting.balancing import drawings
-from equipoise.plotting.style import render
+from equipoise.figures.pictures import balance_pictures
+from equipoise.results.charts import Chart
 
 MM, STEEL = 1e3, 7850.0
 FORCE_Y = eq.Objective("shaking_force.y")
 FORCE = eq.Objective("shaking_force")
 MOMENT = eq.Objective("shaking_moment")
 RIPPLE = eq.Objective("drive_torque", "ripple")
-Pictures = dict[str, Figure]
+Pictures = dict[str, Chart]
 
 
 def plate(shape: str, radius: float, inner: float = 0.0) -> eq.Weight:
@@ -158,44 +154,19 @@ def front(first: eq.Objective = MOMENT, points: int = 4) -> Front:
 
 @cache
 def pictures(kind: str) -> Pictures:
+    """Charts of a case by name."""
+    drawn = balance_pictures(_result(kind))
+    return {name: chart for name, chart in drawn.items() if isinstance(chart, Chart)}
+
+
+def _result(kind: str) -> Balanced | Phasing | Front:
     if kind == "phases":
-        return drawings(phasing())
+        return phasing()
     if kind == "front":
-        return drawings(front())
+        return front()
     if kind.startswith("rows"):
-        return drawings(
-            in_rows(*{"rows": (4,), "rows, many": (14,), "rows, both": (3, True)}[kind])
-        )
-    return drawings(found(kind))
+        return in_rows(*{"rows": (4,), "rows, many": (14,), "rows, both": (3, True)}[kind])
+    return found(kind)
 
 
 EVERY = (*KINDS, "rows", "rows, many", "rows, both", "phases", "front")
-
-
-def hashed() -> str:
-    """Of some pictures as files."""
-    drawn = [*pictures("sector").values(), *pictures("phases").values()]
-    return sha256(b"".join(render(figure, "svg") for figure in drawn)).hexdigest()
-
-
-# -- what is drawn ------------------------------------------------------------------------------
-
-
-def line(axes: Axes, number: int = 0) -> np.ndarray:
-    """A line as complex numbers."""
-    drawn = axes.get_lines()[number]
-    return np.asarray(drawn.get_xdata(), float) + 1j * np.asarray(drawn.get_ydata(), float)
-
-
-def labelled(axes: Axes, label: str) -> list[np.ndarray]:
-    lines = [k for k, drawn in enumerate(axes.get_lines()) if drawn.get_label() == label]
-    return [line(axes, k) for k in lines]
-
-
-def arrows(axes: Axes) -> list[tuple[complex, complex]]:
-    """Tails and heads, without the leads of labels."""
-    return [
-        (complex(*text.xyann), complex(*text.xy))
-        for text in axes.texts
-        if isinstance(text, Annotation) and (text.arrowprops or {}).get("arrowstyle") == "-|>"
-    ]

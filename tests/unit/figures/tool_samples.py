@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from hashlib import sha256
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
@@ -15,11 +13,11 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
-from equipoise.plotting import tool as plotting
-from equipoise.plotting.style import render
+from equipoise.figures import handheld
+from equipoise.results.charts import Chart
 from equipoise.schema.tools import load_tool
 
-Drawn = dict[str, Figure]
+Drawn = dict[str, Chart]
 SPEEDS = np.linspace(105.0, 942.0, 60)
 """rad/s."""
 
@@ -121,23 +119,15 @@ def drawn_anew(kind: str) -> Drawn:
     """The same, not those drawn before."""
     tool = machine(kind)
     modes = vibrate_tool(tool, 8 if kind == "cutter" else 5)
-    drawn = plotting.mode_drawings(modes)
+    drawn = handheld.mode_charts(modes)
     if kind == "close together":
-        return drawn | plotting.response_drawings(respond_tool(tool, 700.0))
+        return drawn | handheld.response_charts(respond_tool(tool, 700.0))
     highest = 1.3 * float(modes.planes[0].parameter[-1])
-    drawn |= plotting.determinant_drawings(determinant_chart(tool, highest, 300), modes)
+    drawn |= handheld.determinant_charts(determinant_chart(tool, highest, 300), modes)
     station, key = VARIED.get(kind, (tool.stations[0].name, "mass"))
     values = np.geomspace(1e3, 1e5, 9) if "stiffness" in key else np.linspace(0.0, 0.8, 9)
-    drawn |= plotting.variation_drawings(vary_tool(tool, station, key, values, 6))
+    drawn |= handheld.variation_charts(vary_tool(tool, station, key, values, 6))
     if tool.grips:
-        drawn |= plotting.transmission_drawings(transmit(tool, SPEEDS), modes)
-        drawn |= plotting.exposure_drawings(expose_tool(tool, SPEEDS))
-    return drawn | plotting.response_drawings(respond_tool(tool, SPEEDS))
-
-
-def hashed() -> str:
-    """Of some pictures as files."""
-    tool = machine("paper")
-    drawn = plotting.mode_drawings(vibrate_tool(tool, 3))
-    drawn |= plotting.transmission_drawings(transmit(tool, SPEEDS[:20]))
-    return sha256(b"".join(render(figure, "svg") for figure in drawn.values())).hexdigest()
+        drawn |= handheld.transmission_charts(transmit(tool, SPEEDS), modes)
+        drawn |= handheld.exposure_charts(expose_tool(tool, SPEEDS))
+    return drawn | handheld.response_charts(respond_tool(tool, SPEEDS))
