@@ -26,8 +26,9 @@ from equipoise.codegen.figures import Figure
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.run import run_study
+from equipoise.studies.sampling import samples
 from equipoise.studies.store import open_store
-from equipoise.studies.study import Study, samples
+from equipoise.studies.study import Study
 from timing import in_turn
 
 MACHINE = eq.load("yamashita-1")

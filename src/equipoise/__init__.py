@@ -164,7 +164,7 @@ _HOMES = {
     "weigh_orders": "exposure.spectra",
     "weigh_signal": "exposure.spectra",
     "weigh_spectrum": "exposure.spectra",
-    "write_report": "report.writing",
+    "write_report": "present.composition",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -294,7 +294,7 @@ if TYPE_CHECKING:
     from equipoise.planting.search import fit_planting as fit_planting
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
-    from equipoise.report.writing import write_report as write_report
+    from equipoise.present.composition import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
     from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps

@@ -18,6 +18,39 @@ Array = np.ndarray[Any, Any]
 
 LEAST_SAMPLES, SAMPLES_PER_ORDER, NEWTON_ROUNDS = 720, 8, 4
 """Samples in a turn among which the highest is looked for; steps from there to the top."""
+EQUAL, ROUNDING = 1e-9, 1e-12
+"""Share of a signal's range within which tops are equal, and of its size that is rounding."""
+
+
+def highest_at(values: Array, smooth: bool = True) -> Array:
+    """Index (...) of the highest of values (..., N); of equal ones the first.
+
+    All that tells where a signal is largest or smallest asks here, so that rounding, which differs
+    from processor to processor, does not decide between equal extremes.
+
+    smooth : the values are samples of a curve, of which only local tops count; else any values.
+    """
+    values = np.asarray(values, dtype=float)
+    with np.errstate(invalid="ignore"):
+        high, low = (f(values, axis=-1, keepdims=True) for f in (np.max, np.min))
+        low = np.where(np.isfinite(low), low, high)
+        rounding = ROUNDING * np.maximum(np.abs(high), np.abs(low))
+        near = values >= high - np.maximum(EQUAL * (high - low), rounding)
+        if smooth:
+            edge = np.full((*values.shape[:-1], 1), -np.inf)
+            beside = (
+                np.concatenate([values[..., 1:], edge], axis=-1),
+                np.concatenate([edge, values[..., :-1]], axis=-1),
+            )
+            near &= (values >= np.maximum(*beside) - rounding) | (high - low <= rounding)
+    found: Array = np.where(near.any(axis=-1), near.argmax(axis=-1), values.argmax(axis=-1))
+    return found
+
+
+def within_period(angle: Array, period: float) -> Array:
+    """Angles from 0 to less than the period; what is short of the period by rounding is 0."""
+    inside = np.mod(angle, period)
+    return np.where(inside > period * (1 - ROUNDING), 0.0, inside)
 
 
 @dataclass(frozen=True)
@@ -44,17 +77,16 @@ class Figures:
 
 def figures(crank_angle: Array, samples: Array) -> Figures:
     """Mean, RMS and extremes of samples (N,) taken at crank angles (N,), rad."""
-    highest, lowest = int(np.argmax(samples)), int(np.argmin(samples))
-    peak = highest if samples[highest] >= -samples[lowest] else lowest
+    sizes = np.abs(samples)
     return Figures(
         mean=float(np.mean(samples)),
         rms=float(np.sqrt(np.mean(np.square(samples)))),
-        peak=float(abs(samples[peak])),
-        peak_at=float(crank_angle[peak]),
-        max=float(samples[highest]),
-        max_at=float(crank_angle[highest]),
-        min=float(samples[lowest]),
-        min_at=float(crank_angle[lowest]),
+        peak=float(np.max(sizes)),
+        peak_at=float(crank_angle[highest_at(sizes)]),
+        max=float(np.max(samples)),
+        max_at=float(crank_angle[highest_at(samples)]),
+        min=float(np.min(samples)),
+        min_at=float(crank_angle[highest_at(-samples)]),
     )
 
 
@@ -210,7 +242,7 @@ class Periodic:
         """
         count = max(LEAST_SAMPLES * self.turns, SAMPLES_PER_ORDER * self.amplitudes.shape[-1])
         values = sign * self.samples(count)
-        best = np.argmax(values, axis=-1)
+        best = highest_at(values)
         step = self.period / count
         at = best * step
         slope, curvature = self.derivative(), self.derivative(2)
@@ -222,7 +254,8 @@ class Periodic:
         top = sign * self._at(at + move)
         sampled = np.take_along_axis(values, best[..., None], axis=-1)[..., 0]
         better = top > sampled
-        return sign * np.where(better, top, sampled), np.mod(at + better * move, self.period)
+        at = within_period(at + better * move, self.period)
+        return sign * np.where(better, top, sampled), at
 
     def _at(self, theta: Array) -> Array:
         """Value of each signal (...) at a crank angle of its own (...)."""

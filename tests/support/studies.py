@@ -24,7 +24,8 @@ from equipoise.studies import run
 from equipoise.studies.design_space import Choices, Normal, Output, Range, Sampling, Vary
 from equipoise.studies.executors import Task
 from equipoise.studies.outcomes import Block, Outcome
-from equipoise.studies.study import Study, from_plain, samples
+from equipoise.studies.sampling import samples
+from equipoise.studies.study import Study, from_plain
 
 Array = np.ndarray[Any, Any]
 LENGTH, MASS, SPEED = "links.rod.length", "links.crank.mass", "drive.speed"

@@ -112,6 +112,15 @@ class Bound:
     unit: str
 
 
+@dataclass(frozen=True, eq=False)
+class LinkParameters:
+    """Mass, first moments and inertia of a link about its origin, as they are."""
+
+    link: str
+    count: int = 4
+    effect: Array = field(default_factory=lambda: np.eye(4))
+
+
 class DesignVariables(ABC):
     """Numbers that are free, of one link.
 

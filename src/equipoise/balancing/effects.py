@@ -14,7 +14,12 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import DesignVariables, FreeSpring, with_parameters
+from equipoise.balancing.design_variables import (
+    DesignVariables,
+    FreeSpring,
+    LinkParameters,
+    with_parameters,
+)
 from equipoise.balancing.measures import Signal
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import kernels
@@ -48,7 +53,7 @@ class Effects:
     def __init__(
         self,
         machine: Machine,
-        parts: Sequence[DesignVariables],
+        parts: Sequence[DesignVariables | LinkParameters],
         motion: Motion | None = None,
         like: Machine | None = None,
     ) -> None:
@@ -152,7 +157,7 @@ class Effects:
             for part, end in zip(self.parts, ends, strict=True)
         ]
 
-    def _about_anchor(self, part: DesignVariables) -> tuple[Array, Array, Array]:
+    def _about_anchor(self, part: DesignVariables | LinkParameters) -> tuple[Array, Array, Array]:
         """Mass, first moment and inertia about the link's anchor of each number, (count, 1)."""
         anchor = complex(*self.machine.links[part.link].points[self._start.anchor(part.link)])
         mass, x, y, inertia = part.effect.T[:, :, None]

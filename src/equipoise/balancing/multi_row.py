@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects
+from equipoise.balancing.effects import Effects, Near, gauge_signals
 from equipoise.balancing.measures import Signal
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective
@@ -210,7 +210,15 @@ def _read(linear: Linear, reading: Array, speed: float) -> Array:
     return found
 
 
-def counts_rows(effects: Effects, output: str) -> bool:
+def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
+    """Signals whose largest measure an objective is: one for each speed at which it is read."""
+    if objective.output.startswith("gauges."):
+        return gauge_signals(effects, objective, near)
+    read = of_all_rows if _counts_rows(effects, objective.output) else Effects.signal
+    return [read(effects, objective.output, objective.about).kept(objective.orders)]
+
+
+def _counts_rows(effects: Effects, output: str) -> bool:
     """Whether an output is that of all rows: of machines that have several, but within no row."""
     of_one = output.startswith((GAUGES, JOINTS))
     return output in OF_ROWS or (len(effects.machine.rows) > 1 and not of_one)

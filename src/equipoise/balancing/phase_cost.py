@@ -24,9 +24,13 @@ Combine = Literal["sum", "squares"]
 
 AREA_SAMPLES = 1440
 """In a turn, from which an area is summed."""
-SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
+SAMPLES, NEAR, NEWTON_ROUNDS, REACH, LEAP = 360, 0.03, 4, 0.03, 0.1
 """In a turn, among which tops are looked for; share of the range by which a sample may miss its
-top; steps of Newton's method from there, and how far they may lead, rad."""
+top; steps of Newton's method from there, and how far they may lead, rad; the same where phases
+change meanwhile."""
+TINY = 1e-300
+Pieces = tuple[Array, Array]
+"""Values (P,) and their slopes (P, m) by the phases."""
 NOTHING = 1e-12
 """Share of the loudest at which an amplitude or a value is rounding."""
 
@@ -176,27 +180,36 @@ def highest(signal: Periodic, sign: int) -> Array:
     highest sample need not lie at the highest top.
     """
     flat = Periodic(sign * signal.amplitudes.reshape(-1, signal.amplitudes.shape[-1]), signal.turns)
-    owner, start, best = _tops(flat)
-    theta, slope, bend = start.copy(), flat.derivative(), flat.derivative(2)
-    for _ in range(NEWTON_ROUNDS):
-        down, curve = _at(slope, owner, theta), _at(bend, owner, theta)
-        theta += np.divide(-down, curve, out=np.zeros_like(down), where=curve < 0)
-        theta = np.clip(theta, start - REACH, start + REACH)
-    np.maximum.at(best, owner, _at(flat, owner, theta))
+    owner, start, best = _tops(flat, NEAR)
+    np.maximum.at(best, owner, _at(flat, owner, _followed(flat, owner, start, REACH)))
     return best.reshape(signal.amplitudes.shape[:-1])
 
 
-def _tops(flat: Periodic) -> tuple[Array, Array, Array]:
-    """Tops that may be the highest of signals (B,): of which signal, and where, rad, (T,) each; and
-    the highest sample (B,) of every signal.
+def _tops(flat: Periodic, near: float) -> tuple[Array, Array, Array]:
+    """Tops among samples of signals (B,): of which signal, and where, rad, (T,) each; and the
+    highest sample (B,) of every signal.
+
+    near : share of the range by which a top may be lower than the highest; 1 for all of them.
     """
     count = max(SAMPLES * flat.turns, 8 * flat.amplitudes.shape[-1])
     values = flat.samples(count)
     best, least = np.max(values, axis=1), np.min(values, axis=1)
-    near = values >= (best - NEAR * (best - least))[:, None]
-    near &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
-    owner, place = np.nonzero(near)
+    top = values >= (best - near * (best - least))[:, None]
+    top &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
+    owner, place = np.nonzero(top)
     return owner, place * (flat.period / count), best
+
+
+def _followed(flat: Periodic, owner: Array, start: Array, reach: float) -> Array:
+    """Crank angles (T,) of the tops of signals `owner` (T,) by Newton's method, within a reach of
+    where they are nearly, rad.
+    """
+    theta, slope, bend = start, flat.derivative(), flat.derivative(2)
+    for _ in range(NEWTON_ROUNDS):
+        down, curve = _at(slope, owner, theta), _at(bend, owner, theta)
+        move = np.divide(-down, curve, out=np.zeros_like(down), where=curve < 0)
+        theta = np.clip(theta + move, start - reach, start + reach)
+    return theta
 
 
 def _at(signal: Periodic, owner: Array, theta: Array) -> Array:
@@ -205,14 +218,7 @@ def _at(signal: Periodic, owner: Array, theta: Array) -> Array:
     return np.asarray(np.sum((signal.amplitudes[owner] * turning).real, axis=1))
 
 
-Pieces = tuple[Array, Array]
-"""Values (P,) and their slopes (P, m) by the phases."""
-
-TOP_SAMPLES, TOP_ROUNDS = 360, 4
-"""In a turn, among which tops are looked for; steps of Newton's method from there."""
-TOP_REACH = 0.1
-"""rad, by which a top is followed."""
-TINY = 1e-300
+# -- slopes by the phases --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -229,11 +235,8 @@ class Tops:
     @classmethod
     def of(cls, term: Term, phases: Array) -> Tops:
         """All tops at phases (m,), rad."""
-        found = []
-        for total in term.signals.total(phases):
-            signal = _levelled(Periodic(total, term.signals.turns))
-            found.append((_looked_for(signal, 1), _looked_for(signal, -1)))
-        return cls(term, tuple(found))
+        signals = [Periodic(one, term.signals.turns) for one in term.signals.total(phases)]
+        return cls(term, tuple((_looked_for(one, 1), _looked_for(one, -1)) for one in signals))
 
     def pieces(self, phases: Array) -> Pieces:
         """Values (P,) whose largest is the term's, and their slopes (P, m) by the phases (m,)."""
@@ -281,7 +284,7 @@ def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -
     total : amplitudes (C, K + 1).  slopes : (m, C, K + 1), its derivatives by the phases.
     start : (P,) where they are nearly, rad.
     """
-    theta = _followed(_levelled(total), start, sign)
+    theta = _followed(_levelled(total, sign), np.zeros(len(start), int), start, LEAP)
     values = total.values(theta)
     change = Periodic(slopes, total.turns).values(theta)
     if len(values) == 1:
@@ -290,26 +293,16 @@ def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -
     return sign * sizes, sign * np.sum(change * values, axis=1).T / np.maximum(sizes, TINY)[:, None]
 
 
-def _levelled(total: Periodic) -> Periodic:
-    """The signal whose tops are looked for: the only component, or a vector's squared length."""
-    one = len(total.amplitudes) == 1
-    return Periodic(total.amplitudes[0], total.turns) if one else squared(total)
+def _levelled(total: Periodic, sign: int) -> Periodic:
+    """The one signal whose tops are looked for: the only component, or a vector's squared length;
+    turned over for bottoms (sign -1).
+    """
+    one = total if len(total.amplitudes) == 1 else squared(total)
+    return Periodic(sign * one.amplitudes.reshape(1, -1), total.turns)
 
 
-def _looked_for(signal: Periodic, sign: int) -> Array:
+def _looked_for(total: Periodic, sign: int) -> Array:
     """Crank angles (P,) of the tops (sign 1) or bottoms (-1) of a signal, rad."""
-    count = max(TOP_SAMPLES * signal.turns, 8 * signal.amplitudes.shape[-1])
-    values = sign * signal.samples(count)
-    top = (values >= np.roll(values, 1)) & (values >= np.roll(values, -1))
-    return _followed(signal, np.flatnonzero(top) * (signal.period / count), sign)
-
-
-def _followed(signal: Periodic, start: Array, sign: int) -> Array:
-    """Crank angles (P,) of tops or bottoms near a start (P,), rad, by Newton's method."""
-    theta = start
-    slope, bend = signal.derivative(), signal.derivative(2)
-    for _ in range(TOP_ROUNDS):
-        down, curve = slope.values(theta), bend.values(theta)
-        move = np.divide(-down, curve, out=np.zeros_like(down), where=sign * curve < 0)
-        theta = np.clip(theta + move, start - TOP_REACH, start + TOP_REACH)
-    return theta
+    signal = _levelled(total, sign)
+    owner, start, _ = _tops(signal, 1.0)
+    return _followed(signal, owner, start, LEAP)

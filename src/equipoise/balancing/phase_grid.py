@@ -14,12 +14,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import combinations
-from math import comb, prod
+from itertools import combinations, permutations
+from math import comb, factorial, prod
 from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.multi_row import RowSignals
 from equipoise.balancing.phase_cost import Cost, Term, by_orders, size
 from equipoise.mechanism.balance import Measure
 from equipoise.signals import synthesis
@@ -38,6 +39,11 @@ FEWEST = 4
 KEPT = 3_000
 """Best arrangements among which different ones are looked for."""
 SAME = 1e-12
+BETTER = 1e-9
+"""Share by which a value must fall to count as better."""
+MOST_SWAPS, MOST_ROUNDS = 50_000, 100
+"""Orders of equal rows among which the twist decides; where there are more, so many times the best
+swap of two rows is made."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -216,3 +222,61 @@ def coarsened(cost: Cost, levels: int) -> Grid | None:
             if grid.affordable:
                 return grid
     return None
+
+
+@dataclass(frozen=True, eq=False)
+class Twist:
+    """Roll and yaw moment of rows, and the orders of equal ones.
+
+    force : shaking force of the rows.  lateral : (m,) places to the side, m.
+    groups : rows that may be swapped without any effect on what is asked.
+    """
+
+    force: RowSignals
+    lateral: Array
+    groups: Sequence[Sequence[int]]
+
+    def of(self, phases: Array, orders: Array | None = None) -> Array:
+        """Mean square (P,) of roll and yaw moment together, N2 m2, with phases (m,) in orders.
+
+        sum_n |F_n|^2 / 2 |sum_k z_k exp(i n phi_k)|^2 is a sum over pairs of rows.
+        """
+        orders = np.arange(len(phases))[None] if orders is None else orders
+        sizes = np.sum(np.abs(self.force.amplitudes[0, 0, :, 1:]) ** 2, axis=0) / 2
+        turning = np.exp(1j * np.outer(phases, self.force.orders[1:]))
+        pairs = ((sizes * turning) @ turning.conj().T).real
+        swapped = pairs[orders[:, :, None], orders[:, None, :]]
+        return np.asarray(np.einsum("j,pjk,k->p", self.lateral, swapped, self.lateral))
+
+    def swapped(self, phases: Array) -> Array:
+        """The phases (m,), swapped among equal rows until they twist least."""
+        few = prod(factorial(len(group)) for group in self.groups) <= MOST_SWAPS
+        orders = self._all_orders() if few else self._swaps()
+        for _ in range(1 if few else MOST_ROUNDS):
+            best = first_least(self.of(phases, orders))
+            if best == 0:
+                break
+            phases = np.asarray(phases[orders[best]])
+        return phases
+
+    def _all_orders(self) -> Array:
+        """Every order (P, m) of equal rows, the present one first."""
+        orders = np.arange(len(self.lateral))[None]
+        for group in self.groups:
+            swapped = np.array(list(permutations(group)))
+            orders = np.repeat(orders, len(swapped), axis=0)
+            orders[:, group] = np.tile(swapped, (len(orders) // len(swapped), 1))
+        return orders
+
+    def _swaps(self) -> Array:
+        """Orders (P, m) with two equal rows swapped; the present one first."""
+        pairs = [pair for group in self.groups for pair in combinations(group, 2)]
+        orders = np.repeat(np.arange(len(self.lateral))[None], len(pairs) + 1, axis=0)
+        for order, (j, k) in zip(orders[1:], pairs, strict=True):
+            order[[j, k]] = k, j
+        return orders
+
+
+def first_least(values: Array) -> int:
+    """Place of the first of values (P,) that is as small as the least but for rounding."""
+    return int(np.argmax(values <= np.min(values) + BETTER * np.max(values)))

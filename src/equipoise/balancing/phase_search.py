@@ -11,15 +11,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import combinations, permutations
-from math import ceil, degrees, factorial, pi, prod
+from math import ceil, degrees, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.multi_row import Rows, RowSignals
 from equipoise.balancing.phase_cost import NOTHING, Combine, Cost, Term
-from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct
+from equipoise.balancing.phase_grid import (
+    BETTER,
+    Grid,
+    Twist,
+    alike,
+    coarsened,
+    distinct,
+    first_least,
+)
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import Objective, Phases
@@ -37,11 +44,8 @@ GUESSES, FEW_LEVELS = 300, 12
 """Random starts over the number of rows, where a turn of the first grid has so few phases."""
 WIDE = pi / 6
 """rad, apart from which cells are in different valleys of the first orders."""
-BETTER = 1e-9
-"""Share by which a value must fall to count as better."""
-MOST_SWAPS, MOST_BEST, MOST_ROUNDS = 50_000, 8, 100
-"""Orders of equal rows, and arrangements that are as good, among which the twist decides; where
-there are more orders, so many times the best swap of two rows is made."""
+MOST_BEST = 8
+"""Arrangements that are as good, among which the twist decides."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,51 +190,11 @@ class PhaseSearch:
         if values[0] <= limit:
             return np.asarray(pool[0])
         good = distinct(pool[values <= limit], self.cost.period, [1e-6], MOST_BEST)
-        laid = [self._laid_out(phases) for phases in good]
-        twist = np.array([float(self._twist(phases)[0]) for phases in laid])
-        found = laid[int(np.argmax(twist <= np.min(twist) + BETTER * np.max(twist)))]
-        return np.asarray((found - found[0]) % self.cost.period)
-
-    def _laid_out(self, phases: Array) -> Array:
-        """The phases (m,), swapped among equal rows until they twist least."""
-        groups = alike(self.cost)
-        rows = np.arange(len(phases))
-        if prod(factorial(len(group)) for group in groups) <= MOST_SWAPS:
-            orders = rows[None]
-            for group in groups:
-                swapped = np.array(list(permutations(group)))
-                orders = np.repeat(orders, len(swapped), axis=0)
-                orders[:, group] = np.tile(swapped, (len(orders) // len(swapped), 1))
-            return self._least(phases, orders)
-        pairs = [pair for group in groups for pair in combinations(group, 2)]
-        orders = np.repeat(rows[None], len(pairs) + 1, axis=0)
-        for order, (j, k) in zip(orders[1:], pairs, strict=True):
-            order[[j, k]] = k, j
-        for _ in range(MOST_ROUNDS):
-            found = self._least(phases, orders)
-            if found is phases:
-                break
-            phases = found
-        return phases
-
-    def _least(self, phases: Array, orders: Array) -> Array:
-        """The phases (m,) in the order of all (P, m) that twists least; as given if none does."""
-        twist = self._twist(phases, orders)
-        best = int(np.argmax(twist <= np.min(twist) + BETTER * np.max(twist)))
-        return phases if best == 0 else np.asarray(phases[orders[best]])
-
-    def _twist(self, phases: Array, orders: Array | None = None) -> Array:
-        """Mean square (P,) of roll and yaw moment together, N2 m2, with phases (m,) in orders.
-
-        sum_n |F_n|^2 / 2 |sum_k z_k exp(i n phi_k)|^2 is a sum over pairs of rows.
-        """
-        orders = np.arange(len(phases))[None] if orders is None else orders
-        sizes = np.sum(np.abs(self.force.amplitudes[0, 0, :, 1:]) ** 2, axis=0) / 2
-        turning = np.exp(1j * np.outer(phases, self.force.orders[1:]))
-        pairs = ((sizes * turning) @ turning.conj().T).real
         lateral = np.array([row.lateral for row in self.machine.rows])
-        swapped = pairs[orders[:, :, None], orders[:, None, :]]
-        return np.asarray(np.einsum("j,pjk,k->p", lateral, swapped, lateral))
+        twist = Twist(self.force, lateral, alike(self.cost))
+        laid = [twist.swapped(phases) for phases in good]
+        found = laid[first_least(np.array([float(twist.of(phases)[0]) for phases in laid]))]
+        return np.asarray((found - found[0]) % self.cost.period)
 
 
 SURVIVES = 1e-9

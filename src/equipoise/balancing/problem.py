@@ -16,9 +16,9 @@ from equipoise.balancing.design_variables import (
     Square,
     with_parameters,
 )
-from equipoise.balancing.effects import Effects, Near, gauge_signals, supports_more
+from equipoise.balancing.effects import Effects, Near, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
-from equipoise.balancing.multi_row import counts_rows, of_all_rows
+from equipoise.balancing.multi_row import signals_of
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
@@ -114,7 +114,7 @@ class Problem:
     @staticmethod
     def signals_of(machine: Machine, objective: Objective) -> list[Array]:
         """Signals (N,) of a machine whose largest measure an objective is."""
-        signals = _signals(Effects(machine, ()), objective, Near(machine))
+        signals = signals_of(Effects(machine, ()), objective, Near(machine))
         return [signal.start for signal in signals]
 
     def cost_of(self, machine: Machine) -> float:
@@ -161,7 +161,7 @@ class Problem:
     def _raw(self) -> dict[str, list[Signal]]:
         """Signals of each objective and limit, in SI units."""
         unique = {one.name: one for one in self.asked}
-        return {name: _signals(self.effects, one, self.close) for name, one in unique.items()}
+        return {name: signals_of(self.effects, one, self.close) for name, one in unique.items()}
 
     def check_influence(self) -> None:
         """Refuse an objective that is 0 already, or that nothing free can change."""
@@ -277,24 +277,15 @@ class Problem:
     @property
     def leaves_masses_open(self) -> bool:
         """Whether there is an added mass that no objective depends on."""
-        counts = np.cumsum([0, *(part.count for part in self.parts)])
-        masses = [
-            start + part.mass_place
-            for start, part in zip(counts, self.parts, strict=False)
-            if part.mass_place is not None
-        ]
-        return not np.all(self._change(self.plan.objectives)[masses])
+        changed = self._change(self.plan.objectives)
+        masses, _ = self.added_masses(self._by_part(np.arange(len(changed))))
+        return not np.all(changed[masses])
 
     def mass_added(self, numbers: list[Array]) -> float:
         """Mass of weights and gears, kg."""
-        masses = [machine.mass for machine in self._ends]
         pairs = zip(self.parts, numbers, strict=True)
-        weights = [own @ part.effect[:, 0] for part, own in pairs]
-        return masses[0] - masses[1] + float(sum(weights))
-
-    @property
-    def _ends(self) -> tuple[Machine, Machine]:
-        return self.start, self.machine
+        weights = sum(float(own @ part.effect[:, 0]) for part, own in pairs)
+        return self.start.mass - self.machine.mass + weights
 
     def split(self, x: Array) -> list[Array]:
         """The numbers of each part, tightened."""
@@ -302,16 +293,17 @@ class Problem:
 
     def tightened(self, numbers: list[Array]) -> list[Array]:
         """Squares made equal; of numbers that do not matter, the least that are possible."""
-        ends = np.cumsum([part.count for part in self.parts])[:-1]
-        matters = np.split(self._matters, ends)
-        triples = zip(self.parts, numbers, matters, strict=True)
-        return [part.tightened(own, matter) for part, own, matter in triples]
+        each = zip(self.parts, numbers, self._by_part(self._matters), strict=True)
+        return [part.tightened(own, matters) for part, own, matters in each]
 
     def lightened(self, numbers: list[Array]) -> list[Array]:
         """Numbers that do the same with the least mass of each weight."""
-        ends = np.cumsum([part.count for part in self.parts])[:-1]
-        triples = zip(self.parts, numbers, np.split(self._matters, ends), strict=True)
-        return [part.lightened(own, matter) for part, own, matter in triples]
+        each = zip(self.parts, numbers, self._by_part(self._matters), strict=True)
+        return [part.lightened(own, matters) for part, own, matters in each]
+
+    def _by_part(self, whole: Array) -> list[Array]:
+        """What stands beside all numbers (K,), split into that of each part."""
+        return np.split(whole, np.cumsum([part.count for part in self.parts])[:-1])
 
     def machine_with(self, numbers: list[Array]) -> Machine:
         """The machine that the parts' numbers make."""
@@ -346,11 +338,3 @@ def _name_apart(parts: list[DesignVariables]) -> None:
         same = [other for other in weights if other.link == part.link]
         if len(same) > 1:
             part.name = f"mass on {part.link} ({same.index(part) + 1})"
-
-
-def _signals(effects: Effects, objective: Objective, close: Near) -> list[Signal]:
-    """Signals whose largest measure an objective is: one for each speed at which it is read."""
-    if objective.output.startswith("gauges."):
-        return gauge_signals(effects, objective, close)
-    read = of_all_rows if counts_rows(effects, objective.output) else Effects.signal
-    return [read(effects, objective.output, objective.about).kept(objective.orders)]

@@ -24,7 +24,7 @@ from equipoise.errors import EquipoiseError, UsageError
 if TYPE_CHECKING:
     from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
-    from equipoise.terminal.units import Units
+    from equipoise.present.cells import Units
     from equipoise.vibration.response import Response
 
 
@@ -57,9 +57,9 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
         found = vibrate_freely(machine, model)
 
     def show() -> None:
-        from equipoise.terminal.modes import print_modes
+        from equipoise.present import show as shown
 
-        print_modes(found)
+        shown(found)
 
     outputs.give(_pictures(found), found.to_dict, show)
 
@@ -153,9 +153,9 @@ def simulate(
         found = from_rest(machine, duration, speed, drive)
 
     def show() -> None:
-        from equipoise.terminal.transient import print_transient
+        from equipoise.present import show as shown
 
-        print_transient(found, shown_in)
+        shown(found, units=shown_in)
 
     outputs.write(found.columns)
     outputs.give(_pictures(found), found.to_dict, show)
@@ -163,12 +163,12 @@ def simulate(
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
+    from equipoise.present.units import read_units
     from equipoise.schema.models import load
-    from equipoise.terminal.units import OF_VIBRATION, Units
 
     machine = load(file)
     outputs.check(sources_of(machine, file))
-    return machine, Units.read(units, OF_VIBRATION)
+    return machine, read_units(units)
 
 
 def _answer(
@@ -185,9 +185,9 @@ def _answer(
     found = solve(machine, speed, model, drive)
 
     def show() -> None:
-        from equipoise.terminal.vibration import print_response
+        from equipoise.present import show as shown
 
-        print_response(found, {} if drive else _others(machine, found), units)
+        shown(found, units=units, others=None if drive else _others(machine, found))
 
     outputs.write(found.columns)
     outputs.give(_pictures(found), found.to_dict, show)
@@ -232,9 +232,9 @@ def _sweep(
         found = sweep_speed(machine, *ends, model, drive, speeds or SPEEDS, progress)
 
     def show() -> None:
-        from equipoise.terminal.sweep import print_sweep
+        from equipoise.present import show as shown
 
-        print_sweep(found, units)
+        shown(found, units=units)
 
     outputs.write(found.columns)
     outputs.give(_pictures(found), found.to_dict, show)

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.signals import EQUAL
+
 COMPUTED = 0
 NO_ASSEMBLY = 1
 NO_FULL_TURN = 2
@@ -127,7 +129,9 @@ class Gathered:
             return high - low
         if figure.name == "peak":
             return np.maximum(high, -low)
-        return np.where(high >= -low, column("highest_at"), column("lowest_at"))
+        places = column("highest_at"), column("lowest_at")
+        equal = np.abs(high + low) <= EQUAL * (high - low)
+        return np.where(equal, np.minimum(*places), np.where(high >= -low, *places))
 
     def rms(self, found: Array, signal: str, count: int) -> Array:
         """Root of the mean square (P,) of a signal."""

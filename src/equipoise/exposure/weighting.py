@@ -26,6 +26,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.quantities.units import HUGE, TINY
 from equipoise.results.result import Result
+from equipoise.signals import highest_at
 
 Array = np.ndarray[Any, Any]
 
@@ -239,13 +240,13 @@ class Weighted(Result):
     @property
     def dominant_axis(self) -> str:
         """The axis with the largest weighted value."""
-        return self.axes[int(np.argmax(self.a_hw))]
+        return self.axes[int(highest_at(self.a_hw, smooth=False))]
 
     @property
     def dominant_band(self) -> float | None:
         """Nominal frequency, Hz, of the band with the largest weighted value; None if all are 0."""
         sums = np.sum(self.band_a_hw**2, axis=0)
-        return NOMINAL[int(np.argmax(sums))] if np.any(sums) else None
+        return NOMINAL[int(highest_at(sums, smooth=False))] if np.any(sums) else None
 
     @property
     def dominant_share(self) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
@@ -10,11 +10,11 @@ from equipoise.results.charts import Chart
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-    Picture = Chart | Figure
-
 Kind = Literal["svg", "png", "pdf"]
+Picture: TypeAlias = "Chart | Figure"
+"""A chart, or a drawing by Matplotlib."""
 
-__all__ = ["Kind", "figure", "plot", "render"]
+__all__ = ["Kind", "Picture", "figure", "plot", "render"]
 
 
 def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:

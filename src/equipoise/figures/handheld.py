@@ -14,6 +14,7 @@ from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
 from equipoise.figures.style import KINDS, short
 from equipoise.figures.sweep import Named, curves_of, log_ends, ordered
+from equipoise.handheld.blocks import figure_named
 from equipoise.handheld.design_plan import KEYS, MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import scale_of
@@ -701,7 +702,7 @@ def design(found: ToolDesign) -> Chart:
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
     plan = found.tool.design
     one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
-    what = f"{one.told}: {shown(one.before)} → {shown(one.after)} m/s²"
+    what = f"{figure_named(one)}: {shown(one.before)} → {shown(one.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     words = tuple(changes_told(found))
     return Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)

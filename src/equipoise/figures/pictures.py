@@ -75,7 +75,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     """
     from equipoise.figures import analysis as view
     from equipoise.figures import joints
-    from equipoise.plotting.analysis.linkage import linkage_figure
+    from equipoise.figures.linkage import linkage_figure
 
     found: Pictures = {"linkage": drawn(linkage_figure, analysis, at)}
     if len(analysis.crank_angle) < 2:
@@ -94,8 +94,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
 def planting_pictures(figures: PlantingFigures) -> Pictures:
     """``path``, and the charts of a planting machine."""
+    from equipoise.figures.path import path_figure
     from equipoise.figures.planting import charts
-    from equipoise.plotting.pathview import path_figure
 
     return {"path": drawn(path_figure, figures), **charts(figures)}
 
@@ -120,7 +120,7 @@ def balance_pictures(
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
     from equipoise.figures import balancing as view
-    from equipoise.plotting.balancing.changes import changes_figure
+    from equipoise.figures.changes import changes_figure
 
     if isinstance(found, Front):
         return {"front": view.front(found)}

@@ -172,16 +172,6 @@ DIGITS = 6
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
 ACCELERATION = "acceleration"
-WORDS = {"rms": to_say("RMS over the band"), "peak": to_say("largest")}
-TOLD = (
-    to_say("a_hv of the worst hand, RMS over the band"),
-    to_say("a_hv of the worst hand, largest"),
-    to_say("a_hv at {station}"),
-    to_say("force at {station}"),
-    to_say("{figure}, {measure}"),
-    to_say("mass"),
-)
-"""What these figures are called for reading."""
 NO_DESIGN = (
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
@@ -190,21 +180,13 @@ NO_DESIGN = (
 
 @dataclass(frozen=True, eq=False)
 class Before:
-    """A figure before and after, in SI units.
-
-    label : what it is called for reading, where that is more than its name.
-    """
+    """A figure before and after, in SI units.  said : what it is, where that is no free number."""
 
     name: str
     dimension: str
     before: float
     after: float
-    label: Note | None = None
-
-    @property
-    def told(self) -> str:
-        """What it is called, in the language that is spoken."""
-        return self.name if self.label is None else self.label.said()
+    said: Note | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -330,23 +312,27 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
         means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
         tops.append({name: float(np.max(one)) for name, one in curves.items()})
-    for part, found in (("rms", means), ("peak", tops)):
-        told = Note(f"a_hv of the worst hand, {WORDS[part]}")
-        yield Before(str(told), ACCELERATION, *map(_worst, found), told)
+    rms, top = Note(to_say("RMS over the band")), Note(to_say("largest"))
+    for said, found in (
+        (Note(to_say("a_hv of the worst hand, RMS over the band")), means),
+        (Note(to_say("a_hv of the worst hand, largest")), tops),
+    ):
+        yield _before(said, ACCELERATION, *map(_worst, found))
     for name in search.hands if len(search.hands) > 1 else ():
-        for part, found in (("rms", means), ("peak", tops)):
-            told = _at(Note("a_hv at {station}", station=name), part)
-            yield Before(str(told), ACCELERATION, found[0][name], found[1][name], told)
+        what = Note(to_say("a_hv at {station}"), station=name)
+        for measure, found in ((rms, means), (top, tops)):
+            said = Note(to_say("{what}, {measure}"), what=what, measure=measure)
+            yield _before(said, ACCELERATION, *(one[name] for one in found))
     for name in filter(None, search.held):
         forces = [_largest_force(one, search.band.speed, name) for one in (search.tool, better)]
-        told = _at(Note("force at {station}", station=name), "peak")
-        yield Before(str(told), "force", forces[0], forces[1], told)
-    yield Before("mass", "mass", search.tool.mass, better.mass, Note("mass"))
+        what = Note(to_say("force at {station}"), station=name)
+        said = Note(to_say("{what}, {measure}"), what=what, measure=top)
+        yield _before(said, "force", *forces)
+    yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)
 
 
-def _at(what: Note, part: str) -> Note:
-    """A figure of a station and whether it is its mean or its largest value."""
-    return Note("{figure}, {measure}", figure=what, measure=Note(WORDS[part]))
+def _before(said: Note, dimension: str, before: float, after: float) -> Before:
+    return Before(str(said), dimension, before, after, said)
 
 
 def _worst(values: dict[str, float]) -> float:

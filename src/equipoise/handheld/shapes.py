@@ -12,6 +12,7 @@ from equipoise.handheld.chain import Pair, States, carry, solve
 from equipoise.handheld.frequencies import floating, rigid_modes
 from equipoise.handheld.layout import Kind, Layout
 from equipoise.handheld.model import Station
+from equipoise.signals import highest_at
 
 Array = np.ndarray[Any, Any]
 
@@ -148,7 +149,7 @@ def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array,
 
 def scaled(shapes: Array) -> Array:
     """Shapes (..., X), each 1 where it is largest."""
-    at = np.argmax(np.abs(shapes), axis=-1)[..., None]
+    at = highest_at(np.abs(shapes), smooth=False)[..., None]
     largest = np.take_along_axis(shapes, at, -1)
     return np.asarray(shapes / np.where(largest == 0, 1.0, largest))
 

@@ -22,6 +22,7 @@ from equipoise.handheld.response import (
 )
 from equipoise.handheld.transmission import Transmissions, held, transmit
 from equipoise.results.result import Result
+from equipoise.signals import highest_at
 
 MODES = 6
 """Natural frequencies."""
@@ -124,7 +125,7 @@ class ToolSweep(Result):
         beside = np.concatenate([stations, np.nextafter(stations, 0.0)])  # where it may jump
         where = np.unique(np.concatenate([np.linspace(0, length, PLACES), beside]))
         moment = self.places(where).moment
-        at = np.argmax(moment, axis=0)
+        at = highest_at(moment.T)
         return moment[at, np.arange(len(self.speed))], where[at]
 
     def force(self, station: str) -> dict[str, Array]:

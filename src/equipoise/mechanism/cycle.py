@@ -18,6 +18,7 @@ import numpy as np
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import Group, initial_state, needed_references, run, running_angle
+from equipoise.signals import EQUAL, highest_at
 
 Array = np.ndarray[Any, Any]
 
@@ -210,12 +211,13 @@ class _Grid:
         inner = number[1:-1]
         dips = 1 + np.flatnonzero((inner <= number[:-2]) & (inner <= number[2:]))
         ends = [0] if number[0] <= number[1] else []
-        lowest = sorted([*ends, *dips], key=lambda k: number[k])[:MOST_DIPS]
-        best = (float(np.min(number)), float(self.theta[int(np.argmin(number))]))
-        width = self.theta[1]
-        for k in lowest:
-            best = min(best, self.zoom(group, float(self.theta[k]), width))
-        return best
+        least = float(np.min(number))
+        lowest = sorted([*ends, *dips], key=lambda k: max(number[k], least + EQUAL))[:MOST_DIPS]
+        found = [self.zoom(group, float(self.theta[k]), self.theta[1]) for k in lowest]
+        found.append((least, float(self.theta[highest_at(-number)])))
+        angles, values = np.array(sorted((angle, value) for value, angle in found)).T
+        k = highest_at(-values, smooth=False)
+        return float(np.min(values)), float(angles[k])
 
     def zoom(self, group: Group, angle: float, width: float) -> tuple[float, float]:
         """Close in on a dip of a dyad's number."""

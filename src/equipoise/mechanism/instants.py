@@ -11,6 +11,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.signals import EQUAL, highest_at
+
 Array = np.ndarray[Any, Any]
 Signal = Callable[[Array], Any]
 
@@ -93,7 +95,10 @@ def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tupl
     samples : (P, N), the signal there.
     """
     tops = (samples >= np.roll(samples, 1, axis=1)) & (samples >= np.roll(samples, -1, axis=1))
-    ranked = np.argsort(np.where(tops, -samples, np.inf), axis=1)[:, :RIVALS]
+    high, low = (f(samples, axis=1, keepdims=True) for f in (np.max, np.min))
+    equal = np.where(samples >= high - EQUAL * (high - low), high, samples)
+    ranked = np.argsort(np.where(tops, -equal, np.inf), axis=1, kind="stable")[:, :RIVALS]
+    ranked = np.sort(ranked, axis=1)  # in the order of the cycle, of equal tops the first is told
     step = theta[1] - theta[0]
     at = theta[ranked]
     refined = roots(slope, at - step, at + step)
@@ -101,9 +106,8 @@ def largest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tupl
     sampled = np.take_along_axis(samples, ranked, axis=1)
     lower = ~(values >= sampled)  # two turning points within one step, or rounding
     values, refined = np.where(lower, sampled, values), np.where(lower, at, refined)
-    rows = np.arange(len(samples))
-    best = np.argmax(values, axis=1)
-    return values[rows, best], refined[rows, best]
+    rows, best = np.arange(len(samples)), highest_at(values, smooth=False)
+    return np.max(values, axis=1), refined[rows, best]
 
 
 def smallest(signal: Signal, slope: Signal, theta: Array, samples: Array) -> tuple[Array, Array]:
@@ -121,17 +125,18 @@ def lowest_within(
     """
     low, high = low[:, None], high[:, None]
     near = low + (high - low) * np.linspace(0.0, 1.0, samples)
+    values = signal(near)
+    k = highest_at(-values)[:, None]
     offsets = np.linspace(-1.0, 1.0, 21)
     width = (high - low) / (samples - 1)
     while True:
-        values = signal(near)
-        k = np.argmin(values, axis=1)[:, None]
         at = np.take_along_axis(near, k, axis=1)
-        value = np.take_along_axis(values, k, axis=1)
         if not np.nanmax(np.abs(width)) > FINE:
-            return value[:, 0], at[:, 0]
+            return np.take_along_axis(values, k, axis=1)[:, 0], at[:, 0]
         between = at + width * offsets
         near = np.clip(between, np.minimum(low, high), np.maximum(low, high))
+        values = signal(near)
+        k = np.argmin(values, axis=1)[:, None]
         width = width / 8
 
 

@@ -12,6 +12,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.family import column
 from equipoise.mechanism.instants import crossings, roots
 from equipoise.mechanism.tip import TipCurve
+from equipoise.signals import EQUAL, highest_at, within_period
 
 Array = np.ndarray[Any, Any]
 Figures = dict[str, Array]
@@ -57,8 +58,7 @@ def direction(vector: Array) -> Array:
 
 def wrapped(curve: TipCurve, theta: Array) -> Array:
     """Crank angles within one cycle, from 0."""
-    inside = np.mod(theta, curve.period)
-    return np.where(inside > curve.period - 1e-12, 0.0, inside)
+    return within_period(theta, curve.period)
 
 
 TOUCH = 1e-12
@@ -100,7 +100,8 @@ def visits(curve: TipCurve) -> tuple[Visit, ...]:
         leave = _next(exits, entry, curve.period)
         theta, depth = _deepest(curve, nodes, sense * entry, sense * leave, level)
         found.append(Visit(sense * entry, sense * leave, theta, depth))
-    return tuple(sorted(found, key=lambda visit: -visit.depth))
+    deepest = max((visit.depth for visit in found), default=0.0)
+    return tuple(sorted(found, key=lambda visit: -min(visit.depth, deepest * (1 - EQUAL))))
 
 
 def _next(ways: Array, way: float, period: float) -> float:
@@ -116,7 +117,7 @@ def _deepest(
     inside = nodes + curve.period * np.ceil((low - nodes) / curve.period)
     inside = inside[inside < high]
     heights = curve.height(inside[None])[0]
-    k = int(np.argmin(heights))
+    k = highest_at(-heights)
     return float(wrapped(curve, inside[k])), float(level - heights[k])
 
 

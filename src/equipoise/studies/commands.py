@@ -232,7 +232,7 @@ def can_plant_together(
 
 def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
     """The model, then some designs of the study, each to be called for."""
-    from equipoise.studies.study import samples
+    from equipoise.studies.sampling import samples
 
     yield study.model.base
     for row in samples(study, 0, min(TRIED, study.size)):

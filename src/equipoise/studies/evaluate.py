@@ -24,6 +24,7 @@ from equipoise.codegen.figures import (
     NO_MACHINE,
     NOT_COMPUTED,
     NOT_STILL,
+    figure_of,
 )
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
 from equipoise.mechanism.linkage import assemble
@@ -41,12 +42,21 @@ from equipoise.studies.figures import Step, read, scale
 from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:
-    from equipoise.codegen.figures import Figure
     from equipoise.handheld.model import Tool
     from equipoise.studies.design_space import Model, Output
     from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]
+Values = Mapping[str, Any]
+
+AT_ONCE = 64
+"""Designs of which all commands are run before the next ones are made."""
+STANDING = (NO_ASSEMBLY, NO_FULL_TURN, CHANGE_POINT)
+"""Reasons for which a linkage does not turn, so that no further command is asked."""
+MOST_SAMPLES = 2**19
+"""Crank angles in a whole cycle, of however many turns, that are still tried."""
+FAINT = 1e-9
+"""Share of the largest signal beside it below which a signal is rounding."""
 
 
 class Quick(Protocol):
@@ -68,11 +78,10 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     ModelError : an output cannot be computed of any design.
     """
     quick = _quick(study, threads)
-    columns = [] if quick is None else quick[1]
-    others = [output for k, output in enumerate(study.outputs) if k not in columns]
     if quick is None:
         return one_by_one(study, study.outputs)
-    return Routes(study, quick[0], columns, one_by_one(study, others) if others else None)
+    others = [output for k, output in enumerate(study.outputs) if k not in quick[1]]
+    return Routes(study, *quick, one_by_one(study, others) if others else None)
 
 
 class Routes:
@@ -97,27 +106,17 @@ class Routes:
     def __call__(self, values: Array) -> Outcome:
         found = np.full((len(values), len(self.study.outputs)), np.nan)
         found[:, self.columns], reason = self.quick(values)
-        if self.rest is not None:
-            self._complete(found, reason, values)
+        if self.rest is not None:  # what is left of the designs that are possible
+            good = np.flatnonzero(reason == COMPUTED)
+            outcome = self.rest(values[good])
+            others = np.setdiff1d(np.arange(found.shape[1]), self.columns)
+            found[good[:, None], others], reason[good] = outcome.figures, outcome.reason
+            found[reason != COMPUTED] = np.nan
         strange = np.flatnonzero(reason == NOT_COMPUTED)
-        if strange.size:
-            alone = self._one_by_one(values[strange])
+        if strange.size:  # too far from the model for a loop: other turns of a geared link
+            alone = one_by_one(self.study, self.study.outputs)(values[strange])
             found[strange], reason[strange] = alone.figures, alone.reason
         return Outcome(found, reason)
-
-    def _complete(self, found: Array, reason: Array, values: Array) -> None:
-        """Compute what is left of the designs that are possible."""
-        assert self.rest is not None
-        good = np.flatnonzero(reason == COMPUTED)
-        outcome = self.rest(values[good])
-        others = [k for k in range(found.shape[1]) if k not in self.columns]
-        found[good[:, None], others] = outcome.figures
-        reason[good] = outcome.reason
-        found[reason != COMPUTED] = np.nan
-
-    def _one_by_one(self, values: Array) -> Outcome:
-        """Designs that differ too much from the model for a loop: other turns of a geared link."""
-        return one_by_one(self.study, self.study.outputs)(values)
 
 
 def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
@@ -129,41 +128,22 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
     from equipoise.codegen.gram import MassBatch, can_use
 
     machine: Machine = study.model.base()  # type: ignore[assignment]
+    of_analysis = [k for k, output in enumerate(study.outputs) if output.of == "analyze"]
+    figures = {k: f for k in of_analysis if (f := figure_of(study.outputs[k].value))}
     try:
-        figures = {k: _figure(output) for k, output in enumerate(study.outputs)}
-        wanted = {k: f for k, f in figures.items() if f and can_compute(machine, study.paths, f)}
-        masses = {k: f for k, f in figures.items() if f and can_use(machine, study.paths, [f])}
-        if masses and len(masses) >= len(wanted):
-            of_masses = MassBatch(
-                machine, study.paths, [*masses.values()], study.angles, study.tolerance
-            )
-            return of_masses, list(masses)
-        if wanted:
-            batch = Batch(
-                machine, study.paths, [*wanted.values()], study.angles, study.tolerance, threads
-            )
-            return batch, list(wanted)
+        wanted = {k: f for k, f in figures.items() if can_compute(machine, study.paths, f)}
+        masses = {k: f for k, f in figures.items() if can_use(machine, study.paths, [f])}
+        chosen = masses if masses and len(masses) >= len(wanted) else wanted
+        given = (machine, study.paths, [*chosen.values()], study.angles, study.tolerance)
+        if chosen:
+            batch = MassBatch(*given) if chosen is masses else Batch(*given, threads)
+            return batch, [*chosen]
     except EquipoiseError:  # the model itself fails, perhaps not its designs: one by one
-        return None
+        pass
     return None
 
 
-def _figure(output: Output) -> Figure | None:
-    from equipoise.codegen.figures import figure_of
-
-    return figure_of(output.value) if output.of == "analyze" else None
-
-
-Values = Mapping[str, Any]
-
-AT_ONCE = 64
-"""Designs of which all commands are run before the next ones are made."""
-STANDING = (NO_ASSEMBLY, NO_FULL_TURN, CHANGE_POINT)
-"""Reasons for which a linkage does not turn, so that no further command is asked."""
-MOST_SAMPLES = 2**19
-"""Crank angles in a whole cycle, of however many turns, that are still tried."""
-FAINT = 1e-9
-"""Share of the largest signal beside it below which a signal is rounding."""
+# -- one by one ------------------------------------------------------------------------------------
 
 
 def one_by_one(study: Study, outputs: Sequence[Output]) -> Evaluator:
@@ -216,7 +196,8 @@ class _OneByOne:
         except EquipoiseError:
             return NO_MACHINE
         try:
-            _assembled(model)
+            if isinstance(model, Machine):
+                assemble(model)
         except EquipoiseError as error:
             return NO_MACHINE if isinstance(error, ModelError) else reason_of(error, model)
         return model
@@ -239,8 +220,6 @@ class _OneByOne:
 
 def _together(models: Mapping[int, Any], asked: Request, figures: Array) -> dict[int, int]:
     """Fill the figures of planting fingers; returns why some are missing, by design."""
-    from equipoise.studies.evaluate import planting_figures
-
     failed, turning = {}, {}
     for k, machine in models.items():
         try:
@@ -266,13 +245,6 @@ def reason_of(error: EquipoiseError, model: Machine | Tool) -> int:
     if isinstance(error, MotionError) and not getattr(model, "gears", ()):
         return NO_FULL_TURN  # where Newton's method ends on the way round
     return NOT_COMPUTED
-
-
-def _assembled(model: Machine | Tool) -> None:
-    from equipoise.mechanism.model import Machine
-
-    if isinstance(model, Machine):
-        assemble(model)
 
 
 # -- figures of one machine ------------------------------------------------------------------------

@@ -14,6 +14,7 @@ from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MA
 from equipoise.studies.design_space import Choices
 from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Evaluator, Outcome
+from equipoise.studies.sampling import values_at
 from equipoise.studies.selection import far_apart, non_dominated
 from equipoise.studies.study import Study
 
@@ -22,12 +23,6 @@ Array = np.ndarray[Any, Any]
 Known = Callable[[Array], Array]
 MANY = 4
 """Objectives from which reference directions, not crowding, keep designs apart."""
-
-
-def values_of(study: Study, places: Array) -> Array:
-    """Values (P, d), SI units, at places (P, d) from 0 to 1 of ranges and lists."""
-    columns = [one.spread.at(places[:, k]) for k, one in enumerate(study.vary)]
-    return np.stack(columns, axis=1)
 
 
 def canonical(study: Study, places: Array) -> Array:
@@ -91,14 +86,14 @@ def _only_new(study: Study, known: Known) -> Any:
 
     class OnlyNew(DuplicateElimination):  # type: ignore[misc]
         def _do(self, bred: Any, other: Any, struck: Array) -> Array:
-            values = values_of(study, canonical(study, bred.get("X")))
+            values = values_at(study, canonical(study, bred.get("X")))
             if other is None:
                 _, first = np.unique(values, axis=0, return_index=True)
                 struck[:] = True
                 struck[first] = known(values[first])
             elif len(other):
                 there = {
-                    row.tobytes() for row in values_of(study, canonical(study, other.get("X")))
+                    row.tobytes() for row in values_at(study, canonical(study, other.get("X")))
                 }
                 struck |= [row.tobytes() in there for row in values]
             return struck

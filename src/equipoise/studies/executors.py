@@ -84,13 +84,15 @@ class Pool(ABC):
     def close(self) -> None:
         """Stop, and leave what is not finished."""
 
-    @abstractmethod
-    def look(self) -> None:
-        """See whether somebody is still at work; `StoppedError` if not."""
+    def look(self) -> None:  # noqa: B027
+        """See whether somebody is still at work; `StoppedError` if not.
 
-    @abstractmethod
+        On this machine nobody leaves without being noticed.
+        """
+
     def explained(self, error: Exception) -> StoppedError | None:
-        """What ended the work on a chunk, if it is not the chunk itself."""
+        """What ended the work on a chunk, if it is not the chunk itself, as it is here."""
+        return None
 
 
 def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block]]:
@@ -125,8 +127,7 @@ def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block
                 under_way.clear()
                 break
             except Exception as error:
-                explained = pool.explained(error)
-                if explained is None:
+                if (explained := pool.explained(error)) is None:
                     raise
                 raise explained from error
             else:
@@ -137,17 +138,7 @@ def computed(pool: Pool, chunks: Iterable[range]) -> Iterator[tuple[range, Block
 # -- on this machine -------------------------------------------------------------------------------
 
 
-class Local(Pool):
-    """On this machine nobody leaves without being noticed."""
-
-    def look(self) -> None:
-        """Nothing is to be seen."""
-
-    def explained(self, error: Exception) -> None:
-        """It is the chunk itself."""
-
-
-class Threads(Local):
+class Threads(Pool):
     """Threads of this process, for what computes without Python's lock."""
 
     def __init__(self, task: Task, workers: int) -> None:
@@ -155,7 +146,6 @@ class Threads(Local):
         self.executor = ThreadPoolExecutor(workers)
 
     def submit(self, designs: range) -> Future[Block]:
-        """Begin to compute designs."""
         return self.executor.submit(self.task.function, self.task.study, designs)
 
     def close(self) -> None:
@@ -163,7 +153,7 @@ class Threads(Local):
         self.executor.shutdown(cancel_futures=True)
 
 
-class Processes(Local):
+class Processes(Pool):
     """Processes that are started for it, and started again when one of them dies.
 
     They end when the other end of a pipe closes: at once when the work is over or stopped, and also
@@ -181,7 +171,6 @@ class Processes(Local):
         self.executor = ProcessPoolExecutor(self.workers, context, _begin, (self.watched,))
 
     def submit(self, designs: range) -> Future[Block]:
-        """Begin to compute designs."""
         try:
             return self._submitted(designs)
         except BrokenExecutor:
@@ -266,13 +255,11 @@ class Cluster(Pool):
             self.held = held.pop_all()
 
     def submit(self, designs: range) -> Future[Block]:
-        """Begin to compute designs."""
         call = Call(_compute, (versions(), self.task.function, self.task.study, designs))
         future: Future[Block] = self.executor.submit(pickle.loads, pickle.dumps(call))
         return future
 
     def look(self) -> None:
-        """See how many workers there are."""
         with suppress(SilentError):  # if it has gone for good, the chunks under way will tell
             self._counted()
 
@@ -309,7 +296,6 @@ class Cluster(Pool):
         self.held.close()
 
     def explained(self, error: Exception) -> StoppedError | None:
-        """What ended the work on a chunk, if it is not the chunk itself."""
         if isinstance(error, ModuleNotFoundError):
             return StoppedError(
                 f"a worker of the cluster has no {error.name}; install the same on all hosts"
@@ -351,12 +337,11 @@ def _compute(
 @contextmanager
 def _quiet() -> Iterator[None]:
     """Keep the libraries from writing about what is told in a sentence."""
-    logs = [logging.getLogger(name) for name in LOGS]
-    levels = [log.level for log in logs]
-    for log in logs:
+    levels = {log: log.level for log in map(logging.getLogger, LOGS)}
+    for log in levels:
         log.setLevel(logging.CRITICAL + 1)
     try:
         yield
     finally:
-        for log, level in zip(logs, levels, strict=True):
+        for log, level in levels.items():
             log.setLevel(level)

@@ -2,21 +2,25 @@
 
 The machines are those of the model with some of its numbers changed, counterweights among them.
 Where two of them differ in masses alone, every output is linear in the inertial parameters of the
-links, so that a few machines tell all of them.
+links, so that one of them tells all.
 """
 
 from __future__ import annotations
 
 import re
+from cmath import rect
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from math import cos, nan, sin
+from functools import partial
+from math import nan
 from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import with_parameters
+from equipoise.balancing.design_variables import LinkParameters, with_parameters
+from equipoise.balancing.effects import Effects, Near
 from equipoise.balancing.measures import measured, unit_of
+from equipoise.balancing.multi_row import signals_of
 from equipoise.balancing.optimisation import pin_of
 from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
@@ -32,6 +36,12 @@ Array = np.ndarray[Any, Any]
 Value = Callable[[Mapping[str, float]], float]
 """An objective of the machine with these numbers; NaN where there is none or it cannot turn."""
 
+Progress = Callable[[int, int], None]
+
+MOST = 1_000
+"""Values of either number."""
+CLOSE = 1e-7
+"""Share of the ranges to which the best place is found."""
 COUNTERWEIGHT = re.compile(r"counterweights\.(?P<link>.+)\.(?P<key>mass|radius|direction)")
 KEYS = {"mass": "mass", "radius": "length", "direction": "angle"}
 """Numbers of a counterweight, which no file has, and what they are."""
@@ -77,21 +87,27 @@ class Variants:
         found = parameter_values(machine).reshape(-1, 4).copy()
         for link, weight in _weights(values).items():
             pin = complex(*machine.links[link].points[pin_of(machine, link)])
-            direction = weight["direction"]
-            at = pin + weight["radius"] * complex(cos(direction), sin(direction))
-            found[list(machine.links).index(link)] += weight["mass"] * np.array(
-                [1.0, at.real, at.imag, abs(at) ** 2]
-            )
+            at = pin + rect(weight["radius"], weight["direction"])
+            point_mass = np.array([1.0, at.real, at.imag, abs(at) ** 2])
+            found[[*machine.links].index(link)] += weight["mass"] * point_mass
         return machine, found
 
     def machine(self, point: Mapping[str, float]) -> Machine:
         """The machine with its counterweights."""
-        if not any(COUNTERWEIGHT.fullmatch(path) for path in (*self.given, *point)):
+        weights = _weights({**self.given, **point})
+        if not weights:
             return linkage_of(self.model.machine({**self.given, **point}))
         machine, parameters = self.parameters(point)
-        for link in _weights({**self.given, **point}):
+        for link in weights:
             machine = with_parameters(machine, link, parameters[[*machine.links].index(link)])
         return machine
+
+    def value(self, of: Objective, point: Mapping[str, float]) -> float:
+        """The objective of one machine; NaN where there is none or it cannot turn."""
+        try:
+            return Problem.value_of(self.machine(point), of)
+        except EquipoiseError:
+            return nan
 
 
 def _weights(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
@@ -104,94 +120,52 @@ def _weights(values: Mapping[str, float]) -> dict[str, dict[str, float]]:
     return found
 
 
-def value_of(maker: Variants, of: Objective, point: Mapping[str, float]) -> float:
-    """The objective of one machine; NaN where there is none or it cannot turn."""
-    try:
-        return Problem.value_of(maker.machine(point), of)
-    except EquipoiseError:
-        return nan
-
-
 # -- many machines that differ in masses -----------------------------------------------------------
 
 
 def linear_value(
     maker: Variants, of: Objective, points: Sequence[Mapping[str, float]]
 ) -> Value | None:
-    """The objective by inertial parameters; None where more differs, or more than those count.
-
-    On a few machines with a mass more on one link each, that link's part of the signal is found.
-    """
+    """The objective by inertial parameters; None where more differs, or more than those count."""
     try:
         base, start = maker.parameters(points[0])
         others = [maker.parameters(points[k])[0] for k in (len(points) // 3, -1)]
-        if not all(_moves_alike(base, one) for one in others) or not _counts_masses(base, of):
+        if not _differ_in_masses(base, others, of):
             return None
-        signal = _signal(base, start, of)
-        basis = {link: _beside(base, link) for link in base.links}
-        columns = np.array(
-            [
-                [_signal(base, _with(start, k, more), of) - signal for more in basis[link]]
-                for k, link in enumerate(base.links)
-            ]
-        )
+        machine = base
+        for link, values in zip(base.links, start, strict=True):
+            machine = with_parameters(machine, link, values)
+        effects = Effects(machine, [LinkParameters(link) for link in base.links])
+        (signal,) = signals_of(effects, of, Near(machine))
     except EquipoiseError:
         return None
-    shares = np.array([np.linalg.inv(basis[link]) for link in base.links])
-    effects = np.einsum("lij,ljn->lin", shares, columns)
 
     def value(point: Mapping[str, float]) -> float:
         try:
             changed = maker.parameters(point)[1] - start
         except EquipoiseError:
             return nan
-        return measured(signal + np.tensordot(changed, effects, 2), of.measure)
+        return measured(signal.at(changed.ravel()), of.measure)
 
     return value
 
 
-def _moves_alike(one: Machine, other: Machine) -> bool:
-    """Whether two machines differ in masses alone."""
-    points = all(one.links[name].points == other.links[name].points for name in one.links)
-    return points and replace(one, links=other.links) == other
+def _differ_in_masses(base: Machine, others: Sequence[Machine], of: Objective) -> bool:
+    """Whether machines differ in masses alone, and an output is linear in them.
 
-
-def _counts_masses(machine: Machine, of: Objective) -> bool:
-    """Whether an output is linear in masses: a support swings otherwise with them, and gears change
-    their flanks.
+    A support swings otherwise with them, and gears change their flanks.
     """
-    of_flanks = bool(machine.gears) and of.output.startswith("joints.")
-    return not of.output.startswith("gauges.") and not of_flanks
+    if of.output.startswith("gauges.") or (base.gears and of.output.startswith("joints.")):
+        return False
+    places = {name: link.points for name, link in base.links.items()}
+    return all(
+        replace(base, links=one.links) == one
+        and {name: link.points for name, link in one.links.items()} == places
+        for one in others
+    )
 
 
-def _signal(machine: Machine, parameters: Array, of: Objective) -> Array:
-    for link, values in zip(machine.links, parameters, strict=True):
-        machine = with_parameters(machine, link, values)
-    (signal,) = Problem.signals_of(machine, of)
-    return signal
-
-
-def _beside(machine: Machine, link: str) -> Array:
-    """Parameters (4, 4) of a mass at four places of a link, which together make any other."""
-    arms = [abs(complex(*point)) for point in machine.links[link].points.values()]
-    size, mass = max(arms, default=0.0) or 0.1, machine.mass or 1.0
-    places = [0j, size + 0j, 1j * size, -size + 0j]
-    return np.array([[mass, mass * z.real, mass * z.imag, mass * abs(z) ** 2] for z in places])
-
-
-def _with(parameters: Array, row: int, more: Array) -> Array:
-    """Parameters (links, 4) with more in a row."""
-    changed = parameters.copy()
-    changed[row] += more
-    return changed
-
-
-Progress = Callable[[int, int], None]
-
-MOST = 1_000
-"""Values of either number."""
-CLOSE = 1e-7
-"""Share of the ranges to which the best place is found."""
+# -- the map ---------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -234,13 +208,12 @@ class Landscape(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values; what is NaN in `values` stays so."""
-        first, second = self.paths
         return {
             "title": self.machine.title,
             "objective": self.objective.name,
             "unit": self.unit,
             "given": dict(self.given),
-            "over": {first: self.x, second: self.y},
+            "over": dict(zip(self.paths, (self.x, self.y), strict=True)),
             "values": self.values,
             "best": dict(zip(self.paths, self.best, strict=True)),
             "at_edge": self.at_edge,
@@ -279,17 +252,21 @@ def landscape(
         raise UsageError("got a machine; give the model whose numbers vary, Template.of(machine)")
     linkage_of(model.base())
     given = dict(given or {})
-    paths, values = _checked(over, given)
+    paths, drawn = _checked(over, given)
     dimensions = {path: dimension(model, path) for path in (*paths, *given)}
     maker = Variants(model, given)
     base = maker.machine({})
     if missing := massless(base):
         raise MassError(missing)
-    _check_output(base, of)
-    _check_weights({**given, **{path: one[-1] for path, one in zip(paths, values, strict=True)}})
-    x, y = values
-    points = [dict(zip(paths, pair, strict=True)) for pair in _pairs(x, y)]
-    value = linear_value(maker, of, points) or (lambda point: value_of(maker, of, point))
+    try:
+        base.with_balance(Balance(objectives=(of,)))
+    except ModelError as error:  # of a plan that nobody has written
+        raise UsageError(error.what) from error
+    ends = (dict(zip(paths, (one[k] for one in drawn), strict=True)) for k in (0, -1))
+    _check_weights(*({**given, **end} for end in ends))
+    x, y = drawn
+    points = [{paths[0]: one, paths[1]: other} for other in y.tolist() for one in x.tolist()]
+    value = linear_value(maker, of, points) or partial(maker.value, of)
     found = np.empty(len(points))
     for k, point in enumerate(points):
         found[k] = value(point)
@@ -298,29 +275,13 @@ def landscape(
     if np.all(np.isnan(found)):
         raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
     best, least = _refined(value, points[int(np.nanargmin(found))], x, y)
-    start = _start(model, paths, given)
-    return Landscape(
-        base.with_balance(None),
-        of,
-        paths,
-        given,
-        dimensions,
-        x,
-        y,
-        found.reshape(len(y), len(x)),
-        unit_of(of, base),
-        best,
-        least,
-        start,
-        nan if start is None else value(dict(zip(paths, start, strict=True))),
-    )
-
-
-def _check_output(machine: Machine, of: Objective) -> None:
-    try:
-        machine.with_balance(Balance(objectives=(of,)))
-    except ModelError as error:  # of a plan that nobody has written
-        raise UsageError(error.what) from error
+    start, before = None, nan
+    if not given and not any(COUNTERWEIGHT.fullmatch(path) for path in paths):
+        start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])
+        before = value(dict(zip(paths, start, strict=True)))
+    values = found.reshape(len(y), len(x))
+    asked = (of, paths, given, dimensions, x, y, values, unit_of(of, base))
+    return Landscape(base.with_balance(None), *asked, best, least, start, before)
 
 
 def _checked(
@@ -328,43 +289,31 @@ def _checked(
 ) -> tuple[tuple[str, str], list[Array]]:
     if len(over) != 2:
         raise UsageError(f"got {len(over)} numbers to vary; a map is over two, give two paths")
-    for path in over:
-        if path in given:
-            raise UsageError(f"{path} is to vary and is set too; give one of both")
+    if both := [path for path in over if path in given]:
+        raise UsageError(f"{both[0]} is to vary and is set too; give one of both")
     values = [np.asarray(one, float) for one in over.values()]
     for path, one in zip(over, values, strict=True):
         rising = one.ndim == 1 and bool(np.all(np.isfinite(one)) and np.all(np.diff(one) > 0))
         if not rising or not 2 <= len(one) <= MOST:
             raise UsageError(f"{path}: give 2 to {MOST} rising values in SI units")
-    for path, low in [*given.items(), *((p, v[0]) for p, v in zip(over, values, strict=True))]:
-        weight = COUNTERWEIGHT.fullmatch(path)
-        if weight is not None and weight["key"] != "direction" and low < 0:
-            raise UsageError(f"{path}: got less than 0; give 0 or more")
     first, second = over
     return (first, second), values
 
 
-def _check_weights(largest: Mapping[str, float]) -> None:
-    """A counterweight without a mass changes nothing wherever it is."""
-    for path in largest:
+def _check_weights(lowest: Mapping[str, float], largest: Mapping[str, float]) -> None:
+    """Counterweights by the least and the largest values that are drawn.
+
+    One without a mass changes nothing wherever it is.
+    """
+    for path, low in lowest.items():
         weight = COUNTERWEIGHT.fullmatch(path)
-        mass = None if weight is None else f"counterweights.{weight['link']}.mass"
-        if mass is not None and not largest.get(mass):
+        if weight is None:
+            continue
+        if weight["key"] != "direction" and low < 0:
+            raise UsageError(f"{path}: got less than 0; give 0 or more")
+        mass = f"counterweights.{weight['link']}.mass"
+        if not largest.get(mass):
             raise UsageError(f'{path}: the counterweight has no mass; set {mass}, such as "1 kg"')
-
-
-def _start(
-    model: Model, paths: tuple[str, str], given: Mapping[str, float]
-) -> tuple[float, float] | None:
-    """The two numbers as the model has them."""
-    if given or any(COUNTERWEIGHT.fullmatch(path) for path in paths):
-        return None
-    first, second = (float(model.number(path)[0]) for path in paths)
-    return first, second
-
-
-def _pairs(x: Array, y: Array) -> list[tuple[float, float]]:
-    return [(one, other) for other in y.tolist() for one in x.tolist()]
 
 
 def _refined(
@@ -388,5 +337,5 @@ def _refined(
     options = {"initial_simplex": simplex, "xatol": CLOSE, "fatol": 1e-12 * least, "maxiter": 400}
     found = minimize(at, begin, method="Nelder-Mead", bounds=[(0, 1), (0, 1)], options=options)
     better = found.x if found.fun < least else begin
-    first, second = (low + np.clip(better, 0.0, 1.0) * width).tolist()
-    return (first, second), min(float(found.fun), least)
+    x_best, y_best = (low + np.clip(better, 0.0, 1.0) * width).tolist()
+    return (x_best, y_best), min(float(found.fun), least)

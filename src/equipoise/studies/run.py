@@ -31,6 +31,7 @@ from equipoise.studies.executors import (
 )
 from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
+from equipoise.studies.sampling import samples
 from equipoise.studies.store import (
     LAYOUT,
     NUMBERS,
@@ -43,7 +44,7 @@ from equipoise.studies.store import (
     open_store,
     versions,
 )
-from equipoise.studies.study import SLOW_CHUNK, samples
+from equipoise.studies.study import SLOW_CHUNK
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study

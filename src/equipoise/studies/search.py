@@ -19,8 +19,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution, values_of
+from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution
 from equipoise.studies.outcomes import Evaluator, kept
+from equipoise.studies.sampling import values_at
 from equipoise.studies.selection import why_none
 from equipoise.studies.study import Study
 
@@ -129,7 +130,7 @@ def search_designs(
         if bred is None:
             break  # there is hardly another design
         places = canonical(study, bred.get("X"))
-        rows = seen.rows(values_of(study, places))
+        rows = seen.rows(values_at(study, places))
         bred.set("X", places, "F", seen.costs[rows], "G", seen.violations[rows])
         breeding.tell(infills=bred)
         volumes.add(seen.front_costs)
@@ -138,7 +139,7 @@ def search_designs(
         if volumes.still:
             break
     still = bred is None or volumes.still
-    last = seen.rows(values_of(study, breeding.pop.get("X")))
+    last = seen.rows(values_at(study, breeding.pop.get("X")))
     told = seen.some_of_front(last, population)
     return _result(study, seen, volumes, told, still, seed)
 

@@ -229,7 +229,7 @@ class _Run:
 
 def _drawn(study: Study) -> Iterator[Array]:
     """Machines drawn from the tolerances, part by part."""
-    from equipoise.studies.study import samples
+    from equipoise.studies.sampling import samples
 
     for start in range(0, study.size, study.chunk):
         yield samples(study, start, min(study.chunk, study.size - start))

@@ -18,7 +18,7 @@ import numpy as np
 
 from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.outcomes import kept
-from equipoise.studies.study import BITS, values_at
+from equipoise.studies.sampling import BITS, random_numbers, values_at
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Output
@@ -80,8 +80,7 @@ def tables(study: Study, rows: int) -> Iterator[Array]:
     from scipy.stats import qmc
 
     width = len(study.vary)
-    sequence = np.random.SeedSequence(study.sampling.seed, spawn_key=(TWICE,))
-    scrambling = np.random.Generator(np.random.PCG64DXSM(sequence))
+    scrambling = random_numbers(study.sampling.seed, TWICE)
     places = qmc.Sobol(2 * width, bits=BITS, seed=scrambling).random_base2(rows.bit_length() - 1)
     places += 0.5 / 2**BITS  # the middle of a cell: 0 is the end of a normal spread
     first, second = (values_at(study, half) for half in np.hsplit(places, 2))
@@ -157,8 +156,7 @@ def _ratios(means: Array) -> Array:
 
 def _drawn_again(terms: Array, seed: int) -> Array:
     """Means (R, T) of terms (T, n) over rows drawn anew each time, in blocks of random rows."""
-    sequence = np.random.SeedSequence(seed, spawn_key=(TWICE + 1,))
-    generator = np.random.Generator(np.random.PCG64DXSM(sequence))
+    generator = random_numbers(seed, TWICE + 1)
     mixed = terms[:, generator.permutation(terms.shape[1])]
     blocks = np.array_split(mixed, min(BLOCKS, terms.shape[1]), axis=1)
     sums = np.array([block.sum(axis=1) for block in blocks])

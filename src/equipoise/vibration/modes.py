@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.signals import highest_at
+
 Array = np.ndarray[Any, Any]
 
 STILL = 1e-7
@@ -91,5 +93,5 @@ def _free(stiffness: Array) -> Array:
 
 def _scaled(shape: Array) -> Array:
     """The shape with its largest part 1."""
-    largest = shape[np.argmax(np.abs(shape))]
+    largest = shape[highest_at(np.abs(shape), smooth=False)]
     return np.asarray(shape / largest) if largest else shape

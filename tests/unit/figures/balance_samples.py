@@ -6,15 +6,13 @@ from dataclasses import replace
 from functools import cache
 from math import pi
 
-import numpy as np
-
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
 from equipoise.balancing.phase_search import Phasing, choose_phases
+from equipoise.figures.pictures import balance_pictures
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
-from equipoise.figures.pictures import balance_pictures
 from equipoise.results.charts import Chart
 
 MM, STEEL = 1e3, 7850.0

@@ -5,16 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+from matplotlib.figure import Figure
+from matplotlib.text import Text
 
 import equipoise as eq
+from equipoise.figures import Picture
+from equipoise.figures.layout import lay_out
+from equipoise.figures.planting import charts
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.plotting.linkage import Sketch, sketch
-from equipoise.figures.layout import lay_out
-from equipoise.figures.planting import charts
 from equipoise.results.charts import Chart
-from equipoise.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
 BUNDLED = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -69,10 +70,6 @@ def odd_machines() -> dict[str, Machine]:
     }
 
 
-def sketched(machine: Machine, at: float) -> Sketch:
-    return sketch(Scene.of(eq.move(machine, [at])))
-
-
 @cache
 def read_off(name: str) -> PlantingFigures:
     return plant(eq.load(name).with_planting(soil=SOIL))
@@ -83,6 +80,21 @@ def drawn(name: str) -> dict[str, Chart]:
     return charts(read_off(name))
 
 
-def words(chart: Chart) -> str:
-    """Every text of a chart as it is drawn."""
-    return "\n".join(text.text for text in lay_out(chart).words)
+def words(picture: Picture) -> str:
+    """Every text of a picture as it is drawn."""
+    if isinstance(picture, Chart):
+        return "\n".join(text.text for text in lay_out(picture).words)
+    return "\n".join(text.get_text() for text in texts(picture))
+
+
+def texts(figure: Figure) -> list[Text]:
+    """Every text that is drawn: not those of ticks outside their axes."""
+    outside = {
+        tick.label1
+        for axes in figure.axes
+        for axis in (axes.xaxis, axes.yaxis)
+        for tick in axis.get_major_ticks()
+        if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
+    }
+    found = (text for text in figure.findobj(Text) if text.get_visible() and text.get_text())
+    return [text for text in found if text not in outside]

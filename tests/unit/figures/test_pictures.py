@@ -16,8 +16,8 @@ from equipoise.figures.planting import charts as planting_charts
 from equipoise.figures.sheet import Sheet
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
-from equipoise.report.findings import find
-from equipoise.report.pictures import each
+from equipoise.present.findings import find
+from equipoise.present.pictures import each
 from equipoise.results.charts import Chart
 from unit.figures import balance_samples, samples, tool_samples, vibration_samples
 

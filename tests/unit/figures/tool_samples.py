@@ -7,13 +7,13 @@ from functools import cache
 
 import numpy as np
 
+from equipoise.figures import handheld
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
-from equipoise.figures import handheld
 from equipoise.results.charts import Chart
 from equipoise.schema.tools import load_tool
 

@@ -9,12 +9,11 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
+from equipoise.figures.pictures import pictures_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Gauge, Mount, Row
-from equipoise.figures.pictures import pictures_of
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import vibrate_freely
 from equipoise.vibration.sweep import Sweep, sweep_speed
 from equipoise.vibration.transient import from_rest
 

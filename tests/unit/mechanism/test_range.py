@@ -269,7 +269,8 @@ def test_a_dyad_behind_gears_is_watched_too() -> None:
     h, j, k = (points[name].place for name in "HJK")
     sine = np.sin(np.angle((h - j) / (k - j))) ** 2
     assert number == pytest.approx(sine.min(), rel=1e-4)
-    assert angle % (2 * pi) == pytest.approx(2 * pi * int(np.argmin(sine)) / 7200, abs=2e-3)
+    first = int(np.argmax(sine <= sine.min() + 1e-9))  # the dyad comes as near in every turn
+    assert angle == pytest.approx(2 * pi * first / 7200, abs=2e-3)
 
 
 def test_a_dyad_behind_gears_may_be_the_one_that_stops() -> None:

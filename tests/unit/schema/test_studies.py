@@ -23,7 +23,8 @@ from equipoise.studies.design_space import (
     Sampling,
     Uniform,
 )
-from equipoise.studies.study import Study, samples
+from equipoise.studies.sampling import samples
+from equipoise.studies.study import Study
 from unit.schema.samples import FOUR_BAR
 
 WHOLE = """

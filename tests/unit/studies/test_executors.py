@@ -24,7 +24,7 @@ from equipoise.studies import executors
 from equipoise.studies.design_space import Sampling
 from equipoise.studies.executors import Cluster, Processes, StoppedError, Threads, computed
 from equipoise.studies.outcomes import Block
-from equipoise.studies.study import samples
+from equipoise.studies.sampling import samples
 from support import studies
 from support.studies import Formulas, Orders, short_study
 

@@ -21,8 +21,9 @@ from equipoise.studies import store as storing
 from equipoise.studies.design_space import Output
 from equipoise.studies.outcomes import Progress, Tally
 from equipoise.studies.run import chunk_of, resume, run_study
+from equipoise.studies.sampling import samples
 from equipoise.studies.store import Store, open_store
-from equipoise.studies.study import Study, samples
+from equipoise.studies.study import Study
 from support import studies
 from support.studies import Formulas, contents, restore, short_study
 

@@ -14,7 +14,8 @@ from scipy.stats import qmc
 
 from equipoise.errors import UsageError
 from equipoise.studies.design_space import Choices, Correlation, Normal, Range, Uniform
-from equipoise.studies.study import Study, samples, unit_samples, values_at
+from equipoise.studies.sampling import samples, unit_samples, values_at
+from equipoise.studies.study import Study
 from unit.studies.samples import correlated, study
 
 RANDOM = ("sobol", "latin-hypercube", "monte-carlo")

@@ -21,8 +21,8 @@ from equipoise.quantities.units import KINDS
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.outcomes import Block
 from equipoise.studies.run import create_store
+from equipoise.studies.sampling import samples
 from equipoise.studies.store import UNKNOWN, Store, open_store, versions
-from equipoise.studies.study import samples
 from support.studies import LENGTH, MASS, SPEED, Formulas, contents, restore, short_study
 
 STUDY = short_study(250)

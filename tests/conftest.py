@@ -1,0 +1,48 @@
+"""Laws and second routes with one seed on every change, and with more where they are asked for."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from pathlib import Path
+
+import pytest
+
+SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute")}
+NAMED = re.compile(r"(.+):(\d+)")
+"""A random machine by its kind and seed, such as ``slider_crank:3``."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Tell how many of the seeds of each law are tried."""
+    parser.addoption(
+        "--seeds", type=int, default=1, metavar="N", help="seeds of each law that are tried"
+    )
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the further seeds of a law, unless it was asked for by its name."""
+    if any("::" in argument for argument in config.args):
+        return
+    seeds: defaultdict[tuple[str, ...], dict[str, None]] = defaultdict(dict)
+    kept, left = [], []
+    for item in items:
+        place, seed = _seed_of(item)
+        seeds[place].setdefault(seed)
+        few = list(seeds[place]).index(seed) < config.getoption("--seeds")
+        (kept if few or not seed else left).append(item)
+    config.hook.pytest_deselected(items=left)
+    items[:] = kept
+
+
+def _seed_of(item: pytest.Item) -> tuple[tuple[str, ...], str]:
+    """What is tried but for its seed, and the seed; empty for what has none."""
+    params = getattr(item, "callspec", None)
+    place, seed = [item.nodeid.partition("[")[0]], ""
+    if params is None or item.path.parent not in SEEDED:
+        return (*place, item.nodeid), seed
+    for name, value in params.params.items():
+        named = NAMED.fullmatch(value) if isinstance(value, str) else None
+        seed += f" {value}" if name == "seed" else f" {named[2]}" if named else ""
+        place.append("" if name == "seed" else named[1] if named else f"{name} {value!r}")
+    return tuple(place), seed

@@ -1,0 +1,162 @@
+"""One file of a store's designs: Parquet and CSV, a block at a time."""
+
+from __future__ import annotations
+
+import csv
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas
+import pyarrow.parquet
+import pytest
+
+from equipoise.codegen.figures import REASONS
+from equipoise.errors import UsageError
+from equipoise.studies.outcomes import Block
+from equipoise.studies.run import create_store
+from equipoise.studies.sampling import samples
+from equipoise.studies.store import Store
+from equipoise.studies.table_files import export
+from support.studies import LENGTH, MASS, SPEED, Formulas, short_study
+
+STUDY = short_study(250)
+COLUMNS = ["design", LENGTH, MASS, SPEED, "area", "momentum", "energy", "reason"]
+
+
+def store_of(path: Path, chunks: tuple[int, ...] = (0, 1, 2)) -> Store:
+    store = create_store(path, STUDY, 100, "numba")
+    for chunk in chunks:
+        designs = store.designs(chunk)
+        values = samples(STUDY, designs.start, len(designs))
+        store.write(designs, Block(values, Formulas()(values)))
+    return store
+
+
+def check(table: pandas.DataFrame, rows: np.ndarray[Any, Any]) -> None:
+    """To the last bit, the designs whose numbers are `rows`."""
+    values = samples(STUDY, 0, 250)[rows]
+    outcome = Formulas()(values)
+    np.testing.assert_array_equal(table["design"], rows)
+    np.testing.assert_array_equal(table[[LENGTH, MASS, SPEED]], values)
+    np.testing.assert_array_equal(table[["area", "momentum", "energy"]], outcome.figures)
+    assert list(table["reason"]) == [REASONS[k] for k in outcome.reason]
+
+
+def csv_of(path: Path) -> tuple[list[str], pandas.DataFrame]:
+    """Header and rows, each number as Python reads it."""
+    with open(path, newline="") as file:
+        header, *rows = csv.reader(file)
+    table = pandas.DataFrame(rows, columns=COLUMNS)
+    numbers = [[float(text or "nan") for text in row[1:-1]] for row in rows]
+    table[COLUMNS[1:-1]] = np.array(numbers)
+    return header, table.astype({"design": int})
+
+
+def test_parquet_has_every_design_and_the_units(tmp_path: Path) -> None:
+    target = tmp_path / "designs.parquet"
+    assert export(store_of(tmp_path / "s"), target) == 250
+    table = pandas.read_parquet(target)
+    assert list(table) == COLUMNS
+    check(table, np.arange(250))
+    schema = pyarrow.parquet.read_schema(target)
+    assert schema.field(SPEED).metadata == {b"unit": b"rad/s"}
+    assert b"Short formulas" in schema.metadata[b"study"]
+    assert table["energy"].isna().any()  # empty, not a number that is none
+    assert pyarrow.parquet.read_table(target)["energy"].null_count == table["energy"].isna().sum()
+
+
+def test_csv_has_every_design_with_units_in_its_header(tmp_path: Path) -> None:
+    target = tmp_path / "designs.CSV"
+    assert export(store_of(tmp_path / "s"), target) == 250
+    header, table = csv_of(target)
+    units = ["", " [m]", " [kg]", " [rad/s]", "", " [N]", " [J]", ""]
+    assert header == [name + unit for name, unit in zip(COLUMNS, units, strict=True)]
+    check(table, np.arange(250))
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_what_is_not_stored_yet_is_left_out(tmp_path: Path, ending: str) -> None:
+    target = tmp_path / f"designs.{ending}"
+    target.write_text("of before")
+    assert export(store_of(tmp_path / "s", (0, 2)), target) == 150
+    read = pandas.read_csv if ending == "csv" else pandas.read_parquet
+    rows = np.concatenate([np.arange(100), np.arange(200, 250)])
+    np.testing.assert_array_equal(read(target)["design"], rows)
+    assert [path.name for path in sorted(tmp_path.iterdir())] == [target.name, "s"]
+
+
+def test_only_designs_that_keep_every_limit(tmp_path: Path) -> None:
+    outcome = Formulas()(samples(STUDY, 0, 250))
+    rows = np.flatnonzero((outcome.reason == 0) & (outcome.figures[:, 0] >= 0.0045))
+    assert export(store_of(tmp_path / "s"), tmp_path / "d.parquet", kept=True) == len(rows)
+    check(pandas.read_parquet(tmp_path / "d.parquet"), rows)
+
+
+@pytest.mark.parametrize("ending", ["csv", "parquet"])
+def test_many_designs_are_written_a_block_at_a_time(
+    tmp_path: Path, ending: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("equipoise.studies.store.BLOCK", 100)
+    target = tmp_path / f"designs.{ending}"
+    assert export(store_of(tmp_path / "s"), target) == 250
+    if ending == "parquet":
+        assert pyarrow.parquet.ParquetFile(target).num_row_groups == 3
+        check(pandas.read_parquet(target), np.arange(250))
+    else:
+        check(csv_of(target)[1], np.arange(250))
+
+
+def test_names_with_quotes_and_commas_stand_in_the_header(tmp_path: Path) -> None:
+    from equipoise.studies.design_space import Output
+
+    name = 'joint_forces."A, b".rms'
+    study = short_study(5, outputs=(Output(name, dimension="force"),))
+    export(create_store(tmp_path / "s", study, 5, "numba"), tmp_path / "d.csv")
+    assert list(pandas.read_csv(tmp_path / "d.csv"))[4] == f"{name} [N]"
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("designs.xlsx", "give the name of a file that ends in .csv or .parquet"),
+        ("folder.csv", "the file cannot be written .is a directory"),
+        ("nowhere/designs.csv", "the file cannot be written .no such file or directory"),
+    ],
+)
+def test_what_cannot_be_written_is_told_and_leaves_nothing(
+    tmp_path: Path, name: str, told: str
+) -> None:
+    (tmp_path / "folder.csv").mkdir()
+    store = store_of(tmp_path / "s")
+    with pytest.raises(UsageError, match=told):
+        export(store, tmp_path / name)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["folder.csv", "s"]
+
+
+def test_a_disk_that_is_full_leaves_the_file_of_before(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    target = tmp_path / "designs.csv"
+    target.write_text("of before")
+    store = store_of(tmp_path / "s")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1000, before[1]))
+    try:
+        with pytest.raises(UsageError, match=r"the file cannot be written \(.*file too large"):
+            export(store, target)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert target.read_text() == "of before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["designs.csv", "s"]
+
+
+def test_without_pyarrow_the_sentence_tells_how_to_install_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = store_of(tmp_path / "s")
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    told = r'an export needs pyarrow, .* pip install "equipoise\[studies\]"'
+    with pytest.raises(UsageError, match=told):
+        export(store, tmp_path / "d.csv")
+    assert not (tmp_path / "d.csv").exists()
