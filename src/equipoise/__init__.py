@@ -55,8 +55,8 @@ _HOMES = {
     "LoadTable": "mechanism.model",
     "Machine": "mechanism.model",
     "Motion": "mechanism.motion",
-    "Motor": "mechanism.motor",
-    "MotorTable": "mechanism.motor",
+    "Motor": "mechanism.force_elements",
+    "MotorTable": "mechanism.force_elements",
     "Mount": "mechanism.support",
     "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
@@ -81,7 +81,7 @@ _HOMES = {
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
-    "Spring": "mechanism.spring",
+    "Spring": "mechanism.force_elements",
     "SpringChoice": "mechanism.balance",
     "Station": "handheld.model",
     "Store": "studies.store",
@@ -242,6 +242,9 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
+    from equipoise.mechanism.force_elements import Motor as Motor
+    from equipoise.mechanism.force_elements import MotorTable as MotorTable
+    from equipoise.mechanism.force_elements import Spring as Spring
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -270,8 +273,6 @@ if TYPE_CHECKING:
     )
     from equipoise.mechanism.motion import Motion as Motion
     from equipoise.mechanism.motion import move as move
-    from equipoise.mechanism.motor import Motor as Motor
-    from equipoise.mechanism.motor import MotorTable as MotorTable
     from equipoise.mechanism.parameters import (
         BaseParameters as BaseParameters,
     )
@@ -284,7 +285,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parameters import (
         regressor as regressor,
     )
-    from equipoise.mechanism.spring import Spring as Spring
     from equipoise.mechanism.support import Gauge as Gauge
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.effects import SCALARS, VECTORS, Effects
+from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.naming import objective_named
 from equipoise.balancing.problem import Problem
 from equipoise.figures.analysis import Read, last_order, order_panel, rounding, settled
 from equipoise.figures.crank import (
@@ -26,10 +25,11 @@ from equipoise.figures.crank import (
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.quantities import Dimension, in_unit
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.naming import objective_named
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
@@ -216,7 +216,7 @@ def orders(found: Balanced) -> Iterator[Chart]:
         last = max(last_order(one) for one in read.values())
         panels = []
         for name in names:
-            dimension = output_of(drawn[name].output, found.original).quantity
+            dimension = output_of(drawn[name].output, found.original).dimension
             panels.append(order_panel(_named(found, drawn[name]), dimension, read[name], last))
         keyed = tuple((f"bar {when}", say(WHEN[when])) for when in ("before", "after"))
         yield Chart(f"orders{suffix}", found.original.title, what, tuple(panels), keys=keyed)
@@ -236,8 +236,7 @@ def _is_drawn(found: Balanced, objective: Objective) -> bool:
     output = objective.output
     if output in OF_ROWS:
         return found.phasing is not None
-    name = output.removesuffix(".x").removesuffix(".y")
-    return name in (*VECTORS, *SCALARS) or name.startswith(JOINTS)
+    return not output.startswith(GAUGES)
 
 
 def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tuple[Array, Array]:

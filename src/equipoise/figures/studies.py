@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.naming import objective_named
 from equipoise.figures.crank import continued, groups, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, in_unit, typeset
 from equipoise.results.charts import Axis, Bars, Chart, Curve, Line, Mark, Panel, Surface, shown
+from equipoise.results.naming import objective_named
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
