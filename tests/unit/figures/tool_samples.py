@@ -6,7 +6,6 @@ from dataclasses import replace
 from functools import cache
 
 import numpy as np
-from equipoise.schema.tools import load_tool
 
 from equipoise.figures import handheld
 from equipoise.handheld.exposed import expose_tool
@@ -16,6 +15,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
 from equipoise.results.charts import Chart
+from equipoise.schema.models import load_tool
 
 Drawn = dict[str, Chart]
 SPEEDS = np.linspace(105.0, 942.0, 60)
