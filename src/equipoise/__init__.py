@@ -55,8 +55,8 @@ _HOMES = {
     "LoadTable": "mechanism.model",
     "Machine": "mechanism.model",
     "Motion": "mechanism.motion",
-    "Motor": "mechanism.motor",
-    "MotorTable": "mechanism.motor",
+    "Motor": "mechanism.force_elements",
+    "MotorTable": "mechanism.force_elements",
     "Mount": "mechanism.support",
     "Normal": "studies.design_space",
     "Objective": "mechanism.balance",
@@ -75,13 +75,13 @@ _HOMES = {
     "Row": "mechanism.support",
     "Sampling": "studies.design_space",
     "Searched": "studies.search",
-    "Section": "handheld.shaft",
+    "Section": "handheld.section",
     "Segment": "handheld.shaft",
     "Shaft": "handheld.shaft",
     "Slider": "mechanism.model",
     "Soil": "mechanism.field",
     "SoilTable": "mechanism.field",
-    "Spring": "mechanism.spring",
+    "Spring": "mechanism.force_elements",
     "SpringChoice": "mechanism.balance",
     "Station": "handheld.model",
     "Store": "studies.store",
@@ -99,7 +99,7 @@ _HOMES = {
     "ToolSweep": "handheld.sweep",
     "Transient": "vibration.transient",
     "Transmissions": "handheld.transmission",
-    "Tube": "handheld.shaft",
+    "Tube": "handheld.section",
     "Uniform": "studies.design_space",
     "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
@@ -116,7 +116,6 @@ _HOMES = {
     "daily_exposure": "exposure.daily",
     "design_tool": "handheld.design",
     "dumps": "schema.models",
-    "dumps_tool": "schema.tools",
     "examples": "schema.models",
     "export": "studies.table_files",
     "expose_tool": "handheld.exposed",
@@ -132,9 +131,9 @@ _HOMES = {
     "least_moments": "balancing.least_norm",
     "load": "schema.models",
     "load_study": "schema.studies",
-    "load_tool": "schema.tools",
+    "load_tool": "schema.models",
     "loads": "schema.models",
-    "loads_tool": "schema.tools",
+    "loads_tool": "schema.models",
     "machine_of": "schema.study_units",
     "move": "mechanism.motion",
     "open_store": "studies.store",
@@ -147,7 +146,6 @@ _HOMES = {
     "resume": "schema.study_units",
     "run_study": "studies.run",
     "save": "schema.models",
-    "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.record",
@@ -164,7 +162,7 @@ _HOMES = {
     "weigh_orders": "exposure.spectra",
     "weigh_signal": "exposure.spectra",
     "weigh_spectrum": "exposure.spectra",
-    "write_report": "report.writing",
+    "write_report": "present.composition",
 }
 """Public names and where they live; each is imported when it is first used."""
 
@@ -212,10 +210,10 @@ if TYPE_CHECKING:
     from equipoise.handheld.modes import vibrate_tool as vibrate_tool
     from equipoise.handheld.response import ToolResponse as ToolResponse
     from equipoise.handheld.response import respond_tool as respond_tool
-    from equipoise.handheld.shaft import Section as Section
+    from equipoise.handheld.section import Section as Section
+    from equipoise.handheld.section import Tube as Tube
     from equipoise.handheld.shaft import Segment as Segment
     from equipoise.handheld.shaft import Shaft as Shaft
-    from equipoise.handheld.shaft import Tube as Tube
     from equipoise.handheld.studies import vary_tool as vary_tool
     from equipoise.handheld.sweep import ToolSweep as ToolSweep
     from equipoise.handheld.sweep import sweep_tool as sweep_tool
@@ -242,6 +240,9 @@ if TYPE_CHECKING:
     from equipoise.mechanism.field import Planting as Planting
     from equipoise.mechanism.field import Soil as Soil
     from equipoise.mechanism.field import SoilTable as SoilTable
+    from equipoise.mechanism.force_elements import Motor as Motor
+    from equipoise.mechanism.force_elements import MotorTable as MotorTable
+    from equipoise.mechanism.force_elements import Spring as Spring
     from equipoise.mechanism.linkage import Linkage as Linkage
     from equipoise.mechanism.linkage import assemble as assemble
     from equipoise.mechanism.model import (
@@ -270,8 +271,6 @@ if TYPE_CHECKING:
     )
     from equipoise.mechanism.motion import Motion as Motion
     from equipoise.mechanism.motion import move as move
-    from equipoise.mechanism.motor import Motor as Motor
-    from equipoise.mechanism.motor import MotorTable as MotorTable
     from equipoise.mechanism.parameters import (
         BaseParameters as BaseParameters,
     )
@@ -284,7 +283,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.parameters import (
         regressor as regressor,
     )
-    from equipoise.mechanism.spring import Spring as Spring
     from equipoise.mechanism.support import Gauge as Gauge
     from equipoise.mechanism.support import Mount as Mount
     from equipoise.mechanism.support import Row as Row
@@ -294,14 +292,16 @@ if TYPE_CHECKING:
     from equipoise.planting.search import fit_planting as fit_planting
     from equipoise.planting.summary import PlantingFigures as PlantingFigures
     from equipoise.planting.summary import plant as plant
-    from equipoise.report.writing import write_report as write_report
+    from equipoise.present.composition import write_report as write_report
     from equipoise.results.analysis import Analysis as Analysis
     from equipoise.results.analysis import analyze as analyze
     from equipoise.schema.models import dumps as dumps
     from equipoise.schema.models import examples as examples
     from equipoise.schema.models import json_schema as json_schema
     from equipoise.schema.models import load as load
+    from equipoise.schema.models import load_tool as load_tool
     from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import loads_tool as loads_tool
     from equipoise.schema.models import save as save
     from equipoise.schema.records import read_accelerations as read_accelerations
     from equipoise.schema.records import read_record as read_record
@@ -309,10 +309,6 @@ if TYPE_CHECKING:
     from equipoise.schema.study_units import machine_of as machine_of
     from equipoise.schema.study_units import resume as resume
     from equipoise.schema.template import Template as Template
-    from equipoise.schema.tools import dumps_tool as dumps_tool
-    from equipoise.schema.tools import load_tool as load_tool
-    from equipoise.schema.tools import loads_tool as loads_tool
-    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

@@ -26,10 +26,9 @@ from equipoise.cli.progress import counted
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
+    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
 
 app = App(name="balance")
@@ -77,9 +76,9 @@ def balance(
             found = balancing.balance(machine, plan, progress)
 
         def show() -> None:
-            from equipoise.terminal.balance import print_balanced
+            from equipoise.present import show as shown
 
-            print_balanced(found)
+            shown(found)
 
         outputs.write(found.columns)
         outputs.draw(lambda: _drawings(found))
@@ -89,23 +88,23 @@ def balance(
 
 
 def _machine(file: str, speed: float | None) -> Machine:
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     return machine if speed is None else machine.with_drive(speed=speed)
 
 
-def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
-    from equipoise.plotting.balancing import drawings
+def _drawings(found: Balanced | Front) -> Mapping[str, Picture]:
+    from equipoise.figures.pictures import balance_pictures
 
-    return drawings(found)
+    return balance_pictures(found)
 
 
 def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
-    from equipoise.terminal.changes import told
+    from equipoise.balancing.workshop import sentences
 
-    changes = " ".join(f"{line.strip()}." for change in found.changes for line in told(change))
+    changes = " ".join(f"{line}." for change in found.changes for line in sentences(change))
     write_model(found.machine, out, ", balanced", f"Changed by equipoise balance: {changes}")
 
 
@@ -151,9 +150,9 @@ def trade_off(
             found = pareto.trade_off(machine, one, other, plan, points, progress)
 
         def show() -> None:
-            from equipoise.terminal.balance import print_front
+            from equipoise.present import show as shown
 
-            print_front(found)
+            shown(found)
 
         outputs.write(found.columns)
         outputs.give(lambda: _drawings(found), found.to_dict, show)
@@ -179,9 +178,10 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
         told = feasibility(machine)
 
         def show() -> None:
-            from equipoise.terminal.conditions import print_conditions
+            from equipoise.balancing.blocks import conditions_blocks
+            from equipoise.present import show_blocks
 
-            print_conditions(machine, found.values(), told)
+            show_blocks(machine.title, conditions_blocks(*found.values(), verdict=told))
 
         values = {name: one.to_dict() for name, one in found.items()}
         outputs.print(lambda: values | {"verdict": told.to_dict()}, show)
@@ -220,9 +220,9 @@ def sensitivities(
             found = sensitivity.sensitivities(machine, output)
 
     def show() -> None:
-        from equipoise.terminal.conditions import print_sensitivities
+        from equipoise.present import show as shown
 
-        print_sensitivities(found, crank_zero or 0.0)
+        shown(found, zero=crank_zero or 0.0)
 
     outputs.print(found.to_dict, show)
 
@@ -260,9 +260,10 @@ def arrangements(
         check_moving(machine)
 
     def show() -> None:
-        from equipoise.terminal.phases import print_patterns
+        from equipoise.balancing.blocks import pattern_blocks
+        from equipoise.present import show_blocks
 
-        print_patterns(machine, rows, spacing)
+        show_blocks(machine.title, pattern_blocks(machine, rows, spacing))
 
     with naming(file):
         values = {"patterns": [one.to_dict() for one in patterns_for(rows)]}

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
+    from equipoise.figures import Picture
 
 Arm = Annotated[float | None, size("length", "give more than 0")]
 
@@ -76,14 +76,14 @@ def decay(
         found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
 
     def show() -> None:
-        from equipoise.terminal.decay import print_decay
+        from equipoise.present import show_blocks
 
-        print_decay(found, os.path.basename(csv))
+        show_blocks(printable(os.path.basename(csv)), found.blocks())
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import decay as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import decay as pictures
 
-        return pictures.drawings(found, printable(os.path.basename(csv)))
+        return pictures.charts(found, printable(os.path.basename(csv)))
 
     outputs.give(drawings, found.to_dict, show)
 

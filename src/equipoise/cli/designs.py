@@ -24,8 +24,8 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
+    from equipoise.figures import Picture
     from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
@@ -76,18 +76,19 @@ def best(
     model = None if chosen.out is None else machine_of(opened, first)
     title, units = title_of(opened), units_in(opened)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.studies import best_drawings
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures.studies import best_charts
 
-        return best_drawings(found, title, units)
+        return best_charts(found, title, units)
 
     def show() -> None:
-        from equipoise.terminal.best import print_best
+        from equipoise.present import show_blocks
 
-        print_best(found, title, of_stores.outputs_of(opened), units)
+        blocks = found.blocks(outputs=of_stores.outputs_of(opened), units=units)
+        show_blocks(title, blocks)
 
     def columns() -> Columns:
-        from equipoise.terminal.designs import columns_of
+        from equipoise.studies.blocks import columns_of
 
         values = columns_of(found.numbers, found.values, found.outputs, found.figures)
         return _columns(found.designs.tolist(), values, opened.units)
@@ -166,18 +167,18 @@ def search(
         chosen.check(0, len(found.values) - 1)
         own = _own(found.study) if outputs.plot is not None or not outputs.json else None
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting.studies import searched_drawings
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures.studies import searched_charts
 
-            return searched_drawings(found, units, own)
+            return searched_charts(found, units, own)
 
         def show() -> None:
-            from equipoise.terminal.search import print_searched
+            from equipoise.present import show_blocks
 
-            print_searched(found, units, own)
+            show_blocks(found.study.title, found.blocks(units=units, own=own))
 
         def columns() -> Columns:
-            from equipoise.terminal.designs import columns_of
+            from equipoise.studies.blocks import columns_of
 
             study = found.study
             values = columns_of(study.paths, found.values, study.names, found.figures)

@@ -28,11 +28,11 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
+    from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.terminal.units import Units
+    from equipoise.present.cells import Units
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -125,8 +125,8 @@ def tool(
         if part.columns is not None:
             outputs.write(part.columns)
 
-    def drawings() -> Mapping[str, Figure]:
-        drawn: dict[str, Figure] = {}
+    def drawings() -> Mapping[str, Picture]:
+        drawn: dict[str, Picture] = {}
         for part in parts:
             drawn |= part.drawings()
         return drawn
@@ -151,7 +151,7 @@ class Part:
 
     values: Callable[[], Mapping[str, Any]]
     show: Callable[[], None]
-    drawings: Callable[[], Mapping[str, Figure]]
+    drawings: Callable[[], Mapping[str, Picture]]
     columns: Any = None
 
 
@@ -202,18 +202,18 @@ class Asked:
         found = self.modes
 
         def show() -> None:
-            from equipoise.terminal.tool import print_modes
+            from equipoise.present import show_blocks
 
-            print_modes(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
             from equipoise.handheld.studies import determinant_chart
-            from equipoise.plotting import tool as pictures
 
             chart = determinant_chart(self.tool, 1.1 * float(found.planes[0].parameter[-1]))
             return {
-                **pictures.mode_drawings(found),
-                **pictures.determinant_drawings(chart, found),
+                **pictures.mode_charts(found),
+                **pictures.determinant_charts(chart, found),
             }
 
         return Part(found.to_dict, show, drawings)
@@ -231,18 +231,18 @@ class Asked:
         found = sweep_tool(self.tool, self.range, self.places)
 
         def show() -> None:
-            from equipoise.terminal.tool import print_sweep
+            from equipoise.present import show_blocks
 
-            print_sweep(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting import tool as pictures
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
 
-            drawn: dict[str, Figure] = {}
+            drawn: dict[str, Picture] = {}
             if found.transmissions is not None:
-                drawn |= pictures.transmission_drawings(found.transmissions, self.modes)
+                drawn |= pictures.transmission_charts(found.transmissions, self.modes)
             if found.response is not None:
-                drawn |= pictures.response_drawings(found.response)
+                drawn |= pictures.response_charts(found.response)
             return drawn
 
         return Part(found.to_dict, show, drawings, found.columns)
@@ -254,30 +254,31 @@ class Asked:
         found = expose_tool(self.tool, self.range, self.duration)
 
         def show() -> None:
-            from equipoise.terminal.tool_hands import print_tool_exposure
+            from equipoise.present import show_blocks
 
-            print_tool_exposure(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting import tool as pictures
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
 
-            return pictures.exposure_drawings(found)
+            return pictures.exposure_charts(found)
 
         return Part(found.to_dict, show, drawings)
 
 
 def _tool(file: str, units: str) -> tuple[Tool, Units]:
     """The tool of a file, and the units in which its vibration is printed."""
-    from equipoise.schema.tools import load_tool
-    from equipoise.terminal.units import OF_VIBRATION, Units
+    from equipoise.present.units import read_units
+    from equipoise.schema.models import load_tool
 
-    return load_tool(file), Units.read(units, OF_VIBRATION)
+    return load_tool(file), read_units(units)
 
 
 def _print_head(tool: Tool, units: Units) -> None:
-    from equipoise.terminal.tool import print_tool
+    from equipoise.handheld.blocks import summary_blocks
+    from equipoise.present import show_blocks
 
-    print_tool(tool, units)
+    show_blocks(tool.title, summary_blocks(tool), units=units)
 
 
 # -- other questions -------------------------------------------------------------------------------
@@ -333,15 +334,15 @@ def vary(
         found = vary_tool(loaded, station, key, values, number or MODES)
 
     def show() -> None:
-        from equipoise.terminal.tool import print_variation
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_variation(found, shown_in)
+        show_blocks("", found.blocks(), units=shown_in)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import tool as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import handheld as pictures
 
-        return pictures.variation_drawings(found)
+        return pictures.variation_charts(found)
 
     told = {"title": loaded.title, "variation": found.to_dict()}
     outputs.give(drawings, lambda: told, show)
@@ -377,10 +378,11 @@ def sensitivities(
         found = tool_sensitivities(loaded, np.linspace(*asked.ends, BAND))
 
     def show() -> None:
-        from equipoise.terminal.tool_hands import print_sensitivities
+        from equipoise.handheld.blocks import sensitivity_blocks
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_sensitivities(found, loaded, asked.ends, shown_in)
+        show_blocks("", sensitivity_blocks(loaded, found, asked.ends), units=shown_in)
 
     def values() -> Mapping[str, Any]:
         told: dict[str, dict[str, float]] = {}
@@ -420,15 +422,15 @@ def design(
         write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
 
     def show() -> None:
-        from equipoise.terminal.tool_hands import print_design
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_design(found, shown_in)
+        show_blocks("", found.blocks(), units=shown_in)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import tool as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import handheld as pictures
 
-        return pictures.design_drawings(found)
+        return pictures.design_charts(found)
 
     told = {"title": loaded.title, "design": found.to_dict()}
     outputs.give(drawings, lambda: told, show)

@@ -38,7 +38,7 @@ from equipoise.errors import ModelError, UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.report.pictures import Picture
+    from equipoise.present.pictures import Picture
     from equipoise.results.analysis import Analysis
     from equipoise.studies.design_space import Model
 
@@ -93,9 +93,9 @@ def plot(
     speed
         Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
-    from equipoise.plotting.style import render
-    from equipoise.report.findings import ToolFindings, find
-    from equipoise.report.pictures import each
+    from equipoise.figures import render
+    from equipoise.present.findings import ToolFindings, find
+    from equipoise.present.pictures import each
     from equipoise.schema.output import write_all
 
     folder = _default(file, "-pictures") if out is None else out
@@ -167,7 +167,7 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.plotting.landscape import drawings, told
+    from equipoise.figures.studies import landscape_charts, told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
@@ -185,12 +185,12 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    pictures = drawings(found)
+    pictures = landscape_charts(found)
     write_pictures(pictures, folder, format)
     for name in pictures:
         print(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    print(told(found) + "".join(edge))
+    print(told_best(found) + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:
@@ -282,7 +282,7 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.figures.stage import check_seconds, check_width
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.output import write
 
     name = _default(file, ".svg") if out is None else out
@@ -294,7 +294,7 @@ def animate(
     check_belonging("--force", force, speed=speed)
     check_seconds(seconds)
     check_width(width)
-    machine = load(file)
+    machine = load_linkage(file)
     check_result_file("--out", name, sources_of(machine, file))
     if speed is not None:
         machine = machine.with_drive(speed=speed)
@@ -378,12 +378,12 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.report.writing import check, write_document
+    from equipoise.present.composition import check, write_document
     from equipoise.schema.files import printable
 
     check(paths, language)
-    from equipoise.report.build import build
-    from equipoise.report.findings import find
+    from equipoise.present.composition import build
+    from equipoise.present.findings import find
 
     found = find(file, speed=rate)
     with naming(file):
@@ -395,7 +395,7 @@ def report(
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
     """The files that are wanted."""
-    from equipoise.report.writing import kind_of
+    from equipoise.present.composition import kind_of
 
     if out is None:
         out = _default(file, "-report.html")

@@ -22,21 +22,19 @@ from equipoise.cli.progress import counted
 from equipoise.errors import EquipoiseError, UsageError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
-    from equipoise.terminal.units import Units
+    from equipoise.present.cells import Units
     from equipoise.vibration.response import Response
 
 
-def _pictures(kind: str, found: Any) -> Callable[[], Mapping[str, Figure]]:
+def _pictures(found: Any) -> Callable[[], Mapping[str, Picture]]:
     """What draws a result; Matplotlib is imported when the first is drawn, not before."""
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import vibration
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures.pictures import pictures_of
 
-        drawn: Mapping[str, Figure] = getattr(vibration, f"{kind}_drawings")(found)
-        return drawn
+        return pictures_of(found)
 
     return drawings
 
@@ -51,19 +49,19 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
     model
         linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
     """
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.vibration.free import vibrate_freely
 
-    machine = load(file)
+    machine = load_linkage(file)
     with naming(file):
         found = vibrate_freely(machine, model)
 
     def show() -> None:
-        from equipoise.terminal.modes import print_modes
+        from equipoise.present import show as shown
 
-        print_modes(found)
+        shown(found)
 
-    outputs.give(_pictures("mode", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 def _speeds(option: str, text: str) -> list[float]:
@@ -155,22 +153,22 @@ def simulate(
         found = from_rest(machine, duration, speed, drive)
 
     def show() -> None:
-        from equipoise.terminal.transient import print_transient
+        from equipoise.present import show as shown
 
-        print_transient(found, shown_in)
+        shown(found, units=shown_in)
 
     outputs.write(found.columns)
-    outputs.give(_pictures("transient", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
-    from equipoise.schema.models import load
-    from equipoise.terminal.units import OF_VIBRATION, Units
+    from equipoise.present.units import read_units
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     outputs.check(sources_of(machine, file))
-    return machine, Units.read(units, OF_VIBRATION)
+    return machine, read_units(units)
 
 
 def _answer(
@@ -187,12 +185,12 @@ def _answer(
     found = solve(machine, speed, model, drive)
 
     def show() -> None:
-        from equipoise.terminal.vibration import print_response
+        from equipoise.present import show as shown
 
-        print_response(found, {} if drive else _others(machine, found), units)
+        shown(found, units=units, others=None if drive else _others(machine, found))
 
     outputs.write(found.columns)
-    outputs.give(_pictures("response", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 QUICK = 40
@@ -234,9 +232,9 @@ def _sweep(
         found = sweep_speed(machine, *ends, model, drive, speeds or SPEEDS, progress)
 
     def show() -> None:
-        from equipoise.terminal.sweep import print_sweep
+        from equipoise.present import show as shown
 
-        print_sweep(found, units)
+        shown(found, units=units)
 
     outputs.write(found.columns)
-    outputs.give(_pictures("sweep", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)

@@ -10,14 +10,20 @@ from typing import Any
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
-from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
 from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.workshop import sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
-from equipoise.report.changes import told
-from equipoise.report.numbers import number
+from equipoise.quantities import number
+from equipoise.results.naming import (
+    MEASURES,
+    objective_named,
+    output_named,
+    scaled,
+    unit_of_measure,
+)
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.rounding import clean
@@ -149,12 +155,12 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
     return {
         "changes": [
             *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
-            *(line for change in found.changes for line in told(change)),
+            *(line for change in found.changes for line in sentences(change)),
         ],
         "aims": [_aim(found, one, figures) for one in found.plan.objectives],
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "proof": _proof(found, bool(replaced)),
-        "notes": list(found.notes),
+        "notes": list(map(str, found.notes)),
     }
 
 
@@ -192,7 +198,7 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         if output.startswith("gauges"):
             factor, unit = scaled(si_unit(Objective(output), found.original))
         else:
-            factor, unit = scaled(unit_of(output, measure))
+            factor, unit = scaled(unit_of_measure(output, measure))
     return {"label": label, "unit": unit, "before": factor * before, "after": factor * after}
 
 
@@ -200,7 +206,7 @@ def _proof(found: Balanced, replaced: bool) -> str:
     if found.gap is None:
         return f"Found among {found.method}; that nothing better exists is not proved of phases."
     gap = max(found.gap, EXACT)
-    proved = f"proved {found.scope}".strip()
+    proved = f"proved {' and '.join(map(str, found.scope))}".strip()
     of = "without the counterweights that were taken off" if replaced else "before"
     return (
         f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "

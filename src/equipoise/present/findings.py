@@ -1,0 +1,269 @@
+"""Everything that can be told of a file, each part computed when it is first asked for."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from equipoise.errors import EquipoiseError, UsageError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from equipoise.balancing.balanced import Balanced
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.handheld.transmission import Transmissions
+    from equipoise.mechanism.balance import Balance
+    from equipoise.mechanism.model import Machine
+    from equipoise.planting.summary import PlantingFigures
+    from equipoise.results.analysis import Analysis
+    from equipoise.vibration.free import FreeVibration
+    from equipoise.vibration.response import Response
+    from equipoise.vibration.sweep import Sweep
+
+Value = TypeVar("Value")
+
+NOTHING = 0.01
+"""Share of what is made small below which making it smaller does not help."""
+
+ANGLES = 720
+"""Crank angles in a turn."""
+AROUND = (0.2, 2.0)
+"""Ends of the range of speeds, over the machine's own."""
+SPEEDS = 60
+"""Speeds in the range, besides those about resonances."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Found:
+    """Parts that cannot be computed are None, and `failed` keeps why."""
+
+    failed: dict[str, str] = field(default_factory=dict, init=False, repr=False)
+
+    def _tried(self, part: str, compute: Callable[[], Value]) -> Value | None:
+        try:
+            return compute()
+        except EquipoiseError as error:
+            self.failed[part] = str(error)
+            return None
+
+
+@dataclass(frozen=True, eq=False)
+class Findings(_Found):
+    """What can be told of a linkage.
+
+    machine : at the speed that is asked for.
+    text : of its file.  file : its name.
+    angles : crank angles in a turn.
+    """
+
+    machine: Machine
+    text: str
+    file: str
+    angles: int = ANGLES
+
+    @cached_property
+    def analysis(self) -> Analysis:
+        """Motion and forces; errors as `equipoise.analyze`."""
+        from equipoise.results.analysis import analyze
+
+        return analyze(self.machine, self.angles)
+
+    @cached_property
+    def planting(self) -> PlantingFigures | None:
+        """Path of the finger over ground; None where nothing is planted."""
+        if self.machine.planting is None:
+            return None
+        from equipoise.planting.summary import plant
+
+        return self._tried("planting", lambda: plant(self.machine))
+
+    @cached_property
+    def response(self) -> Response | None:
+        """Vibration at the speed of the machine; None where it has no support."""
+        if self.machine.support is None:
+            return None
+        from equipoise.vibration.forced import respond
+
+        return self._tried("vibration", lambda: respond(self.machine))
+
+    @cached_property
+    def sweep(self) -> Sweep | None:
+        """Vibration over speeds around that of the machine."""
+        if self.response is None:
+            return None
+        from equipoise.vibration.sweep import sweep_speed
+
+        slow, fast = (share * self.response.speed for share in AROUND)
+        return self._tried(
+            "vibration over speed",
+            lambda: sweep_speed(self.machine, slow, fast, speeds=SPEEDS),
+        )
+
+    @cached_property
+    def modes(self) -> FreeVibration | None:
+        """Free vibration on the support."""
+        if self.machine.support is None:
+            return None
+        from equipoise.vibration.free import vibrate_freely
+
+        return self._tried("natural frequencies", lambda: vibrate_freely(self.machine))
+
+    @cached_property
+    def plan(self) -> Balance | None:
+        """What is balanced: the machine's own plan, or the usual one."""
+        from equipoise.balancing.optimisation import default_plan
+
+        return self._tried("balance", lambda: default_plan(self.machine))
+
+    @cached_property
+    def balanced(self) -> Balanced | None:
+        """The machine with that plan carried out."""
+        plan = self.plan
+        if plan is None:
+            return None
+        from equipoise.balancing.optimisation import balance
+
+        return self._tried("balance", lambda: balance(self.machine, plan))
+
+    @property
+    def own_plan(self) -> bool:
+        """Whether the file itself says what to balance."""
+        return self.plan is not None and self.plan is self.machine.balance
+
+    @property
+    def helped(self) -> bool:
+        """Whether balancing brings anything that is worth a change."""
+        balanced = self.balanced
+        if balanced is None:
+            return False
+        pairs = balanced.objectives.values()
+        moved = (abs(after - before) > NOTHING * before for before, after in pairs)
+        return bool(balanced.plan.limits) or any(moved)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence on each part that could not be computed, and why; computes all of them."""
+        for _ in (self.planting, self.sweep, self.modes, self.balanced):
+            pass
+        return _sentences(self.failed)
+
+
+@dataclass(frozen=True, eq=False)
+class ToolFindings(_Found):
+    """What can be told of a hand-held tool.
+
+    tool : working at the speed that is asked for.
+    text : of its file.  file : its name.
+    """
+
+    tool: Tool
+    text: str
+    file: str
+
+    @cached_property
+    def modes(self) -> ToolModes | None:
+        """Free vibration."""
+        from equipoise.handheld.modes import vibrate_tool
+        from equipoise.handheld.sweep import MODES
+
+        return self._tried("natural frequencies", lambda: vibrate_tool(self.tool, MODES))
+
+    @cached_property
+    def speeds(self) -> np.ndarray[Any, Any] | None:
+        """Speeds of the engine, rad/s, closer about resonances; None where the tool tells none."""
+        from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
+
+        ends = default_speeds(self.tool)
+        if ends is None:
+            return None
+        return self._tried("speeds", lambda: speeds_between(self.tool, *ends, SPEEDS))
+
+    @cached_property
+    def sweep(self) -> ToolSweep | None:
+        """The tool over these speeds."""
+        speeds = self.speeds
+        if speeds is None or not self.tool.stations:
+            return None
+        from equipoise.handheld.sweep import sweep_tool
+
+        return self._tried("vibration over speed", lambda: sweep_tool(self.tool, speeds))
+
+    @property
+    def transmission(self) -> Transmissions | None:
+        """Of a unit force to what holds the tool."""
+        return None if self.sweep is None else self.sweep.transmissions
+
+    @cached_property
+    def exposure(self) -> ToolExposure | None:
+        """What the hands get; None where nothing shakes the tool or no hand holds it."""
+        speeds = self.speeds
+        if speeds is None or not self.tool.excitations or not self.tool.grips:
+            return None
+        from equipoise.handheld.exposed import expose_tool
+
+        return self._tried("exposure", lambda: expose_tool(self.tool, speeds))
+
+    @cached_property
+    def design(self) -> ToolDesign | None:
+        """What to change, where the file asks for it."""
+        if self.tool.design is None:
+            return None
+        from equipoise.handheld.design import design_tool
+
+        return self._tried("design", lambda: design_tool(self.tool))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence on each part that could not be computed, and why; computes all of them."""
+        for _ in (self.modes, self.sweep, self.exposure, self.design):
+            pass
+        return _sentences(self.failed)
+
+
+def find(
+    path_or_name: str | os.PathLike[str], *, angles: int = ANGLES, speed: float | None = None
+) -> Findings | ToolFindings:
+    """Everything that can be told of a model file, or of a bundled example by its name.
+
+    angles : crank angles in a turn.
+    speed : of the crank, or of the tool's engine, rad/s; the file's where not given.
+
+    Raises
+    ------
+    ModelError : the file is wrong, or a study.
+    UsageError : the tool has no speed that could be another.
+    """
+    from equipoise.schema.models import loads_linkage, loads_tool
+    from equipoise.schema.opening import kind_of_text, opened
+
+    file = opened(path_or_name)
+    name = os.path.basename(os.fspath(path_or_name))
+    if kind_of_text(file.text) == "tool":
+        tool = loads_tool(file.text, file.source, file.folder)
+        return ToolFindings(_at_speed(tool, speed), file.text, name)
+    machine = loads_linkage(file.text, file.source, file.folder)
+    if speed is not None:
+        machine = machine.with_drive(speed=speed)
+    return Findings(machine, file.text, name, angles)
+
+
+def _at_speed(tool: Tool, speed: float | None) -> Tool:
+    if speed is None:
+        return tool
+    if tool.operation is None:
+        raise UsageError("the tool tells no speed of its engine; add the table [operation]")
+    if not speed > 0:
+        raise UsageError(f"got {speed:g} rad/s for the speed of the engine; give more than 0")
+    return replace(tool, operation=replace(tool.operation, speed=speed))
+
+
+def _sentences(failed: dict[str, str]) -> tuple[str, ...]:
+    return tuple(f"{part}: {why}" for part, why in failed.items())
