@@ -86,7 +86,7 @@ def test_values_need_no_numpy(name: str) -> None:
 
 def test_mechanics_need_only_numpy() -> None:
     code = (
-        "import sys, equipoise as eq; eq.analyze; eq.base_parameters; eq.four_bar; "
+        "import sys, equipoise as eq; eq.analyze; eq.mechanism.base_parameters; eq.mechanism.four_bar; "
         f"print(*(m for m in {HEAVY} if m in sys.modules))"
     )
     assert run(code) == "numpy"

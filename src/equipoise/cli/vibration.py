@@ -52,11 +52,11 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
         linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
     """
     from equipoise.schema.models import load
-    from equipoise.vibration.free import vibrate_freely
+    from equipoise.vibration import free
 
     machine = load(file)
     with naming(file):
-        found = vibrate_freely(machine, model)
+        found = free.modes(machine, model)
 
     def show() -> None:
         from equipoise.terminal.modes import print_modes
@@ -148,11 +148,11 @@ def simulate(
     drive
         Let the speed follow from the motor in [drive.motor].
     """
-    from equipoise.vibration.transient import from_rest
+    from equipoise.vibration import transient
 
     machine, shown_in = _machine(file, units, outputs)
     with naming(file):
-        found = from_rest(machine, duration, speed, drive)
+        found = transient.simulate(machine, duration, speed, drive)
 
     def show() -> None:
         from equipoise.terminal.transient import print_transient

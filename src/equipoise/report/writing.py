@@ -23,7 +23,7 @@ def kind_of(out: str | os.PathLike[str]) -> str:
     return KINDS[end.lower()]
 
 
-def write_report(
+def report(
     path_or_name: str | os.PathLike[str],
     *outs: str | os.PathLike[str],
     language: str = "en",

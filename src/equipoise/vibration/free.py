@@ -159,7 +159,7 @@ class FreeVibration(Result):
         }
 
 
-def vibrate_freely(machine: Machine, model: str | None = None) -> FreeVibration:
+def modes(machine: Machine, model: str | None = None) -> FreeVibration:
     """Natural frequencies, damping and shapes of a machine on its support.
 
     Parameters

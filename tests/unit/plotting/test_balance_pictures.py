@@ -194,7 +194,7 @@ def test_bars_are_the_orders() -> None:
     told = columns(found("sector"))
     axes = pictures("sector")["orders"].axes[0]
     for side, when in enumerate(("before", "after")):
-        amplitudes = np.abs(eq.harmonics(told[f"shaking_force.y.{when}"]))
+        amplitudes = np.abs(eq.signals.harmonics(told[f"shaking_force.y.{when}"]))
         heights = bars(axes, side)
         assert list(heights) == list(range(len(heights))) and len(heights) > 4
         for order, height in heights.items():
@@ -220,7 +220,7 @@ def test_orders_of_vectors_and_joints_and_of_some_orders() -> None:
     result = found("one of each")
     force, joint, moment = pictures("one of each")["orders"].axes
     told = columns(result)
-    parts = [np.abs(eq.harmonics(told[f"shaking_force.{axis}.before"])) for axis in "xy"]
+    parts = [np.abs(eq.signals.harmonics(told[f"shaking_force.{axis}.before"])) for axis in "xy"]
     assert bars(force, 0)[1.0] == pytest.approx(np.hypot(*(part[1] for part in parts)), rel=1e-9)
     at_b = eq.forces(eq.move(result.original, 720)).joints["B"]
     mean = np.hypot(np.mean(at_b.x), np.mean(at_b.y))
@@ -236,7 +236,7 @@ def test_half_orders_only_where_there_are_some() -> None:
     axes = pictures("long cycle")["orders"].axes[0]
     halves = [order for order in bars(axes, 1) if order % 1]
     told = columns(found("long cycle"))
-    parts = [np.abs(eq.harmonics(told[f"shaking_force.{a}.after"])) for a in "xy"]
+    parts = [np.abs(eq.signals.harmonics(told[f"shaking_force.{a}.after"])) for a in "xy"]
     amplitudes = np.hypot(*parts)
     assert np.max(amplitudes[1::2]) > 0.1 and halves
     assert bars(axes, 1)[1.5] == pytest.approx(amplitudes[3], rel=1e-6)
@@ -259,7 +259,7 @@ def test_gauges_have_no_bars() -> None:
 
 def test_many_objectives_go_on_in_further_pictures() -> None:
     result = found("sector")
-    many = tuple(eq.Objective("shaking_force.y", "rms", (k,)) for k in range(1, 7))
+    many = tuple(eq.balancing.Objective("shaking_force.y", "rms", (k,)) for k in range(1, 7))
     drawn = drawings(replace(result, plan=replace(result.plan, objectives=many)))
     assert [len(drawn[name].axes) for name in ("orders", "orders-2")] == [4, 2]
     assert "5 to 6 of 6" in words(drawn["orders-2"])

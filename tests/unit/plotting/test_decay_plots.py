@@ -16,10 +16,10 @@ from unit.plotting.samples import words
 TIME = np.linspace(0.0, 4.0, 2000)
 
 
-def decay(kind: str = "length", **more: float) -> eq.Decay:
+def decay(kind: str = "length", **more: float) -> eq.measured.Decay:
     values = {"damping_ratio": 0.02, "coulomb": 0.001, "start": 0.04, "noise": 2e-4, **more}
-    record = eq.simulate_decay(TIME, natural_frequency=12.4, kind=kind, **values)
-    return eq.identify_decay(record)
+    record = eq.measured.simulate_decay(TIME, natural_frequency=12.4, kind=kind, **values)
+    return eq.measured.identify_decay(record)
 
 
 def lines(figure: Figure) -> dict[str, np.ndarray]:

@@ -25,8 +25,8 @@ def smooth() -> Landscape:
         "links.coupler.center_of_mass.x": np.linspace(-0.06, 0.06, 31),
         "links.coupler.center_of_mass.y": np.linspace(-0.04, 0.08, 31),
     }
-    force = eq.Objective("shaking_force.y", "ripple")
-    return eq.landscape(eq.Template.load("yamashita-2"), over, force)
+    force = eq.balancing.Objective("shaking_force.y", "ripple")
+    return eq.studies.landscape(eq.schema.Template.load("yamashita-2"), over, force)
 
 
 @cache
@@ -36,8 +36,8 @@ def broken() -> Landscape:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 9),
         "counterweights.crank.radius": np.linspace(0.0, 0.05, 9),
     }
-    force, given = eq.Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
-    return eq.landscape(eq.Template.load("yamashita-1"), over, force, given)
+    force, given = eq.balancing.Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
+    return eq.studies.landscape(eq.schema.Template.load("yamashita-1"), over, force, given)
 
 
 def drawn(found: Landscape) -> Figure:
@@ -100,6 +100,6 @@ def test_texts_keep_apart_and_bytes_the_same(found: object) -> None:
 def test_an_objective_that_is_the_same_everywhere_is_drawn_without_lines() -> None:
     """No shaking force depends on an inertia."""
     over = {"links.rocker.inertia": [1e-4, 2e-4], "links.coupler.inertia": [1e-4, 2e-4]}
-    force = eq.Objective("shaking_force")
-    found = eq.landscape(eq.Template.load("yamashita-1"), over, force)
+    force = eq.balancing.Objective("shaking_force")
+    found = eq.studies.landscape(eq.schema.Template.load("yamashita-1"), over, force)
     assert render(drawn(found), "svg")

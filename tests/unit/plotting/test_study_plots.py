@@ -24,8 +24,8 @@ pytest.importorskip("pymoo")
 
 @cache
 def tolerances() -> Tolerances:
-    study = eq.load_study("study-of-tolerances")
-    return eq.tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
+    study = eq.schema.load_study("study-of-tolerances")
+    return eq.studies.tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
 
 
 @cache
@@ -35,8 +35,8 @@ def of_tolerances() -> dict[str, Figure]:
 
 @cache
 def searched() -> Searched:
-    study = replace(eq.load_study("study-of-balance"), angles=90)
-    return eq.search_designs(study, population=12, generations=3)
+    study = replace(eq.schema.load_study("study-of-balance"), angles=90)
+    return eq.studies.search_designs(study, population=12, generations=3)
 
 
 OWN = (np.array([0.199, 0.012, 0.0, 0.0715, 0.08]), np.array([8.7, 12.2, 0.21]))

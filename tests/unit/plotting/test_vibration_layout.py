@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 import matplotlib
 import pytest
 
+import equipoise as eq
 from equipoise.plotting.style import Kind, render
 from equipoise.plotting.vibration import (
     mode_drawings,
@@ -20,9 +21,9 @@ from equipoise.plotting.vibration import (
 )
 from equipoise.plotting.vibration.panels import Unit
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import vibrate_freely
+
 from equipoise.vibration.sweep import sweep_speed
-from equipoise.vibration.transient import from_rest
+
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     KINDS,
@@ -76,8 +77,8 @@ def drawn_again() -> Drawn:
     swept = sweep_speed(machine, 3, 60, speeds=9)
     drawn = response_drawings(respond(machine))
     drawn |= {f"sweep {name}": figure for name, figure in sweep_drawings(swept).items()}
-    drawn |= mode_drawings(vibrate_freely(machine))
-    drawn |= transient_drawings(from_rest(machine, 0.4, samples=50))
+    drawn |= mode_drawings(eq.modes(machine))
+    drawn |= transient_drawings(eq.simulate(machine, 0.4, samples=50))
     return drawn
 
 
@@ -107,7 +108,7 @@ def test_the_users_settings_do_not_matter() -> None:
     figure = pictures("plane")["mode-1"]
     file = render(figure, "svg")
     with matplotlib.rc_context({"font.size": 30, "axes.grid": False, "lines.linewidth": 9}):
-        assert render(mode_drawings(vibrate_freely(plane()))["mode-1"], "svg") == file
+        assert render(mode_drawings(eq.modes(plane()))["mode-1"], "svg") == file
 
 
 def test_units_fit_the_values() -> None:

@@ -14,9 +14,9 @@ from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
 from equipoise.scene import Scene
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import vibrate_freely
+
 from equipoise.vibration.modes import Mode
-from equipoise.vibration.transient import from_rest
+
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     RPM,
@@ -96,7 +96,7 @@ def test_a_gauge_that_stands_still() -> None:
 
 def test_mounts_and_what_they_carry_at_rest() -> None:
     response = respond(plane())
-    preloads = vibrate_freely(plane()).preloads
+    preloads = eq.modes(plane()).preloads
     panels = pictures("plane")["mounts"].axes
     for axes, (name, mount) in zip(panels, response.mounts.items(), strict=True):
         assert axes.get_title(loc="left") == name and axes.get_ylabel() == "force, N"
@@ -144,12 +144,12 @@ def test_drive_torque_and_crank_speed() -> None:
 def test_a_drive_on_solid_ground() -> None:
     machine = replace(eq.load("walking-transplanter"), support=None)
     assert list(response_drawings(respond(machine, drive=True))) == ["drive"]
-    assert list(transient_drawings(from_rest(machine, 0.3, drive=True, samples=40))) == ["speed"]
+    assert list(transient_drawings(eq.simulate(machine, 0.3, drive=True, samples=40))) == ["speed"]
 
 
 def test_from_rest_against_time() -> None:
     machine = eq.load("walking-transplanter")
-    transient = from_rest(machine, 0.5, drive=True, samples=300)
+    transient = eq.simulate(machine, 0.5, drive=True, samples=300)
     drawn = pictures("walking-transplanter")
     for axes, (name, read) in zip(drawn["rest gauges"].axes, transient.gauges.items(), strict=True):
         x, y = line_of(axes)
@@ -163,18 +163,18 @@ def test_from_rest_against_time() -> None:
 
 
 def test_modes_are_told() -> None:
-    mode = vibrate_freely(rig()).modes[0]
+    mode = eq.modes(rig()).modes[0]
     shown = words(pictures("rig")["mode-1"])
     assert f"{mode.cycles_per_second:.4g} Hz, {mode.natural_frequency:.4g} rad/s" in shown
     assert f"damping ratio {mode.damping_ratio:.4g}" in shown and "pitch 1 rad" in shown
-    kinds = [told(mode) for mode in vibrate_freely(falling()).modes]
+    kinds = [told(mode) for mode in eq.modes(falling()).modes]
     assert kinds[0] == "free, without a spring"
     assert "falls over" in kinds[2] and "overdamped" in kinds[3]
     assert told(Mode(complex(1e-15, 20.0), np.array([1 + 0j]))).endswith("damping ratio 0")
 
 
 def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
-    free = vibrate_freely(rig())
+    free = eq.modes(rig())
     shape = Shape(free, free.modes[0])
     pivot = np.array([[-1.34, 0.0, 0.0]])
     np.testing.assert_array_equal(shape.displaced(pivot, 1), pivot)
@@ -188,7 +188,7 @@ def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
 
 
 def test_gauges_swing_as_the_shape_says() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     for number, mode in enumerate(free.modes):
         shape = Shape(free, mode)
         scale = abs(shape.motion[1] / mode.shape[0])
@@ -218,7 +218,7 @@ def test_three_views_to_one_scale() -> None:
 
 
 def test_what_lies_to_the_right_is_below_from_above() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     shape = Shape(free, free.modes[0])
     rest = shape.outline("top")
     assert np.min(rest.imag) < -300 < 300 < np.max(rest.imag)
@@ -228,14 +228,14 @@ def test_what_lies_to_the_right_is_below_from_above() -> None:
 
 def test_each_of_six_ways() -> None:
     freedoms = ("surge", "heave", "sway", "roll", "yaw", "pitch")
-    free = vibrate_freely(eq.load("riding-transplanter"))
+    free = eq.modes(eq.load("riding-transplanter"))
     assert free.coordinates == freedoms and len(mode_drawings(free)) == 6
 
 
 def test_without_gauges_the_coordinates_are_read() -> None:
     drawn = response_drawings(respond(linkage_on_springs()))
     assert list(drawn)[:3] == ["gauge-surge", "gauge-heave", "gauge-pitch"]
-    transient = from_rest(linkage_on_springs(), 0.2, samples=30)
+    transient = eq.simulate(linkage_on_springs(), 0.2, samples=30)
     panels = transient_drawings(transient)["gauges"].axes
     assert [axes.get_ylabel().split(",")[0] for axes in panels] == ["moved", "moved", "turned"]
 
@@ -247,5 +247,5 @@ def linkage_on_springs() -> eq.Machine:
 def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
     machine = eq.load("exudyn-slider-crank")
     low, high = Scene.of(eq.move(machine, 72)).box
-    axes = mode_drawings(vibrate_freely(machine))["mode-1"].axes[0]
+    axes = mode_drawings(eq.modes(machine))["mode-1"].axes[0]
     assert 0.1 < np.ptp(axes.get_xlim()) / 1e3 / abs(high - low) < 1

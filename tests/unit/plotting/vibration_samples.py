@@ -19,9 +19,9 @@ from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.plotting import vibration
 from equipoise.plotting.style import render, styled
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import vibrate_freely
+
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from equipoise.vibration.transient import from_rest
+
 
 RPM = 30 / pi
 G = 9.80665
@@ -160,10 +160,10 @@ def pictures(kind: str) -> Drawn:
         drawn |= named("sweep", vibration.sweep_drawings(sweep))
         if kind == "rig":
             drawn |= named("lost", vibration.sweep_drawings(dashed_and_lost(sweep)))
-    drawn |= vibration.mode_drawings(vibrate_freely(machine))
+    drawn |= vibration.mode_drawings(eq.modes(machine))
     if support.planar and kind in {"plane", "crowded", "walking-transplanter"}:
         driven = machine.drive.motor is not None
-        transient = from_rest(machine, 0.5, drive=driven, samples=300)
+        transient = eq.simulate(machine, 0.5, drive=driven, samples=300)
         drawn |= named("rest", vibration.transient_drawings(transient))
         if kind != "crowded":
             exact = respond(machine, model="exact", drive=driven)
@@ -192,7 +192,7 @@ KINDS = (*MACHINES, "riding-transplanter", "walking-transplanter")
 def hashed() -> str:
     """Of some pictures as files."""
     machine = space(("heave", "roll"))
-    drawn = vibration.mode_drawings(vibrate_freely(machine))
+    drawn = vibration.mode_drawings(eq.modes(machine))
     drawn |= vibration.sweep_drawings(sweep_speed(machine, 5, 30, speeds=5))
     files = [render(figure, "svg") for figure in drawn.values()]
     return sha256(b"".join(files)).hexdigest()

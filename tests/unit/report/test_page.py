@@ -16,7 +16,7 @@ from equipoise.report.findings import ToolFindings, find
 from equipoise.report.page import page
 from equipoise.report.pdf import pdf
 from equipoise.report.pictures import pictures
-from equipoise.report.writing import write_report
+
 
 
 class Page(HTMLParser):
@@ -119,17 +119,17 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
 
     monkeypatch.setattr(pdf_module, "_fonts", Latin)
     with pytest.raises(UsageError, match="no font with 한국어 letters, so that a PDF would"):
-        write_report("scotch-yoke", tmp_path / "report.pdf", language="ko")
+        eq.report("scotch-yoke", tmp_path / "report.pdf", language="ko")
     monkeypatch.undo()
     pdf_module._fonts.cache_clear()
     monkeypatch.setitem(sys.modules, "typst", None)
     with pytest.raises(EquipoiseError, match=r'pip install "equipoise\[report\]"'):
-        write_report("scotch-yoke", tmp_path / "report.pdf")
+        eq.report("scotch-yoke", tmp_path / "report.pdf")
     assert not list(tmp_path.iterdir())
 
 
 def test_other_names_and_languages_are_refused(tmp_path):
     with pytest.raises(UsageError, match=r"ends in \.html or \.pdf"):
-        write_report("scotch-yoke", tmp_path / "report.docx")
+        eq.report("scotch-yoke", tmp_path / "report.docx")
     with pytest.raises(UsageError, match="give one of en, ja, ko"):
-        write_report("scotch-yoke", tmp_path / "report.html", language="fr")
+        eq.report("scotch-yoke", tmp_path / "report.html", language="fr")
