@@ -31,8 +31,12 @@ def thirty() -> eq.balancing.Balance:
     """A plan of 30 numbers: a weight of any spread and a ring on each of five links."""
     places = [(link, next(iter(body.points))) for link, body in SIX_BAR.links.items()]
     spread = eq.balancing.Weight("any", radius=0.05, at_most=1.0)
-    ring = eq.balancing.Weight("ring", radius=0.05, inner_radius=0.02, thickness=0.01, density=7850.0)
-    masses = [eq.balancing.AddedMass(*place, weight) for place in places for weight in (spread, ring)]
+    ring = eq.balancing.Weight(
+        "ring", radius=0.05, inner_radius=0.02, thickness=0.01, density=7850.0
+    )
+    masses = [
+        eq.balancing.AddedMass(*place, weight) for place in places for weight in (spread, ring)
+    ]
     joint = eq.balancing.Objective("joints.B", "peak")
     return eq.balancing.Balance(
         masses=tuple(masses),

@@ -33,7 +33,9 @@ TOLERANCE = 1e-11
 every_subject = pytest.mark.parametrize("name", names())
 
 
-def scaled(found: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False) -> Any:
+def scaled(
+    found: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False
+) -> Any:
     """Outputs as another description must give them."""
     for name, value in outputs(found):
         if np.iscomplexobj(value):

@@ -18,7 +18,6 @@ from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import MODELS, Model, Response
-
 from laws.transforms import mirrored_in_x, shifted
 from support.machines import make
 from unit.vibration.build import STIFFNESS, Array, cart, close, rig, springs

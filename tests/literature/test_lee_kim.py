@@ -175,7 +175,9 @@ class Turning:
     a: Array
 
 
-def turnings(motion: eq.mechanism.Motion, name: str, phi: float) -> tuple[Turning, Turning, Turning]:
+def turnings(
+    motion: eq.mechanism.Motion, name: str, phi: float
+) -> tuple[Turning, Turning, Turning]:
     """Angles by the triangle formulas (1) to (7), then (9) to (12).
 
     delta in (3) is the triangle's angle at O4, beta the angle of the line from A to O4 below X.
@@ -242,7 +244,9 @@ class Nine:
     f14: Array
 
 
-def nine_equations(motion: eq.mechanism.Motion, name: str, phi: float, load_torque: Any = 0.0) -> Nine:
+def nine_equations(
+    motion: eq.mechanism.Motion, name: str, phi: float, load_torque: Any = 0.0
+) -> Nine:
     """The 9 by 9 system of Table 1: unknowns F12, T_s, F32, F43, F14, by components."""
     r1, *bodies = TABLE_2[name]
     moving = turnings(motion, name, phi)

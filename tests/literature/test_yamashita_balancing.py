@@ -145,7 +145,9 @@ def test_pure_sine_of_type_2(
     assert np.hypot(*(center - printed)) < grid
     machine = centered(TYPE_2.machine, link, complex(*center))
     forces = eq.analyze(machine).forces
-    sizes = np.abs(eq.signals.harmonics(-forces.shaking_force.y / (sum(TYPE_2.masses) / 1e3), 20)) * 1e3
+    sizes = (
+        np.abs(eq.signals.harmonics(-forces.shaking_force.y / (sum(TYPE_2.masses) / 1e3), 20)) * 1e3
+    )
     assert sizes[1] == pytest.approx(amplitude, abs=0.5)
     assert np.max(sizes[2:]) < 1e-9
     assert np.max(np.abs(conditions(machine, "sine").residuals)) < 1e-15

@@ -248,7 +248,9 @@ def with_shaft(machine: Machine, geared: eq.balancing.GearedWeight, ratio: float
     )
 
 
-def axis_of(machine: Machine, geared: eq.balancing.GearedWeight, ratio: float) -> tuple[float, float]:
+def axis_of(
+    machine: Machine, geared: eq.balancing.GearedWeight, ratio: float
+) -> tuple[float, float]:
     """Return where a shaft lies whose gear meshes with one of the driver's pitch radius."""
     pin = next(at for p, at in machine.frame.items() if p in machine.links[geared.driver].points)
     assert geared.pitch_radius is not None

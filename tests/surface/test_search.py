@@ -45,7 +45,9 @@ def test_json_is_what_python_has() -> None:
     result = equipoise("search", study, *QUICK, "--seed", "5", "--json")
     assert result.out.count("\n") == 1
     found = json.loads(succeeded(result))
-    own = eq.studies.search_designs(eq.schema.load_study(study), population=12, generations=8, seed=5)
+    own = eq.studies.search_designs(
+        eq.schema.load_study(study), population=12, generations=8, seed=5
+    )
     expected = own.to_dict()
     assert found == expected
     line = result.err.splitlines()[-1]

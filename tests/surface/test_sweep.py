@@ -376,7 +376,9 @@ def test_a_tool() -> None:
     shown = succeeded(result)
     assert re.search(r"natural", shown)
     succeeded(equipoise("best", "tool.zarr", "--out", "saw.toml"))
-    assert eq.schema.load_tool("saw.toml").title.startswith("Brush cutter of Nagamine and Irie, design ")
+    assert eq.schema.load_tool("saw.toml").title.startswith(
+        "Brush cutter of Nagamine and Irie, design "
+    )
 
 
 def test_a_store_whose_study_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,12 +1,27 @@
-"""What a plan of balancing is made of: parts of a machine, whose file holds it."""
+"""What a plan of balancing is made of: parts of a machine, as its file holds them."""
 
-from equipoise.mechanism.balance import AddedMass as AddedMass
-from equipoise.mechanism.balance import Balance as Balance
-from equipoise.mechanism.balance import BalanceShafts as BalanceShafts
-from equipoise.mechanism.balance import CenterMove as CenterMove
-from equipoise.mechanism.balance import GearedWeight as GearedWeight
-from equipoise.mechanism.balance import Limit as Limit
-from equipoise.mechanism.balance import Objective as Objective
-from equipoise.mechanism.balance import Phases as Phases
-from equipoise.mechanism.balance import SpringChoice as SpringChoice
-from equipoise.mechanism.balance import Weight as Weight
+from equipoise.mechanism.balance import (
+    AddedMass,
+    Balance,
+    BalanceShafts,
+    CenterMove,
+    GearedWeight,
+    Limit,
+    Objective,
+    Phases,
+    SpringChoice,
+    Weight,
+)
+
+__all__ = [
+    "AddedMass",
+    "Balance",
+    "BalanceShafts",
+    "CenterMove",
+    "GearedWeight",
+    "Limit",
+    "Objective",
+    "Phases",
+    "SpringChoice",
+    "Weight",
+]

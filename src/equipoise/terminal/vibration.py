@@ -14,7 +14,7 @@ from equipoise.vibration.response import EQUATIONS
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.vibration.modes import Mode
+    from equipoise.vibration.mode_shapes import Mode
     from equipoise.vibration.response import GaugeSignals, Response
 
 NOTHING = 1e-12

@@ -17,7 +17,7 @@ from equipoise.results.result import Result
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 from equipoise.vibration.response import Values, mode_values
 
 Array = np.ndarray[Any, Any]

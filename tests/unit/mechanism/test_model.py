@@ -256,10 +256,11 @@ def test_sides_are_words() -> None:
 
 def test_positions_are_of_points_and_links() -> None:
     words = "no point is called 'X'"
+    off, misspelt = ({"points": {"X": ORIGIN}}, {"angles": {"rokker": 0.0}})
     refused("position.points.X", words,
-            lambda: replace(FOUR, position=eq.mechanism.Position(points={"X": ORIGIN})))  # fmt: skip
+            lambda: replace(FOUR, position=eq.mechanism.Position(**off)))  # fmt: skip
     refused("position.angles.rokker", "did you mean 'rocker'?",
-            lambda: replace(FOUR, position=eq.mechanism.Position(angles={"rokker": 0.0})))  # fmt: skip
+            lambda: replace(FOUR, position=eq.mechanism.Position(**misspelt)))  # fmt: skip
 
 
 # -- changing and keeping --------------------------------------------------------------------------

@@ -217,7 +217,9 @@ def stuck() -> eq.Machine:
     """The triad with a crank so long that it cannot turn."""
     points = {"A": ORIGIN, "B": (0.1, 0.0)}
     place = {"C": (0.192, -0.051), "P": (0.155, -0.015), "Q": (0.095, -0.068)}
-    return replace(TRIAD, position=eq.mechanism.Position(0.0, place)).with_link("crank", points=points)
+    return replace(TRIAD, position=eq.mechanism.Position(0.0, place)).with_link(
+        "crank", points=points
+    )
 
 
 def test_a_position_far_from_any_solution() -> None:

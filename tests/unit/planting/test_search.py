@@ -35,7 +35,9 @@ def figures_of_a() -> eq.planting.PlantingFigures:
     return eq.plant(eq.load("kim-chung-a"))
 
 
-def test_mechanism_a_is_recovered_from_its_figures(figures_of_a: eq.planting.PlantingFigures) -> None:
+def test_mechanism_a_is_recovered_from_its_figures(
+    figures_of_a: eq.planting.PlantingFigures,
+) -> None:
     """Started from mechanism B, which is another machine and turns the other way."""
     goals = [Goal(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
     fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=1)

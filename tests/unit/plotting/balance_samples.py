@@ -34,8 +34,12 @@ def plate(shape: str, radius: float, inner: float = 0.0) -> eq.balancing.Weight:
     return eq.balancing.Weight(shape, radius, inner, thickness=0.02, density=STEEL)  # type: ignore[arg-type]
 
 
-def on_crank(weight: eq.balancing.Weight, *objectives: eq.balancing.Objective) -> eq.balancing.Balance:
-    return eq.balancing.Balance(masses=(eq.balancing.AddedMass("crank", "A", weight),), objectives=objectives)
+def on_crank(
+    weight: eq.balancing.Weight, *objectives: eq.balancing.Objective
+) -> eq.balancing.Balance:
+    return eq.balancing.Balance(
+        masses=(eq.balancing.AddedMass("crank", "A", weight),), objectives=objectives
+    )
 
 
 def one_of_each() -> eq.balancing.Balance:
@@ -62,7 +66,9 @@ def geared() -> eq.balancing.Balance:
 
 
 def shafts() -> eq.balancing.Balance:
-    pair = eq.balancing.BalanceShafts(1, ((0.05, 0.05), (0.15, 0.05)), eq.balancing.Weight("point", 0.03, at_most=0.5))
+    pair = eq.balancing.BalanceShafts(
+        1, ((0.05, 0.05), (0.15, 0.05)), eq.balancing.Weight("point", 0.03, at_most=0.5)
+    )
     return eq.balancing.Balance(shafts=(pair,), objectives=(FORCE,))
 
 
@@ -115,12 +121,15 @@ def cases() -> dict[str, tuple[Machine, eq.balancing.Balance]]:
     return {
         "sector": of("yamashita-1", on_crank(plate("sector", 0.06, 0.01), FORCE_Y)),
         "one of each": of("yamashita-1", one_of_each()),
-        "ring": of("yamashita-1", eq.balancing.Balance(masses=(rings,), objectives=(RIPPLE, MOMENT))),
+        "ring": of(
+            "yamashita-1", eq.balancing.Balance(masses=(rings,), objectives=(RIPPLE, MOMENT))
+        ),
         "moved": of("yamashita-2", moved()),
         "geared": of("lee-kim-a", geared()),
         "shafts": of("yamashita-1", shafts()),
         "flat": of(
-            "exudyn-slider-crank", eq.balancing.Balance(moves=(eq.balancing.CenterMove("crank"),), objectives=(FORCE,))
+            "exudyn-slider-crank",
+            eq.balancing.Balance(moves=(eq.balancing.CenterMove("crank"),), objectives=(FORCE,)),
         ),
         "long cycle": long_cycle(),
         "spring": sprung(),
@@ -141,7 +150,11 @@ def in_rows(count: int = 4, weight: bool = False) -> Balanced:
     """Rows in one phase that get others; with a counterweight too."""
     rows = tuple(Row(lateral=0.3 * ((7 * k) % count)) for k in range(count))
     machine = replace(eq.load("yamashita-1"), rows=rows)
-    plan = on_crank(eq.balancing.Weight("point", 0.05), FORCE) if weight else eq.balancing.Balance(objectives=(FORCE,))
+    plan = (
+        on_crank(eq.balancing.Weight("point", 0.05), FORCE)
+        if weight
+        else eq.balancing.Balance(objectives=(FORCE,))
+    )
     return eq.balance(machine, replace(plan, phases=eq.balancing.Phases(pi / 6)))
 
 
@@ -153,7 +166,9 @@ def phasing() -> Phasing:
 @cache
 def front(first: eq.balancing.Objective = MOMENT, points: int = 4) -> Front:
     plan = eq.balancing.Balance(moves=(eq.balancing.CenterMove("coupler"),))
-    return trade_off(eq.load("yamashita-2"), first, eq.balancing.Objective("drive_torque"), plan, points)
+    return trade_off(
+        eq.load("yamashita-2"), first, eq.balancing.Objective("drive_torque"), plan, points
+    )
 
 
 @cache

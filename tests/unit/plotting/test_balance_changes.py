@@ -130,7 +130,10 @@ def test_the_pose_is_that_of_the_linkages_picture() -> None:
     machine = eq.load("geared-counterweight")
     weight = eq.balancing.AddedMass("crank", "O2", eq.balancing.Weight("point", 0.03))
     result = eq.balance(
-        machine, eq.balancing.Balance(masses=(weight,), objectives=(eq.balancing.Objective("shaking_force"),))
+        machine,
+        eq.balancing.Balance(
+            masses=(weight,), objectives=(eq.balancing.Objective("shaking_force"),)
+        ),
     )
     with styled():
         figure = changes_figure(result)
@@ -297,7 +300,9 @@ def test_lengths_in_mm_and_added_mass() -> None:
     rig = eq.load("balance-rig")
     gauge = eq.balancing.Objective("gauges.gauge", "peak_to_peak")
     values = np.array([[0.010, 0.5], [0.012, 0.4]])
-    result = Front(rig, gauge, eq.balancing.Objective("drive_torque"), (found("sector"),) * 2, values)
+    result = Front(
+        rig, gauge, eq.balancing.Objective("drive_torque"), (found("sector"),) * 2, values
+    )
     figure = drawings(result)["front"]
     check_texts("front of a gauge", figure)
     axes = figure.axes[0]

@@ -25,7 +25,9 @@ pytest.importorskip("pymoo")
 @cache
 def tolerances() -> Tolerances:
     study = eq.schema.load_study("study-of-tolerances")
-    return eq.studies.tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
+    return eq.studies.tolerance(
+        replace(study, angles=90, sampling=replace(study.sampling, designs=800))
+    )
 
 
 @cache

@@ -21,9 +21,7 @@ from equipoise.plotting.vibration import (
 )
 from equipoise.plotting.vibration.panels import Unit
 from equipoise.vibration.forced import respond
-
 from equipoise.vibration.sweep import sweep_speed
-
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     KINDS,

@@ -14,9 +14,7 @@ from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
 from equipoise.scene import Scene
 from equipoise.vibration.forced import respond
-
-from equipoise.vibration.modes import Mode
-
+from equipoise.vibration.mode_shapes import Mode
 from unit.plotting.samples import words
 from unit.plotting.vibration_samples import (
     RPM,

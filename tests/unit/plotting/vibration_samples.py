@@ -19,9 +19,7 @@ from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.plotting import vibration
 from equipoise.plotting.style import render, styled
 from equipoise.vibration.forced import respond
-
 from equipoise.vibration.sweep import Sweep, sweep_speed
-
 
 RPM = 30 / pi
 G = 9.80665

@@ -18,7 +18,6 @@ from equipoise.report.pdf import pdf
 from equipoise.report.pictures import pictures
 
 
-
 class Page(HTMLParser):
     """Tags, names and references of a page."""
 

@@ -10,6 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import unit_of
 
 NAMES = sorted(eq.examples("linkage"))

@@ -33,7 +33,9 @@ def over_counterweight(count: int = 13) -> Landscape:
         f"{WEIGHT}.radius": np.linspace(0.0, 0.07, count),
         f"{WEIGHT}.direction": np.linspace(0.0, 2 * pi, count),
     }
-    return landscape(eq.schema.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
+    return landscape(
+        eq.schema.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145}
+    )
 
 
 def lowest(found: Landscape) -> tuple[float, float]:
@@ -110,7 +112,9 @@ def test_what_cannot_turn_has_no_value() -> None:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 8),
         "links.coupler.points.C.x": np.linspace(0.041, 0.151, 8),
     }
-    found = landscape(eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_force"))
+    found = landscape(
+        eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_force")
+    )
     for row, coupler in enumerate(found.y):
         for column, crank in enumerate(found.x):
             bars = sorted([crank, coupler, 0.08, 0.088])
@@ -159,7 +163,9 @@ def test_what_cannot_be_drawn_is_told(name: str) -> None:
 def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
     over: Any = {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]}
     with pytest.raises(EquipoiseError, match="did you mean 'shaking_force'"):
-        landscape(eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_forc"))
+        landscape(
+            eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_forc")
+        )
     with pytest.raises(EquipoiseError, match=r"Template\.of\(machine\)"):
         landscape(eq.load("yamashita-1"), over, RIPPLE)  # type: ignore[arg-type]
     with pytest.raises(EquipoiseError, match="this is a tool"):

@@ -16,7 +16,6 @@ from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, respond, usual_step
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
-
 from unit.vibration.build import SPEED, Mount, block, cart, rig, springs
 
 LINE = Motor(26.0, 6.0)

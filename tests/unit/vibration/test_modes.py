@@ -9,8 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-
-from equipoise.vibration.modes import Mode, find_modes
+from equipoise.vibration.mode_shapes import Mode, find_modes
 from unit.vibration.build import Array, Gauge, Mount, block, rig, springs
 
 
