@@ -24,7 +24,7 @@ from .mechanism.support import Mount as Mount
 from .mechanism.support import Row as Row
 from .mechanism.support import Support as Support
 from .planting.summary import plant as plant
-from .report.writing import report as report
+from .present.composition import report as report
 from .results.analysis import analyze as analyze
 from .schema.models import dumps as dumps
 from .schema.models import examples as examples

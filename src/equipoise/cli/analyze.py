@@ -102,13 +102,9 @@ def analyze(
         print(f"wrote {csv}", file=sys.stderr)
 
     def show() -> None:
-        from equipoise.terminal.analysis import print_analysis
-        from equipoise.terminal.orders import print_orders
+        from equipoise.present import show as shown
 
-        if orders is None:
-            print_analysis(analysis)
-        else:
-            print_orders(analysis, orders, zero)
+        shown(analysis, orders=orders, zero=zero)
 
     outputs.print(lambda: analysis.to_dict(split) | by_order, show)
 

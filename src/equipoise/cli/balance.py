@@ -77,9 +77,9 @@ def balance(
             found = balancing.balance(machine, plan, progress)
 
         def show() -> None:
-            from equipoise.terminal.balance import print_balanced
+            from equipoise.present import show as shown
 
-            print_balanced(found)
+            shown(found)
 
         outputs.write(found.columns)
         outputs.draw(lambda: _drawings(found))
@@ -103,9 +103,9 @@ def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
 
 def _save(found: Balanced, out: str) -> None:
     """Write the new machine, with what was changed in its description."""
-    from equipoise.terminal.changes import told
+    from equipoise.balancing.workshop import sentences
 
-    changes = " ".join(f"{line.strip()}." for change in found.changes for line in told(change))
+    changes = " ".join(f"{line}." for change in found.changes for line in sentences(change))
     write_model(found.machine, out, ", balanced", f"Changed by equipoise balance: {changes}")
 
 
@@ -151,9 +151,9 @@ def trade_off(
             found = pareto.trade_off(machine, one, other, plan, points, progress)
 
         def show() -> None:
-            from equipoise.terminal.balance import print_front
+            from equipoise.present import show as shown
 
-            print_front(found)
+            shown(found)
 
         outputs.write(found.columns)
         outputs.give(lambda: _drawings(found), found.to_dict, show)
@@ -179,9 +179,10 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
         told = feasibility(machine)
 
         def show() -> None:
-            from equipoise.terminal.conditions import print_conditions
+            from equipoise.balancing.blocks import conditions_blocks
+            from equipoise.present import show_blocks
 
-            print_conditions(machine, found.values(), told)
+            show_blocks(machine.title, conditions_blocks(*found.values(), verdict=told))
 
         values = {name: one.to_dict() for name, one in found.items()}
         outputs.print(lambda: values | {"verdict": told.to_dict()}, show)
@@ -220,9 +221,9 @@ def sensitivities(
             found = sensitivity.sensitivities(machine, output)
 
     def show() -> None:
-        from equipoise.terminal.conditions import print_sensitivities
+        from equipoise.present import show as shown
 
-        print_sensitivities(found, crank_zero or 0.0)
+        shown(found, zero=crank_zero or 0.0)
 
     outputs.print(found.to_dict, show)
 
@@ -260,9 +261,10 @@ def arrangements(
         check_moving(machine)
 
     def show() -> None:
-        from equipoise.terminal.phases import print_patterns
+        from equipoise.balancing.blocks import pattern_blocks
+        from equipoise.present import show_blocks
 
-        print_patterns(machine, rows, spacing)
+        show_blocks(machine.title, pattern_blocks(machine, rows, spacing))
 
     with naming(file):
         values = {"patterns": [one.to_dict() for one in patterns_for(rows)]}

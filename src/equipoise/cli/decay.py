@@ -76,9 +76,9 @@ def decay(
         found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
 
     def show() -> None:
-        from equipoise.terminal.decay import print_decay
+        from equipoise.present import show_blocks
 
-        print_decay(found, os.path.basename(csv))
+        show_blocks(printable(os.path.basename(csv)), found.blocks())
 
     def drawings() -> Mapping[str, Figure]:
         from equipoise.plotting import decay as pictures

@@ -82,12 +82,13 @@ def best(
         return best_drawings(found, title, units)
 
     def show() -> None:
-        from equipoise.terminal.best import print_best
+        from equipoise.present import show_blocks
 
-        print_best(found, title, of_stores.outputs_of(opened), units)
+        blocks = found.blocks(outputs=of_stores.outputs_of(opened), units=units)
+        show_blocks(title, blocks)
 
     def columns() -> Columns:
-        from equipoise.terminal.designs import columns_of
+        from equipoise.studies.blocks import columns_of
 
         values = columns_of(found.numbers, found.values, found.outputs, found.figures)
         return _columns(found.designs.tolist(), values, opened.units)
@@ -172,12 +173,12 @@ def search(
             return searched_drawings(found, units, own)
 
         def show() -> None:
-            from equipoise.terminal.search import print_searched
+            from equipoise.present import show_blocks
 
-            print_searched(found, units, own)
+            show_blocks(found.study.title, found.blocks(units=units, own=own))
 
         def columns() -> Columns:
-            from equipoise.terminal.designs import columns_of
+            from equipoise.studies.blocks import columns_of
 
             study = found.study
             values = columns_of(study.paths, found.values, study.names, found.figures)

@@ -119,9 +119,10 @@ def _give(told: list[Told], outputs: Drawn) -> None:
         return pictures.drawings(measured, tools, day)
 
     def show() -> None:
-        from equipoise.terminal.exposure import print_exposure
+        from equipoise.exposure.blocks import told_blocks
+        from equipoise.present import show_blocks
 
-        print_exposure(measured, tools, day)
+        show_blocks("", told_blocks(measured, tools, day))
 
     outputs.give(drawings, lambda: _values(measured, tools, day), show)
 

@@ -42,24 +42,21 @@ def check(file: File, /) -> None:
     """
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
+    from equipoise.present import checks, show_blocks
+    from equipoise.schema.files import printable
     from equipoise.schema.tools import load_any
 
     found = load_any(file)
     if isinstance(found, Tool):
-        from equipoise.terminal.check_tool import print_check_of_tool
-
-        print_check_of_tool(found, file)
+        show_blocks(found.title, checks.tool_blocks(found, printable(file)))
         return
     with naming(file):
         if isinstance(found, Machine):
-            from equipoise.terminal.check import print_check
-
-            print_check(found)
+            show_blocks(found.title, checks.machine_blocks(found))
         else:
             from equipoise.schema.study_units import units_of
-            from equipoise.terminal.check_study import print_check_of_study
 
-            print_check_of_study(found, units_of(found), file)
+            show_blocks(found.title, checks.study_blocks(found, units_of(found), file))
 
 
 def schema(*, tool: bool = False, study: bool = False) -> None:

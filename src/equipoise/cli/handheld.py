@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.terminal.units import Units
+    from equipoise.present.cells import Units
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -202,9 +202,9 @@ class Asked:
         found = self.modes
 
         def show() -> None:
-            from equipoise.terminal.tool import print_modes
+            from equipoise.present import show_blocks
 
-            print_modes(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Figure]:
             from equipoise.handheld.studies import determinant_chart
@@ -231,9 +231,9 @@ class Asked:
         found = sweep_tool(self.tool, self.range, self.places)
 
         def show() -> None:
-            from equipoise.terminal.tool import print_sweep
+            from equipoise.present import show_blocks
 
-            print_sweep(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Figure]:
             from equipoise.plotting import tool as pictures
@@ -254,9 +254,9 @@ class Asked:
         found = expose_tool(self.tool, self.range, self.duration)
 
         def show() -> None:
-            from equipoise.terminal.tool_hands import print_tool_exposure
+            from equipoise.present import show_blocks
 
-            print_tool_exposure(found, self.units)
+            show_blocks("", found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Figure]:
             from equipoise.plotting import tool as pictures
@@ -268,16 +268,17 @@ class Asked:
 
 def _tool(file: str, units: str) -> tuple[Tool, Units]:
     """The tool of a file, and the units in which its vibration is printed."""
+    from equipoise.present.units import read_units
     from equipoise.schema.tools import load_tool
-    from equipoise.terminal.units import OF_VIBRATION, Units
 
-    return load_tool(file), Units.read(units, OF_VIBRATION)
+    return load_tool(file), read_units(units)
 
 
 def _print_head(tool: Tool, units: Units) -> None:
-    from equipoise.terminal.tool import print_tool
+    from equipoise.handheld.blocks import summary_blocks
+    from equipoise.present import show_blocks
 
-    print_tool(tool, units)
+    show_blocks(tool.title, summary_blocks(tool), units=units)
 
 
 # -- other questions -------------------------------------------------------------------------------
@@ -333,10 +334,10 @@ def vary(
         found = vary_tool(loaded, station, key, values, number or MODES)
 
     def show() -> None:
-        from equipoise.terminal.tool import print_variation
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_variation(found, shown_in)
+        show_blocks("", found.blocks(), units=shown_in)
 
     def drawings() -> Mapping[str, Figure]:
         from equipoise.plotting import tool as pictures
@@ -377,10 +378,11 @@ def sensitivities(
         found = tool_sensitivities(loaded, np.linspace(*asked.ends, BAND))
 
     def show() -> None:
-        from equipoise.terminal.tool_hands import print_sensitivities
+        from equipoise.handheld.blocks import sensitivity_blocks
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_sensitivities(found, loaded, asked.ends, shown_in)
+        show_blocks("", sensitivity_blocks(loaded, found, asked.ends), units=shown_in)
 
     def values() -> Mapping[str, Any]:
         told: dict[str, dict[str, float]] = {}
@@ -420,10 +422,10 @@ def design(
         write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
 
     def show() -> None:
-        from equipoise.terminal.tool_hands import print_design
+        from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        print_design(found, shown_in)
+        show_blocks("", found.blocks(), units=shown_in)
 
     def drawings() -> Mapping[str, Figure]:
         from equipoise.plotting import tool as pictures

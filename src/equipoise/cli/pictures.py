@@ -38,7 +38,7 @@ from equipoise.errors import ModelError, UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.report.pictures import Picture
+    from equipoise.present.pictures import Picture
     from equipoise.results.analysis import Analysis
     from equipoise.studies.design_space import Model
 
@@ -94,8 +94,8 @@ def plot(
         Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
     from equipoise.plotting.style import render
-    from equipoise.report.findings import ToolFindings, find
-    from equipoise.report.pictures import each
+    from equipoise.present.findings import ToolFindings, find
+    from equipoise.present.pictures import each
     from equipoise.schema.output import write_all
 
     folder = _default(file, "-pictures") if out is None else out
@@ -281,7 +281,7 @@ def animate(
     dark
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
-    from equipoise.animation.limits import check_seconds, check_width
+    from equipoise.figures.stage import check_seconds, check_width
     from equipoise.schema.models import load
     from equipoise.schema.output import write
 
@@ -321,17 +321,17 @@ def _kind(out: str) -> str:
 
 def _angles_of(kind: str, seconds: float) -> int:
     """Crank angles in a turn: so many for each frame that paths are smooth."""
-    from equipoise.animation.film import in_a_turn
+    from equipoise.figures.film import in_a_turn
 
     frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
     return frames * ceil(LEAST_ANGLES / frames)
 
 
 def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
-    from equipoise.animation import film
-    from equipoise.animation.svg import animated_svg
-    from equipoise.plotting.stage import Arrow
-    from equipoise.scene import Scene
+    from equipoise.figures import film
+    from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
+    from equipoise.symbols.scene import Scene
 
     scene = Scene.of(found.motion)
     if options["traced"] is None:
@@ -378,12 +378,12 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.report.writing import check, write_document
+    from equipoise.present.composition import check, write_document
     from equipoise.schema.files import printable
 
     check(paths, language)
-    from equipoise.report.build import build
-    from equipoise.report.findings import find
+    from equipoise.present.composition import build
+    from equipoise.present.findings import find
 
     found = find(file, speed=rate)
     with naming(file):
@@ -395,7 +395,7 @@ def report(
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
     """The files that are wanted."""
-    from equipoise.report.writing import kind_of
+    from equipoise.present.composition import kind_of
 
     if out is None:
         out = _default(file, "-report.html")

@@ -60,21 +60,21 @@ def plant(
     """
     from equipoise.planting.summary import plant as read_off
     from equipoise.planting.summary import table
+    from equipoise.present.units import read_units
     from equipoise.schema.models import load
-    from equipoise.terminal.units import Units
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
     machine = load(file)
-    shown_in = Units.read(units)
+    shown_in = read_units(units)
     outputs.check(sources_of(machine, file))
     with naming(file):
         figures = read_off(machine if speed is None else machine.with_drive(speed=speed))
         outputs.write(lambda: table(figures, 360 if angles is None else angles))
 
     def show() -> None:
-        from equipoise.terminal.planting import print_planting
+        from equipoise.present import show as shown
 
-        print_planting(figures, shown_in, crank_zero or 0.0)
+        shown(figures, units=shown_in, zero=crank_zero or 0.0)
 
     outputs.give(lambda: _drawings(figures), figures.to_dict, show)
 
@@ -115,15 +115,15 @@ def fit(
     from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting
     from equipoise.planting.summary import table
+    from equipoise.present.units import read_units
     from equipoise.schema.files import printable
     from equipoise.schema.models import load
     from equipoise.schema.targets import read_targets
-    from equipoise.terminal.units import Units
 
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
     machine = load(file)
-    shown_in = Units.read(units)
+    shown_in = read_units(units)
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
     check_new(machine, new)
     outputs.check(sources_of(machine, file), [targets, new])
@@ -147,8 +147,8 @@ def fit(
     outputs.write(lambda: table(fitted.after))
 
     def show() -> None:
-        from equipoise.terminal.fit import print_fit
+        from equipoise.present import show as shown
 
-        print_fit(fitted, shown_in)
+        shown(fitted, units=shown_in)
 
     outputs.give(lambda: _drawings(fitted.after), fitted.to_dict, show)

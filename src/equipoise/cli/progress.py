@@ -201,7 +201,7 @@ def _in_the_end(last: Progress, units: Mapping[str, Unit]) -> Step:
 
 
 def _best_and_failures(name: str, progress: Progress, units: Mapping[str, Unit]) -> dict[str, str]:
-    from equipoise.terminal.tables import number
+    from equipoise.quantities import number
 
     best = (
         f"{output} {number(units[output].of_si(value))} {units[output].name}".strip()

@@ -20,9 +20,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.schema.study_units import Unit
+    from equipoise.studies.blocks import Summary
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
-    from equipoise.terminal.swept import Summary
 
 MOST_WORKERS, MOST_DESIGNS = 1000, 10_000_000
 TOLD = 3
@@ -139,11 +139,12 @@ def _compute(
         summary = _summary(store, end)
 
         def show() -> None:
-            from equipoise.terminal.swept import print_swept
+            from equipoise.present import show_blocks
+            from equipoise.studies.blocks import summary_blocks
 
             rate = rate_told(end.computed / max(end.seconds, 1e-9))
             run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
-            print_swept(summary, units, run)
+            show_blocks(summary.title, summary_blocks(summary, units, run))
 
         outputs.print(lambda: _values(summary, end), show)
 
@@ -163,8 +164,8 @@ def _going_on(store: str) -> Iterator[None]:
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
     from equipoise.cli.designs import title_of
+    from equipoise.studies.blocks import Summary
     from equipoise.studies.selection import best, outputs_of
-    from equipoise.terminal.swept import Summary
 
     outputs = outputs_of(store)
     title = title_of(store)
@@ -234,8 +235,8 @@ def tolerance(
         return tolerance_drawings(found, units)
 
     def show() -> None:
-        from equipoise.terminal.tolerance import print_tolerances
+        from equipoise.present import show_blocks
 
-        print_tolerances(found, units)
+        show_blocks(found.study.title, found.blocks(units=units))
 
     outputs.give(drawings, found.to_dict, show)

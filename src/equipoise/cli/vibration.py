@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from equipoise.mechanism.model import Machine
-    from equipoise.terminal.units import Units
+    from equipoise.present.cells import Units
     from equipoise.vibration.response import Response
 
 
@@ -59,9 +59,9 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
         found = free.modes(machine, model)
 
     def show() -> None:
-        from equipoise.terminal.modes import print_modes
+        from equipoise.present import show as shown
 
-        print_modes(found)
+        shown(found)
 
     outputs.give(_pictures("mode", found), found.to_dict, show)
 
@@ -155,9 +155,9 @@ def simulate(
         found = transient.simulate(machine, duration, speed, drive)
 
     def show() -> None:
-        from equipoise.terminal.transient import print_transient
+        from equipoise.present import show as shown
 
-        print_transient(found, shown_in)
+        shown(found, units=shown_in)
 
     outputs.write(found.columns)
     outputs.give(_pictures("transient", found), found.to_dict, show)
@@ -165,12 +165,12 @@ def simulate(
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
+    from equipoise.present.units import read_units
     from equipoise.schema.models import load
-    from equipoise.terminal.units import OF_VIBRATION, Units
 
     machine = load(file)
     outputs.check(sources_of(machine, file))
-    return machine, Units.read(units, OF_VIBRATION)
+    return machine, read_units(units)
 
 
 def _answer(
@@ -187,9 +187,9 @@ def _answer(
     found = solve(machine, speed, model, drive)
 
     def show() -> None:
-        from equipoise.terminal.vibration import print_response
+        from equipoise.present import show as shown
 
-        print_response(found, {} if drive else _others(machine, found), units)
+        shown(found, units=units, others=None if drive else _others(machine, found))
 
     outputs.write(found.columns)
     outputs.give(_pictures("response", found), found.to_dict, show)
@@ -234,9 +234,9 @@ def _sweep(
         found = sweep_speed(machine, *ends, model, drive, speeds or SPEEDS, progress)
 
     def show() -> None:
-        from equipoise.terminal.sweep import print_sweep
+        from equipoise.present import show as shown
 
-        print_sweep(found, units)
+        shown(found, units=units)
 
     outputs.write(found.columns)
     outputs.give(_pictures("sweep", found), found.to_dict, show)

@@ -16,6 +16,7 @@ from equipoise.handheld.model import Tool
 from equipoise.handheld.response import respond_tool, rms_over_time
 from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between
+from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
@@ -171,7 +172,6 @@ DIGITS = 6
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
 ACCELERATION = "acceleration"
-WORDS = {"rms": "RMS over the band", "peak": "largest"}
 NO_DESIGN = (
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
@@ -180,12 +180,13 @@ NO_DESIGN = (
 
 @dataclass(frozen=True, eq=False)
 class Before:
-    """A figure before and after, in SI units."""
+    """A figure before and after, in SI units.  said : what it is, where that is no free number."""
 
     name: str
     dimension: str
     before: float
     after: float
+    said: Note | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -311,15 +312,27 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
         means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
         tops.append({name: float(np.max(one)) for name, one in curves.items()})
-    yield Before(f"a_hv of the worst hand, {WORDS['rms']}", ACCELERATION, *map(_worst, means))
-    yield Before(f"a_hv of the worst hand, {WORDS['peak']}", ACCELERATION, *map(_worst, tops))
+    rms, top = Note(to_say("RMS over the band")), Note(to_say("largest"))
+    for said, found in (
+        (Note(to_say("a_hv of the worst hand, RMS over the band")), means),
+        (Note(to_say("a_hv of the worst hand, largest")), tops),
+    ):
+        yield _before(said, ACCELERATION, *map(_worst, found))
     for name in search.hands if len(search.hands) > 1 else ():
-        yield Before(f"a_hv at {name}, {WORDS['rms']}", ACCELERATION, *(one[name] for one in means))
-        yield Before(f"a_hv at {name}, {WORDS['peak']}", ACCELERATION, *(one[name] for one in tops))
+        what = Note(to_say("a_hv at {station}"), station=name)
+        for measure, found in ((rms, means), (top, tops)):
+            said = Note(to_say("{what}, {measure}"), what=what, measure=measure)
+            yield _before(said, ACCELERATION, *(one[name] for one in found))
     for name in filter(None, search.held):
         forces = [_largest_force(one, search.band.speed, name) for one in (search.tool, better)]
-        yield Before(f"force at {name}, largest", "force", *forces)
-    yield Before("mass", "mass", search.tool.mass, better.mass)
+        what = Note(to_say("force at {station}"), station=name)
+        said = Note(to_say("{what}, {measure}"), what=what, measure=top)
+        yield _before(said, "force", *forces)
+    yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)
+
+
+def _before(said: Note, dimension: str, before: float, after: float) -> Before:
+    return Before(str(said), dimension, before, after, said)
 
 
 def _worst(values: dict[str, float]) -> float:

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, MAIN, degrees_shown, short, shown
 
 Array = np.ndarray[Any, Any]

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, STRESS, blank, heading, shown, styled
 
 if TYPE_CHECKING:

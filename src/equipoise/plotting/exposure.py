@@ -13,7 +13,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure
 from equipoise.exposure.weighting import EDGES, factor
-from equipoise.plotting.labels import Labels
+from equipoise.figures.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
     INK,

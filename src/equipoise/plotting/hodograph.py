@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from equipoise.figures.drawing import Panel
+from equipoise.figures.labels import Labels
 from equipoise.plotting.crank import angle_step
-from equipoise.plotting.labels import Labels
-from equipoise.plotting.panels import Panel
 from equipoise.plotting.style import FAINT, NORMAL, SMALL
 
 Array = np.ndarray[Any, Any]

@@ -14,8 +14,8 @@ from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
 from equipoise.balancing.naming import objective_named
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import (
     FAINT,
     INK,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from equipoise.plotting.pathview import path_figure
+from equipoise.figures.path import path_figure
 from equipoise.plotting.signals import joints_figure, ratio_figure, tip_figures, torque_figure
 from equipoise.plotting.style import free_name, styled
 

@@ -8,8 +8,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.figures.labels import spread
 from equipoise.i18n import say
-from equipoise.plotting.labels import spread
 from equipoise.plotting.style import INSTANTS, LINES, SMALL, SOIL, degrees_shown
 
 if TYPE_CHECKING:

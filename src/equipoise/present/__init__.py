@@ -5,10 +5,12 @@ Content stands beside the results, in the modules ``blocks`` of their rooms; her
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from equipoise.present.cells import Units
+    from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
 
 
@@ -24,6 +26,18 @@ def show(
     from equipoise.present.terminal import print_blocks
 
     print_blocks(result.title, result.blocks(**options), width, units)
+
+
+def show_blocks(
+    title: str,
+    blocks: Iterable[Block | Section],
+    width: int | None = None,
+    units: Units | None = None,
+) -> None:
+    """Print blocks below a title; further arguments as of `show`."""
+    from equipoise.present.terminal import print_blocks
+
+    print_blocks(title, blocks, width, units)
 
 
 def html_of(result: Result) -> str:

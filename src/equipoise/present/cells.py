@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import isnan
 
-from equipoise.i18n import say
+from equipoise.i18n import Note, say, spoken
 from equipoise.quantities import Dimension, Display, change, display, in_unit, number, typeset
 from equipoise.results.blocks import Cell, Change, Column, Many, Span, Table, Value
 
@@ -32,6 +32,11 @@ class Text:
     number: bool = False
     strong: bool = False
 
+    @property
+    def told(self) -> str:
+        """As print has it: the value, and behind it where it holds."""
+        return f"{self.text} ({self.at})" if self.at else self.text
+
 
 @dataclass(frozen=True)
 class Head:
@@ -40,6 +45,12 @@ class Head:
     label: str
     unit: str = ""
     at: str = ""
+
+    @property
+    def heading(self) -> str:
+        """In one line."""
+        units = f"{self.unit} ({self.at})" if self.at else self.unit
+        return say(", ").join(filter(None, (self.label, units.strip())))
 
 
 @dataclass(frozen=True)
@@ -150,7 +161,7 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     if isinstance(cell, Span):
         unit = shown[column.dimension, column.unit]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
-        ends = [Value(end, scale, digits=cell.digits) for end in (cell.low, cell.high)]
+        ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
         low, high = (_number(end, unit, column.dimension) for end in ends)
         equal = cell.high - cell.low <= 1e-10 * scale
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
@@ -194,6 +205,20 @@ def printed(text: str) -> str:
     text = _RAISED.sub(lambda found: typeset(found[0]), text)
     bound = _UNIT.sub("\\1\N{NO-BREAK SPACE}\\2", text)
     return _VALUE.sub("\N{NO-BREAK SPACE}", bound)
+
+
+def sign_of(unit: str) -> str:
+    """A unit as print has it."""
+    return printed(Display(unit, 1.0).name)
+
+
+def noted(note: Note | str) -> str:
+    """A note in the language that is spoken; what that lacks, in its original wording."""
+    if isinstance(note, Note) and note.is_translated:
+        return say("Note: {note}", note=note.said())
+    if spoken() == "en":
+        return say("Note: {note}", note=note)
+    return say("Note, in its original wording: {note}", note=note)
 
 
 _PLAIN = {

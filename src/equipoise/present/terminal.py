@@ -20,6 +20,8 @@ LEAST = 40
 """Signs in a line below which nothing is laid out."""
 GAP, NARROW = 2, 20
 """Signs between columns; a column of words is not made narrower to keep a table in one part."""
+HEAD = 14
+"""Signs in a line of a heading, where its words are so short."""
 STRONG = "bold red"
 SIGN = " !"
 """Beside what is emphasised where there is no colour."""
@@ -58,9 +60,13 @@ class _Printer:
     def __init__(self, console: Console, units: Units) -> None:
         self.console, self.units = console, units
         self.coloured = console.is_terminal and console.color_system is not None
+        self.apart = False  # whether running text begins after a space, as after a table
 
     def blocks(self, blocks: Iterable[Block | Section]) -> None:
         for block in blocks:
+            if self.apart and isinstance(block, Running):
+                self.space()
+            self.apart = isinstance(block, Table | Facts)
             if isinstance(block, Section):
                 self.space()
                 self.words(block.title, "bold underline")
@@ -142,13 +148,14 @@ class _Printer:
         table = RichTable(
             box=None, padding=(0, GAP, 0, 0), pad_edge=False, header_style="", show_edge=False
         )
+        heads = {k: head_lines(told.heads[k], told.is_words(k)) for k in columns}
+        tall = max(map(len, heads.values()))
         for column in columns:
             words = told.is_words(column)
-            lines = "\n".join(head_lines(told.heads[column], words))
+            lines = "\n".join([""] * (tall - len(heads[column])) + heads[column])
             table.add_column(
                 RichText(lines, style="dim" if self.coloured else ""),
                 justify="left" if words else "right",
-                vertical="bottom",
                 no_wrap=not words,
                 overflow="fold",
             )
@@ -187,5 +194,9 @@ def head_lines(head: Head, words: bool) -> list[str]:
     unit = unit or (f"at {head.at}" if head.at else "")
     if words:
         return [f"{label}, {unit}" if label and unit else label or unit]
-    lines = wrapped(" ".join(re.split(r"(?<=\w)(?=\.)| ", label)), 12) if label else []
+    lines = [""]
+    for token in re.findall(r" ?\.?[^ .]+", label):  # also between the parts of a dotted name
+        if lines[-1] and len(lines[-1]) + len(token) > HEAD:
+            lines.append("")
+        lines[-1] += token if lines[-1] else token.strip()
     return [*(line for line in lines if line), *([plain(unit)] if unit else [])]

@@ -47,6 +47,7 @@ class Span:
     high: float
     scale: float = 0.0
     digits: int = 4
+    after: int | None = None
 
 
 @dataclass(frozen=True)
@@ -159,6 +160,7 @@ Block = Text | Facts | Table | Notes | Picture | Listing
 class Section:
     """A heading and what stands below it; `name` is its anchor."""
 
+    kind: ClassVar[str] = "section"
     name: str
     title: str
     blocks: tuple[Block, ...]

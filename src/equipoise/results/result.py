@@ -24,9 +24,9 @@ class Result:
 
     @property
     def title(self) -> str:
-        """Of the machine that it tells of."""
-        machine = getattr(self, "machine", None)
-        return str(getattr(machine, "title", ""))
+        """Of the machine, tool or study that it tells of."""
+        owners = (getattr(self, name, None) for name in ("machine", "original", "tool", "study"))
+        return next((str(one.title) for one in owners if one is not None), "")
 
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays."""

@@ -14,10 +14,10 @@ from equipoise.balancing.naming import MEASURES, objective_named, output_named, 
 from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.workshop import sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
-from equipoise.report.changes import told
-from equipoise.report.numbers import number
+from equipoise.quantities import number
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.rounding import clean
@@ -149,12 +149,12 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
     return {
         "changes": [
             *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
-            *(line for change in found.changes for line in told(change)),
+            *(line for change in found.changes for line in sentences(change)),
         ],
         "aims": [_aim(found, one, figures) for one in found.plan.objectives],
         "figures": [_figure(found, name, *figures[name]) for name in names],
         "proof": _proof(found, bool(replaced)),
-        "notes": list(found.notes),
+        "notes": list(map(str, found.notes)),
     }
 
 

@@ -48,11 +48,10 @@ def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any],
 
 
 def _report(found: Solved, file: str, language: str) -> str:
-    from equipoise.report.findings import Findings
-    from equipoise.report.page import report
+    from equipoise.present.findings import Findings
 
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
     machine = found.design.machine
     with _drawing:
-        return report(Findings(machine, dumps(machine), file), language)
+        return report_page(Findings(machine, dumps(machine), file), language)

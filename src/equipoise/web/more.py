@@ -8,8 +8,9 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.model import Machine
+from equipoise.planting.blocks import EXTREMES, PATH, SOIL, cell
 from equipoise.planting.summary import plant
-from equipoise.report.effects import PATH
+from equipoise.quantities import display, in_unit
 from equipoise.web.edits import Solved
 from equipoise.web.shaken import can_be_shaken, swept
 
@@ -46,6 +47,17 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
         yield {"type": "response", **content}, data
 
 
+_LABELS = {**PATH, **SOIL, **{f"{name}.value": label for name, label in EXTREMES.items()}}
+
+
+def _shown(name: str, value: float) -> Values:
+    """A figure in the unit in which it is told; None where it is not finite."""
+    told = cell(value, name)
+    assert told is not None
+    unit = display(told.dimension, [value]) if told.unit is None else in_unit(told.unit)
+    return {"unit": unit.name, "value": unit.factor * value if isfinite(value) else None}
+
+
 def _planted(machine: Machine) -> Values:
     """Figures of the tip's path, None where they are not finite, or why there are none."""
     try:
@@ -53,9 +65,8 @@ def _planted(machine: Machine) -> Values:
     except EquipoiseError as error:
         return {"type": "planting", "figures": [], "notes": [str(error)]}
     figures = [
-        {"name": name, "label": label, "unit": unit, "value": value if isfinite(value) else None}
-        for name, label, factor, unit in PATH
+        {"name": name, "label": label, **_shown(name, float(found.figures[name]))}
+        for name, label in _LABELS.items()
         if name in found.figures
-        for value in [factor * float(found.figures[name])]
     ]
-    return {"type": "planting", "figures": figures, "notes": list(found.notes)}
+    return {"type": "planting", "figures": figures, "notes": list(map(str, found.notes))}

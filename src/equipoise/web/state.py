@@ -15,8 +15,8 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.tip import surface_of
 from equipoise.results.analysis import Analysis
-from equipoise.scene import Scene
 from equipoise.signals import Periodic
+from equipoise.symbols.scene import Scene
 from equipoise.web.edits import Solved, extent_of, movable
 
 Array = np.ndarray[Any, Any]

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import equipoise as eq
-from equipoise.plotting.stage import Arrow
+from equipoise.figures.stage import Arrow
 from equipoise.results.analysis import Analysis
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 
 
 def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, Arrow]:

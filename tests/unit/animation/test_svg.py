@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.animation.svg import animated_svg
 from equipoise.errors import UsageError
+from equipoise.figures.svg import animated_svg
 from equipoise.i18n import speaking
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 from unit.animation.samples import analyzed, prepared, three_turns
 
 NAME = "{http://www.w3.org/2000/svg}"
@@ -114,7 +114,7 @@ def test_links_reach_from_pin_to_pin(name: str, one: str, other: str) -> None:
 def test_the_arrow_ends_on_the_curve_of_the_force_and_is_in_its_direction() -> None:
     found, scene, arrow = analyzed("yamashita-1")
     picture = Picture(animated_svg(scene, title="", frames=40, arrow=arrow))
-    (shaft,), (head,) = picture.ends("force"), picture.ends("head")
+    (shaft,), (head,) = picture.ends("force"), picture.ends("force-head")
     force = np.conj(found.forces.shaking_force.value[:: 720 // 40])
     reach = (head[0] - shaft[0])[:-1]
     per_newton = abs(reach[0]) / abs(force[0])

@@ -16,7 +16,7 @@ from equipoise.errors import EquipoiseError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
-from equipoise.terminal.phases import phasing_told
+from support.printing import printed
 
 TYPE_II = eq.load("yamashita-2")
 FORCE = Objective("shaking_force")
@@ -195,9 +195,9 @@ def test_values() -> None:
 
 
 def test_printed() -> None:
-    told = phasing_told(choose_phases(rows(4), [FORCE, ROLL]))
-    assert "orders of the shaking force that are left: 2, 4, 6, 8" in told
+    told = printed(choose_phases(rows(4), [FORCE, ROLL]).blocks())
+    assert "Orders of the shaking force that are left: 2, 4, 6, 8" in told
     assert [line.split() for line in told.splitlines() if line.startswith("4 ")] == [
-        ["4", "450.0", "0", "0", "0"]
+        ["4", "450.0", "0", "0", "0.0"]
     ]
     assert "roll moment" in told

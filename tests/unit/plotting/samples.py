@@ -12,9 +12,7 @@ import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.model import Machine
 from equipoise.planting.summary import PlantingFigures, plant
-from equipoise.plotting.linkage import Sketch, sketch
 from equipoise.plotting.planting import drawings
-from equipoise.scene import Scene
 
 SOIL = Soil(resistance=30, per_depth=500)
 BUNDLED = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
@@ -67,10 +65,6 @@ def odd_machines() -> dict[str, Machine]:
         "deep": a.with_planting(depth=0.2),
         "springs": sprung(a),
     }
-
-
-def sketched(machine: Machine, at: float) -> Sketch:
-    return sketch(Scene.of(eq.move(machine, [at])))
 
 
 @cache

@@ -16,12 +16,11 @@ from matplotlib.text import Text
 import equipoise as eq
 from equipoise.balancing.design_variables import Change
 from equipoise.balancing.pareto import Front
+from equipoise.figures.additions import grams, sector
+from equipoise.figures.changes import changes_figure
 from equipoise.plotting.analysis import linkage_figure
 from equipoise.plotting.balancing import drawings
-from equipoise.plotting.balancing.changes import changes_figure
 from equipoise.plotting.balancing.front import front_figure
-from equipoise.plotting.balancing.looks import grams
-from equipoise.plotting.balancing.pieces import sector
 from equipoise.plotting.style import styled
 from unit.plotting.balance_samples import (
     MM,
@@ -170,7 +169,7 @@ def test_springs() -> None:
         at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]),
         50 + 120j,
     ]
-    assert drawn == pytest.approx(np.array(ends))
+    assert drawn[[0, -1]] == pytest.approx(np.array(ends))
     assert f"{spring.stiffness:.4g} N/m" in words(pictures("spring")["changes"])
     none = Change("spring", "rocker", {"point": "C", "to": "S", "stiffness": 0.0, "free_length": 0})
     figure = drawings(replace(result, changes=(none,)))["changes"]

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from equipoise.figures.labels import Labels, spread
 from equipoise.planting.summary import plant
 from equipoise.plotting.crank import angle_step
-from equipoise.plotting.labels import Labels, spread
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.style import LARGE, SMALLEST, blank, heading, render, styled
-from equipoise.scene import hull
+from equipoise.symbols.scene import hull
 from unit.plotting.samples import BUNDLED, drawn, long_cycle, odd_machines, one_link, texts, words
 
 

@@ -15,21 +15,16 @@ import pytest
 from matplotlib.figure import Figure
 
 import equipoise as eq
+from equipoise.figures.paths import Paths
 from equipoise.planting.summary import plant
-from equipoise.plotting.linkage import draw_sketch
-from equipoise.plotting.paths import Paths
 from equipoise.plotting.planting import drawings
 from equipoise.plotting.stay import soil_spans
 from equipoise.plotting.style import render
 from unit.plotting.samples import (
     BUNDLED,
     SOIL,
-    arm,
     drawn,
-    engine,
     read_off,
-    sketched,
-    sprung,
     words,
 )
 
@@ -222,39 +217,6 @@ def test_paths_are_the_motion(name: str) -> None:
     assert np.all(near_hill < 2e-3)
     for cross in paths.crossings():
         assert np.sum(np.abs(drawn_there - cross) < 2e-3) >= 2
-
-
-def test_the_linkage_is_drawn_where_it_is() -> None:
-    figures = read_off("kim-chung-a")
-    at = figures["lowest.crank_angle"]
-    motion = eq.move(figures.machine, [at])
-    for name, place in sketched(figures.machine, at).places.items():
-        assert place == pytest.approx(motion.points[name].place[0], abs=1e-12)
-
-
-def test_gears_touch_and_blocks_sit_on_their_lines() -> None:
-    (sun, r_sun), (idler, r_idler), (_, other), (planet, r_planet) = sketched(arm(), 1.0).circles
-    assert abs(idler - sun) == pytest.approx(r_sun + r_idler) and r_sun == pytest.approx(r_idler)
-    assert abs(planet - idler) == pytest.approx(other + r_planet)
-    assert other == pytest.approx(2 * r_planet)
-    (slot,) = sketched(engine(), 0.5).slots
-    assert slot.place.real == pytest.approx(0, abs=1e-12) and abs(slot.way.imag) == pytest.approx(1)
-
-
-def test_springs_reach_from_link_to_frame() -> None:
-    machine = sprung(eq.load("kim-chung-a"))
-    found = sketched(machine, 0.5)
-    motion = eq.move(machine, [0.5])
-    hook = complex(*machine.frame["S"])
-    wanted = [(motion.points[point].place[0], hook) for point in ("P", "C")]
-    np.testing.assert_allclose(found.springs, wanted, atol=1e-12)
-    figure = Figure()
-    axes = figure.add_subplot()
-    draw_sketch(axes, found, 1.0, 0.1)
-    ends = {(complex(x[0], y[0]), complex(x[-1], y[-1]))
-            for x, y in (line.get_data() for line in axes.get_lines())}  # fmt: skip
-    for one, other in found.springs:
-        assert any(abs(one - a) + abs(other - b) < 1e-12 for a, b in ends)
 
 
 def test_without_travel_there_is_no_ground_panel() -> None:

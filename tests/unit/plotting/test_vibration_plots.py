@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.plotting.vibration import mode_drawings, response_drawings, transient_drawings
 from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 from equipoise.vibration.forced import respond
 from equipoise.vibration.mode_shapes import Mode
 from unit.plotting.samples import words

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
+from equipoise.figures.drawing import moving
+from equipoise.figures.linkage import linkage_figure
 from equipoise.plotting.analysis.curves import curves_figure, hodograph_figure
 from equipoise.plotting.analysis.force import force_figure, moment_figure, torque_figure
 from equipoise.plotting.analysis.joints import joint_polars_figures, joints_figures
-from equipoise.plotting.analysis.linkage import linkage_figure
-from equipoise.plotting.analysis.plane import moving
 from equipoise.plotting.analysis.polar import polar_figure
 from equipoise.plotting.analysis.spectrum import spectrum_figure
 from equipoise.plotting.vibration import numbered

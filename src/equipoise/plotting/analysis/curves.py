@@ -9,14 +9,12 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.figures.drawing import Drawn, arrow, draw_machine, hold, keep_clear, moving, traced
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import LINE_LOOKS, MM, over, title, unit_of
-from equipoise.plotting.analysis.plane import hold, moving, traced
 from equipoise.plotting.crank import angle_step
 from equipoise.plotting.hodograph import nothing_there, numbers, origin, square, told_angles
-from equipoise.plotting.labels import Labels
-from equipoise.plotting.linkage import HIGH, draw_frame, sketch
-from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import (
     FAINT,
     INK,
@@ -29,7 +27,7 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place, told_speed
-from equipoise.scene import Scene
+from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,8 +64,8 @@ def curves_figure(analysis: Analysis, points: Sequence[str] | None = None) -> Fi
     names = followed(analysis, points, MOST_POINTS)
     others = [name for name in moving(motion) if name not in names]
     held = [motion.points[name].place for name in (*names, *others)]
-    drawn = sketch(Scene.of(motion))
-    frame = list(drawn.frame.values())
+    scene = Scene.of(motion)
+    frame = [complex(scene.places[name][0]) for name in scene.frame]
     panel = hold(MM * np.concatenate([*held, frame]), WIDTH - LEFT - RIGHT, HIGHEST, LOWEST)
     figure = blank(LEFT + RIGHT + panel.width, TOP + BOTTOM + panel.height)
     heading(figure, analysis.machine.title, _told_dots(motion), LEFT)
@@ -76,9 +74,8 @@ def curves_figure(analysis: Analysis, points: Sequence[str] | None = None) -> Fi
     axes.set_xlabel(say("x in the frame, mm"))
     axes.set_ylabel(say("y in the frame, mm"))
     labels = Labels(axes)
-    draw_frame(axes, drawn, MM, panel.inch)
-    for z in frame:
-        labels.reserve(MM * z.real, MM * z.imag - 0.5 * HIGH * panel.inch, half=72 * 0.6 * HIGH)
+    drawn = Drawn(scene, 0, MM, panel.inch)
+    keep_clear(labels, draw_machine(axes, drawn, lambda piece: piece.layer in ("stands", "pivots")))
     for name in others:
         path = MM * over(analysis, motion.points[name].place)[1]
         axes.plot(path.real, path.imag, color=FAINT, linewidth=0.9, zorder=2)

@@ -8,6 +8,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
+from equipoise.figures.drawing import arrow, hold
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import (
     ALL,
@@ -20,10 +22,7 @@ from equipoise.plotting.analysis.looks import (
     title,
     unit_of,
 )
-from equipoise.plotting.analysis.plane import hold
 from equipoise.plotting.hodograph import nothing_there, numbers, origin, told_angles
-from equipoise.plotting.labels import Labels
-from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import (
     LINES,
     PALE,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.balancing.pareto import Front
 from equipoise.balancing.phase_search import Phasing
-from equipoise.plotting.balancing.changes import changes_figure
+from equipoise.figures.changes import changes_figure
 from equipoise.plotting.balancing.front import front_figure
 from equipoise.plotting.balancing.orders import orders_figures
 from equipoise.plotting.balancing.phases import phases_figure, together_figure

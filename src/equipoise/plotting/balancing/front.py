@@ -9,9 +9,9 @@ from matplotlib.figure import Figure
 
 from equipoise.balancing.naming import objective_named
 from equipoise.balancing.problem import Problem
+from equipoise.figures.additions import MM, grams
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.balancing.looks import MM, grams
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, MAIN, blank, fit, heading, short, shown
 from equipoise.plotting.vibration.panels import BETWEEN, LEFT, RIGHT, WIDTH, place, told_speed
 

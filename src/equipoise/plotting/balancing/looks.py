@@ -9,11 +9,12 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from equipoise import signals
+from equipoise.figures.additions import SHORT
 from equipoise.i18n import say, to_say
 from equipoise.plotting.analysis.looks import rounding, settled
 from equipoise.plotting.crank import Line, crank_axis, draw, mark
 from equipoise.plotting.hodograph import nothing_there
-from equipoise.plotting.style import LINES, MAIN, short, shown
+from equipoise.plotting.style import LINES, MAIN, short
 from equipoise.plotting.vibration.panels import Unit, by_phase, name_x, name_y
 from equipoise.results.analysis import analyze
 
@@ -27,7 +28,6 @@ Array = np.ndarray[Any, Any]
 Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
 
-MM = 1000.0
 THIN, STRONG = 0.9, 1.9
 """Points: width of the lines before and after."""
 LOOKS: dict[str, dict[str, Any]] = {
@@ -40,8 +40,6 @@ MUTED: dict[str, Any] = {"color": LINES, "linewidth": 1.3, "zorder": 3.0}
 WHEN = {"before": to_say("before"), "after": to_say("after")}
 SAMPLES = 360
 """Crank angles in a turn from which it is told what is rounding."""
-SHORT = 16
-"""Signs that a link's name may have beside other words."""
 NOTHING = 1e-9
 """Over the largest value before: what is left after is rounding."""
 ALIKE = 1e-6
@@ -120,8 +118,3 @@ def _line(angles: Array, values: Array, name: str, color: str, period: float) ->
 def name_angles(figure: Figure, drive: Drive) -> None:
     """What the x axes are: the crank's angle."""
     name_x(figure, by_phase(short(drive.link, SHORT), drive.speed, with_motor=False))
-
-
-def grams(mass: float) -> str:
-    """A mass (kg) as a workshop would tell it."""
-    return f"{shown(mass)} kg" if mass >= 10 else f"{shown(MM * mass)} g"

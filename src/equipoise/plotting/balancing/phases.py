@@ -11,12 +11,13 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Circle
 
 from equipoise.balancing.multi_row import Rows
+from equipoise.figures.additions import MM
+from equipoise.figures.drawing import arrow
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.plotting.analysis.looks import settled
 from equipoise.plotting.balancing.looks import (
     LOOKS,
-    MM,
     WHEN,
     Pair,
     compare,
@@ -25,7 +26,6 @@ from equipoise.plotting.balancing.looks import (
     paired,
     rounding_of,
 )
-from equipoise.plotting.marks import arrow
 from equipoise.plotting.style import FAINT, NORMAL, SMALL, blank, heading, short, shown
 from equipoise.plotting.vibration.panels import (
     LEFT,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
 from equipoise.plotting.balancing.looks import (
     LOOKS,
@@ -26,7 +27,6 @@ from equipoise.plotting.hodograph import (
     square,
     told_angles,
 )
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import blank, heading
 from equipoise.plotting.vibration.panels import (
     LEFT,

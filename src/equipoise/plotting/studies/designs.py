@@ -11,8 +11,8 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, MAIN, blank, heading, short
 from equipoise.plotting.vibration.panels import (
     LEFT,

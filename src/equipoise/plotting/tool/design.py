@@ -11,11 +11,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.figures.labels import Labels
 from equipoise.handheld.design_plan import MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, INK, blank, fit, heading, inches, short, shown
 from equipoise.plotting.tool.speeds import (
     SPEED,

@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, PALE, blank, heading, short, shown
 from equipoise.plotting.tool.speeds import (
     SPEED,

@@ -9,10 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.figures.labels import Labels
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, blank, heading, shown
 from equipoise.plotting.tool.shaft import (
     MM,

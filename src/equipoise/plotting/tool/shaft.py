@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from equipoise.figures.labels import spread
 from equipoise.i18n import say, to_say
-from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, SMALL, blank, inches, short
 from equipoise.plotting.vibration.panels import WIDTH
 

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, LINES, shown
 from equipoise.plotting.vibration.curves import (
     DECADES,

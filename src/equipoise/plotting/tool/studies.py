@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
+from equipoise.figures.labels import Labels
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.studies import number_of
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, fit, heading, short, shown
 from equipoise.plotting.tool.speeds import WORK, turns
 from equipoise.plotting.vibration.curves import LINE, legend_at, rows_of

@@ -9,8 +9,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import FAINT, LINES, blank, heading, short
 from equipoise.plotting.tool.shaft import plane_named
 from equipoise.plotting.tool.speeds import (

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from equipoise.mechanism.motion import move
-from equipoise.scene import Scene, hull
+from equipoise.symbols.scene import Scene, hull
 from equipoise.vibration.linkages import rows_of
 
 if TYPE_CHECKING:

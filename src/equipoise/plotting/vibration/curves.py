@@ -13,8 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator
 
+from equipoise.figures.labels import spread
 from equipoise.i18n import say
-from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, NORMAL, SMALL, STRESS, fit, short
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, RPM, WIDTH, log_scale
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from equipoise.figures.labels import spread
 from equipoise.i18n import say
-from equipoise.plotting.labels import spread
 from equipoise.plotting.style import FAINT, INK, LINES, MAIN, SMALL, STRESS, blank, heading, shown
 from equipoise.plotting.vibration.curves import (
     LOUD_BAND,

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, blank, heading, shown
 from equipoise.plotting.vibration.curves import (
     KINDS,

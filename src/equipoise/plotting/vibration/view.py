@@ -13,9 +13,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Polygon
 from matplotlib.ticker import FuncFormatter
 
+from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import Gauge, Mount, unit_vector
-from equipoise.plotting.labels import Labels
 from equipoise.plotting.style import INK, LINES, MAIN, PALE, STRESS, short, shown
 from equipoise.plotting.vibration.body import AXIS_SEEN, Shape, View, seen
 from equipoise.plotting.vibration.symbols import (

@@ -1,1 +1,0 @@
-"""Linkages that move: as a picture for pages, and as films."""

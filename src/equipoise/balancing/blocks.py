@@ -1,0 +1,429 @@
+"""What balancing shows: changes, before and after, prices, the front, phases, conditions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.balancing.measures import unit_of as si_unit
+from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.naming import MEASURES, objective_named, output_named, unit_of
+from equipoise.balancing.patterns import Pattern, arranged, patterns_for
+from equipoise.balancing.phase_cost import Term
+from equipoise.balancing.workshop import sentences
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.balance import Objective
+from equipoise.quantities import SI, Dimension, angle, in_unit, number
+from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
+from equipoise.results.tables import driven, rows_table
+
+if TYPE_CHECKING:
+    from equipoise.balancing.balanced import Balanced, Price
+    from equipoise.balancing.least_norm import Added
+    from equipoise.balancing.linear_conditions import Conditions
+    from equipoise.balancing.pareto import Front
+    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.physical_consistency import Verdict
+    from equipoise.balancing.sensitivity import Sensitivities
+    from equipoise.mechanism.model import Machine
+
+EXACT = 1e-12
+"""Gap below which nothing more is told of it."""
+WORSE, MOST_WORSE = 0.1, 4
+"""Growth that is told by itself; of how many figures at the most."""
+MOST_ORDERS = 8
+"""That are named one by one."""
+USUAL: dict[Dimension, str] = {"length": "mm", "angle": "mrad", "mass": "g", "inertia": "kg mm^2"}
+"""Units in which what is balanced is told."""
+OF_UNIT: dict[str, Dimension] = {unit: dimension for dimension, unit in reversed(SI.items())}
+
+
+def quantity(value: float, unit: str, scale: float = 0.0) -> Value:
+    """A figure with its SI unit, as a cell."""
+    dimension = OF_UNIT.get(unit)
+    usual = USUAL.get(dimension) if dimension is not None else None
+    return Value(value, scale, dimension=dimension, unit=usual)
+
+
+def balanced_blocks(found: Balanced) -> Iterator[Block]:
+    """Changes, before and after, prices of limits, equivalent speeds."""
+    yield Text(driven(found.original, found.original.drive.speed))
+    yield from outcome_blocks(found)
+
+
+def outcome_blocks(found: Balanced) -> Iterator[Block]:
+    """The same without what machine it is."""
+    if found.plan.objectives:
+        yield objectives_table(found)
+    lines = tuple(line for change in found.changes for line in sentences(change))
+    yield Facts(say("Changes; places and directions in the axes of each link"), lines)
+    if worse := say(", ").join(_worse(found)):
+        yield Text(say("Worse by it: {figures}", figures=worse), strong=True)
+    if found.phasing is not None:
+        yield from phasing_blocks(found.phasing)
+    yield Text(_proof(found))
+    yield before_after(found)
+    if found.prices:
+        yield _prices(found)
+    speeds = tuple(_speeds(found))
+    if speeds:
+        columns = (Column(""), Column(say("crank speed"), "angular speed", "rpm"))
+        yield Table(say("Speed at which it shakes as before"), columns, speeds)
+    if found.planting_kept is not None:
+        kept = say("The planting figures stay as they are.")
+        changed = say("The planting figures have changed.")
+        yield Text(kept if found.planting_kept else changed, strong=not found.planting_kept)
+    if found.notes:
+        yield Notes(found.notes)
+
+
+BEFORE_AFTER = (to_say("before"), to_say("after"), to_say("change"))
+
+
+def objectives_table(found: Balanced) -> Table:
+    """What was made small, before and after."""
+    rows: list[tuple[Cell, ...]] = []
+    for one in found.plan.objectives:
+        before, after = found.objectives[one.name]
+        unit = found.units[one.name]
+        name = objective_named(one, len(found.original.rows))
+        pair = (quantity(before, unit), quantity(after, unit, before))
+        rows.append((name, *pair, Change(before, after, after > (1 + WORSE) * before)))
+    if len(rows) > 1:
+        whole = found.plan.combined([1.0] * len(found.plan.objectives))
+        share = found.cost / whole
+        rows.append((f"{say('together')}, %", Value(100.0), Value(100 * share), Change(1.0, share)))
+    columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
+    return Table(say("What was made small"), columns, tuple(rows))
+
+
+def _growths(found: Balanced) -> dict[str, float]:
+    """By how much figures have grown, over what they were."""
+    return {
+        name: found.after.get(name, 0.0) / old - 1
+        for name, old in found.before.items()
+        if old > EXACT and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
+    }
+
+
+def _worse(found: Balanced) -> Iterator[str]:
+    """What has become larger by more than a tenth, the worst first."""
+    grown = _growths(found)
+    for name in sorted(grown, key=grown.__getitem__, reverse=True)[:MOST_WORSE]:
+        if grown[name] > WORSE:
+            yield f"{figure_named(found, name)} {100 * grown[name]:+.0f} %"
+
+
+def figure_named(found: Balanced, name: str) -> str:
+    """A figure that is told before and after, in words."""
+    if name == "mass":
+        return say("mass of the links")
+    output, _, measure = name.rpartition(".")
+    return say(", ").join((output_named(output, len(found.original.rows)), say(MEASURES[measure])))
+
+
+def figure_unit(found: Balanced, name: str) -> str:
+    """SI unit of such a figure."""
+    if name == "mass":
+        return "kg"
+    output, _, measure = name.rpartition(".")
+    if output.startswith("gauges"):
+        return si_unit(Objective(output), found.original)
+    return unit_of(output, measure)
+
+
+def said(text: Note | str) -> str:
+    """A sentence or a part of one, in the language that is spoken."""
+    return text.said() if isinstance(text, Note) else text
+
+
+def _within(found: Balanced) -> str:
+    """Of what the proof holds, where that is not all that the plan allows."""
+    return "".join(f" {said(part)}" for part in [found.scope] if str(part))
+
+
+def _proof(found: Balanced) -> str:
+    if found.gap is None:
+        return say(
+            "Found among {method}; that nothing better exists is not proved of phases.",
+            method=said(found.method),
+        )
+    return say(
+        "Proof, by {method}: nothing that is allowed is better by more than {gap} of the value "
+        "before{scope}.",
+        method=said(found.method),
+        gap=f"{max(found.gap, EXACT):.0e}",
+        scope=_within(found),
+    )
+
+
+def before_after(found: Balanced) -> Table:
+    """Every figure but those of planting; rounding beside the largest of its unit is 0."""
+    before, after = found.before, found.after
+    names = [name for name in before | after if not name.startswith("planting.")]
+    units = {name: figure_unit(found, name) for name in names}
+    largest: dict[str, float] = {}
+    for name in names:
+        kin = _kin(units[name])
+        top = max(before.get(name, 0.0), after.get(name, 0.0))
+        largest[kin] = max(largest.get(kin, 0.0), top)
+    rows: list[tuple[Cell, ...]] = []
+    for name in names:
+        least = 10 * largest[_kin(units[name])]
+        old, new = before.get(name), after.get(name, 0.0)
+        cells = (
+            quantity(x[name], units[name], least) if name in x else "" for x in (before, after)
+        )
+        nothing = old is not None and old <= 1e-10 * least
+        worse = old is not None and new > (1 + WORSE) * old and name != "mass"
+        changed: Cell = say("new") if old is None else Change(old, new, worse)
+        rows.append((figure_named(found, name), *cells, None if nothing else changed))
+    columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
+    return Table(say("Before and after"), columns, tuple(rows))
+
+
+def _kin(unit: str) -> str:
+    """The unit of which rounding of a unit comes."""
+    return "N m" if unit == "J" else unit
+
+
+def _prices(found: Balanced) -> Table:
+    named = {one.name: objective_named(one.objective) for one in found.plan.limits}
+    rows = tuple(
+        (
+            named.get(name, name),
+            quantity(price.at_most, found.units[name]),
+            _used(price, found.units[name]),
+            _saved(found, price, found.units[name]),
+        )
+        for name, price in found.prices.items()
+    )
+    labels = ("", say("at most"), say("used"), say("more of it saves"))
+    return Table(say("Limits"), tuple(map(Column, labels)), rows)
+
+
+def _used(price: Price, unit: str) -> Value:
+    value = quantity(price.used, unit)
+    broken = price.used > price.at_most * (1 + 1e-6)
+    return Value(value.value, broken=broken, dimension=value.dimension, unit=value.unit)
+
+
+def _saved(found: Balanced, price: Price, unit: str) -> str:
+    """What one more of a limit's unit would save."""
+    if not price.active:
+        return say("nothing")
+    per = _shown(unit)
+    if len(found.plan.objectives) != 1:
+        whole = found.plan.combined([1.0] * len(found.plan.objectives))
+        share = number(100 * price.price / per[0] / whole)
+        return say("{share} % of all per {unit}", share=share, unit=per[1])
+    factor, own = _shown(found.units[found.plan.objectives[0].name])
+    size = number(price.price * factor / per[0])
+    return say("{size} {own} per {unit}", size=size, own=own, unit=per[1])
+
+
+def _shown(unit: str) -> tuple[float, str]:
+    """Factor and unit in which a figure with an SI unit is told."""
+    dimension = OF_UNIT.get(unit)
+    if dimension is None or dimension not in USUAL:
+        return 1.0, unit
+    display = in_unit(USUAL[dimension])
+    return display.factor, display.unit
+
+
+def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
+    speeds = found.equivalent_speeds
+    several = any(name.startswith("rows.") for name in speeds)
+    for name, speed in speeds.items():
+        if name.startswith("rows.shaking_") if several else name.count(".") == 1:
+            yield figure_named(found, name), Value(speed)
+
+
+def front_blocks(found: Front) -> Iterator[Block]:
+    """The trade-off, a point a row."""
+    labels = (objective_named(found.first), objective_named(found.second), say("added mass"))
+    columns = []
+    for label, (_, unit, _) in zip(labels, found.columns(), strict=True):
+        dimension = OF_UNIT.get(unit)
+        columns.append(Column(label, dimension, USUAL.get(dimension) if dimension else None))
+    values = (column.tolist() for _, _, column in found.columns())
+    rows = tuple(tuple(Value(one, 1e-9) for one in row) for row in zip(*values, strict=True))
+    yield Table(say("Trade-off"), tuple(columns), rows)
+    yield Text(
+        say(
+            "Every point is as good as any can be, to {gap} of the value before{scope}.",
+            gap=f"{max(found.gap, EXACT):.0e}",
+            scope=_within(found.points[0]),
+        )
+    )
+
+
+# -- phases of rows --------------------------------------------------------------------------------
+
+LATERAL = {"roll_moment": to_say("roll moment"), "yaw_moment": to_say("yaw moment")}
+
+
+def phasing_blocks(found: Phasing) -> Iterator[Block]:
+    """Rows with their phases, what is left of the shaking force and how it twists."""
+    yield rows_table(found.machine)
+    told = [f"{order:.4g}" for order in found.remaining]
+    if told:
+        orders = say(", ").join(told[:MOST_ORDERS])
+        more = len(told) - MOST_ORDERS
+        orders = say("{orders} and higher ones", orders=orders) if more > 0 else orders
+        yield Text(say("Orders of the shaking force that are left: {orders}.", orders=orders))
+    else:
+        yield Text(say("No order of the shaking force is left."))
+    whole = max(max(values) for values in found.lateral.values())
+    rows = tuple(
+        (say(LATERAL[name]), *(Value(value, 1e3 * whole) for value in values))
+        for name, values in found.lateral.items()
+    )
+    columns = (Column(""), Column(say("before"), "torque"), Column(say("after"), "torque"))
+    yield Table(say("Twist by the shaking force, RMS"), columns, rows)
+
+
+def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Block]:
+    """Patterns for a number of rows at a spacing (m): what each leaves, and how it twists."""
+    apart = number(1e3 * spacing)
+    yield Text(say("{rows} rows, {apart} mm from row to row", rows=rows, apart=apart))
+    patterns = patterns_for(rows)
+    phases = tuple(
+        (one.name, " ".join(angle(p).removesuffix(".0") for p in one.phases), one.source)
+        for one in patterns
+    )
+    labels = ("", f"{say('phases of the rows')}, deg", say("printed in"))
+    yield Table(say("Patterns"), tuple(map(Column, labels)), phases)
+    left = tuple(
+        (one.name, _left(one), say("yes") if one.twists else say("no")) for one in patterns
+    )
+    labels = ("", say("orders left, of how many rows"), say("twist"))
+    title = say("What is left, up to the order from which it repeats")
+    yield Table(title, tuple(map(Column, labels)), left)
+    together = Pattern("", ((0, 1),) * rows)
+    laid = [(say("all in phase"), arranged(machine, together, spacing))]
+    laid += [(one.name, arranged(machine, one, spacing)) for one in patterns]
+    outputs: dict[str, Dimension] = {"shaking_force": "force"} | dict.fromkeys(LATERAL, "torque")
+    columns = (Column(""), *(Column(output_named(name), kind) for name, kind in outputs.items()))
+    table = tuple((name, *(_of_all(one, output) for output in outputs)) for name, one in laid)
+    yield Table(say("Figures of this machine; RMS"), columns, table)
+
+
+def _left(pattern: Pattern) -> str:
+    return ", ".join(f"{order} of {rows:.4g}" for order, rows in pattern.remaining.items())
+
+
+def _of_all(machine: Machine, output: str) -> Value:
+    term = Term(Objective(output), Rows(machine).signals(Objective(output)))
+    phases = np.array([row.phase for row in machine.rows])
+    return Value(float(term.values(phases)), 10 * term.single)
+
+
+# -- conditions ------------------------------------------------------------------------------------
+
+WANTED = {"zero": to_say("zero"), "sine": to_say("a pure sine of the crank angle")}
+COMBINED = {"kg": "kg", "kg m": "kg mm", "kg m2": "kg mm^2"}
+"""SI unit of a combination -> unit in which it is shown."""
+TIMES = {"kg": 1.0, "kg m": 1e3, "kg m2": 1e6}
+"""SI unit of a combination -> how many of the shown units it is."""
+
+
+def conditions_blocks(*found: Conditions, verdict: Verdict | None = None) -> Iterator[Block]:
+    """Conditions, one table for each kind, and whether they can be met."""
+    yield Text(
+        say("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")
+    )
+    for one in found:
+        yield _conditions(one)
+    if verdict is not None:
+        title = say("By the links' own masses, none of them lighter than now")
+        yield Facts(title, tuple(str(answer.reason) for answer in verdict.answers))
+
+
+def _conditions(found: Conditions) -> Block:
+    subject = say(" and ").join(map(output_named, found.outputs))
+    told = {"what": subject, "wanted": say(WANTED[found.kind])}
+    if not found.count:
+        return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
+    rows = tuple(
+        (
+            f"{one.text} = 0",
+            Value(TIMES[one.unit] * one.factor * float(residual)),
+            COMBINED[one.unit],
+        )
+        for one, residual in zip(found.readings, found.residuals, strict=True)
+    )
+    title = say("Conditions for {what} to be {wanted}", **told)
+    return Table(title, (Column(""), Column(say("now")), Column("")), rows)
+
+
+def added_blocks(added: Added) -> Iterator[Block]:
+    """First moments to be added, and what that makes of the centres of mass."""
+    scale = max((abs(part) for pair in added.totals.values() for part in pair), default=0.0)
+    rows: list[tuple[Cell, ...]] = []
+    for link, moment in added.moments.items():
+        center = added.machine.links[link].center_of_mass or (0.0, 0.0)
+        size = max(map(abs, center))
+        moments = (Value(1e3 * part, 1e3 * scale) for part in (*moment, *added.totals[link]))
+        rows.append((link, *moments, *(Value(part, size) for part in center)))
+    labels = (say("added x"), say("added y"), say("then x"), say("then y"))
+    columns = (Column(""), *(Column(label, unit="kg mm") for label in labels))
+    centers = (Column(say("centre x"), "length", "mm"), Column(say("centre y"), "length", "mm"))
+    title = say("Least first moments that make the shaking force zero, in each link's axes")
+    yield Table(title, (*columns, *centers), tuple(rows))
+
+
+CHANGES: dict[str, tuple[str, float]] = {
+    "mass": ("kg", 1.0),
+    "center_x": ("mm", 1e-3),
+    "center_y": ("mm", 1e-3),
+    "inertia": ("kg mm^2", 1e-6),
+}
+"""Unit of each change, and what it is in SI units."""
+
+
+def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
+    """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
+    if zero:
+        yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    rows: list[tuple[Cell, ...]] = []
+    for one in found.ranked:
+        unit, size = CHANGES[one.change]
+        shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
+        places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
+        rows.append((one.name, Value(size * one.rms), unit, Value(one.percent), places))
+    kind = OF_UNIT[unit_of(found.output, "rms")]
+    columns = (
+        Column(""),
+        Column(say("RMS"), kind),
+        Column(say("per")),
+        Column(say("RMS of 1 %"), kind),
+        Column(f"{say('no effect at')}, deg"),
+    )
+    title = say(
+        "{what}: effect of each parameter, at constant crank speed",
+        what=output_named(found.output),
+    )
+    yield Table(title, columns, tuple(rows))
+    yield Text(
+        say(
+            "1 %: of the link's mass or inertia, or its centre of mass moved by 1 % of the "
+            "machine's size"
+        )
+    )
+    still = [one.name for one in found.by_name.values() if not one.has_effect]
+    if still:
+        yield Text(say("No effect at any crank angle: {names}", names=say(", ").join(still)))
+
+
+SHOWS: dict[str, Any] = {
+    "Balanced": balanced_blocks,
+    "Front": front_blocks,
+    "Phasing": phasing_blocks,
+    "Conditions": conditions_blocks,
+    "Added": added_blocks,
+    "Sensitivities": sensitivities_blocks,
+}

@@ -1,0 +1,234 @@
+"""Films of a linkage: GIF, and MP4 with the extra `video`; the same bytes on every run."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterator
+from io import BytesIO
+from itertools import combinations, cycle, islice
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.errors import UsageError
+from equipoise.figures.moving import Moving, laid_out
+from equipoise.figures.stage import Arrow, check_seconds, check_width
+from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors
+
+if TYPE_CHECKING:
+    from equipoise.symbols.scene import Scene
+
+Array = np.ndarray[Any, Any]
+Told = Callable[[int, int], None]
+
+RATES = {"gif": 25, "mp4": 30}
+"""Frames a second.  Delays of a GIF are whole hundredths of a second."""
+MOST_PIXELS = 600_000_000
+"""In all frames of a film, each taken as square."""
+MOST_COLORS = 255
+"""In a GIF, and the number of one that is not known yet."""
+ENCODING = {"crf": "18", "threads": "1", "bf": "0"}
+"""Options of the encoder: how good, and that its bytes are the same on every run: frames that
+are told from later ones differ now and then."""
+BT_709 = 1
+"""Number of the standard by which players turn a film's brightness and hue into colours."""
+
+
+def gif(
+    scene: Scene,
+    *,
+    traced: Collection[str] = (),
+    seconds: float = 2.0,
+    width: int = 640,
+    arrow: Arrow | None = None,
+    dark: bool = False,
+    told: Told | None = None,
+) -> bytes:
+    """The whole cycle as a GIF that begins anew for ever.
+
+    Parameters
+    ----------
+    traced : points whose path is drawn.
+    seconds : for a turn of the crank.
+    width : pixels.
+    arrow : the shaking force, where it is wanted.
+    dark : light lines on a dark ground.
+    told : called with how many frames are done, and how many there are.
+
+    Raises
+    ------
+    UsageError : there is no such point, or too many pixels would have to be drawn.
+    """
+    from PIL import Image
+
+    drawn = _prepared(scene, traced, seconds, "gif", width, arrow)
+    colors = DARK if dark else LIGHT
+    count = _in_a_cycle(drawn)
+    check_frames(count, width)
+    shades = Shades(drawn, colors)
+    pictures = []
+    for frame in _counted(_cycle(drawn, colors), count, told):
+        picture = Image.fromarray(shades.numbers(frame))
+        picture.putpalette(shades.palette.tobytes())
+        pictures.append(picture)
+    file = BytesIO()
+    first, others = pictures[0], pictures[1:]
+    delay = 1000 // RATES["gif"]
+    first.save(file, "GIF", save_all=True, append_images=others, duration=delay, loop=0)
+    return file.getvalue()
+
+
+def mp4(
+    scene: Scene,
+    *,
+    traced: Collection[str] = (),
+    seconds: float = 2.0,
+    turns: int | None = None,
+    width: int = 640,
+    arrow: Arrow | None = None,
+    dark: bool = False,
+    told: Told | None = None,
+) -> bytes:
+    """A film as MP4 (H.264); needs the extra `video`.
+
+    turns : of the crank; the whole cycle if None.  The rest as in `gif`.
+
+    Raises
+    ------
+    UsageError : as in `gif`, or the extra is missing.
+    """
+    av = _library()
+    width += width % 2  # both sides are even, as hues are stored for two by two pixels
+    drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
+    whole = _in_a_cycle(drawn)
+    count = whole if turns is None else max(1, round(whole * turns / drawn.stage.turns))
+    check_frames(count, width)
+    frames = islice(cycle(_cycle(drawn, DARK if dark else LIGHT)), count)
+    file = BytesIO()
+    with av.open(file, "w", "mp4", options={"fflags": "+bitexact"}) as film:
+        stream = film.add_stream("libx264", RATES["mp4"], ENCODING)
+        stream.width, stream.height, stream.pix_fmt = width, drawn.stage.height, "yuv420p"
+        for name in ("colorspace", "color_primaries", "color_trc"):
+            setattr(stream.codec_context, name, BT_709)
+        for number, frame in enumerate(_counted(frames, count, told)):
+            picture = av.VideoFrame.from_ndarray(frame, "rgb24")
+            picture = picture.reformat(format="yuv420p", dst_colorspace=BT_709)
+            picture.pts = number
+            film.mux(stream.encode(picture))
+        film.mux(stream.encode())
+    return file.getvalue()
+
+
+def in_a_turn(kind: str, seconds: float) -> int:
+    """Frames in a turn of the crank that takes some seconds."""
+    return max(1, round(seconds * RATES[kind]))
+
+
+def _library() -> Any:
+    try:
+        import av
+    except ModuleNotFoundError as error:
+        if error.name != "av":
+            raise
+        raise UsageError(
+            "a film as MP4 needs av, which is not installed; install it with: "
+            'pip install "equipoise[video]"'
+        ) from error
+    return av
+
+
+def _prepared(
+    scene: Scene,
+    traced: Collection[str],
+    seconds: float,
+    kind: str,
+    width: int,
+    arrow: Arrow | None,
+) -> Moving:
+    check_seconds(seconds)
+    check_width(width)
+    frames = in_a_turn(kind, seconds)
+    drawn = laid_out(scene, traced, frames, width, arrow)
+    if round(frames * drawn.stage.turns) > (angles := len(scene.crank_angle)):
+        raise UsageError(
+            f"got {angles} crank angles, too few for {frames} frames in a turn; give more of them"
+        )
+    return drawn
+
+
+def _in_a_cycle(drawn: Moving) -> int:
+    """Frames until the motion is where it began; without a cycle it goes back the way it came."""
+    steps = len(drawn.stage.times) - 1
+    return steps if drawn.stage.closed else 2 * steps
+
+
+def _cycle(drawn: Moving, colors: Colors) -> Iterator[Array]:
+    from equipoise.figures.frames import draw_frames
+
+    frames = draw_frames(drawn, colors)
+    if drawn.stage.closed:
+        return frames
+    there = list(frames)
+    return iter(there + there[-2:0:-1])
+
+
+def _counted(frames: Iterator[Array], count: int, told: Told | None) -> Iterator[Array]:
+    for done, frame in enumerate(frames, 1):
+        yield frame
+        if told is not None:
+            told(done, count)
+
+
+# -- colours of a GIF ------------------------------------------------------------------------------
+
+
+class Shades:
+    """Every colour that is drawn with, and what lies between two of them where edges are smooth.
+
+    All frames share them, so that nothing flickers.
+
+    palette : (n, 3) uint8.
+    """
+
+    def __init__(self, drawn: Moving, colors: Colors) -> None:
+        named = sorted(_colors(drawn), key=list(colors).index)
+        few = [np.frombuffer(bytes.fromhex(colors[name][1:]), np.uint8) for name in named]
+        between = (MOST_COLORS - len(few)) * 2 // (len(few) * (len(few) - 1))
+        parts = np.arange(1, between + 1)[:, None] / (between + 1)
+        mixed = [one + (other.astype(float) - one) * parts for one, other in combinations(few, 2)]
+        self.palette = np.round(np.vstack([*few, *mixed])).astype(np.uint8)
+        self._known = np.full(1 << 24, MOST_COLORS, np.uint8)
+
+    def numbers(self, frame: Array) -> Array:
+        """(height, width, 3) uint8 -> number of the nearest colour, (height, width) uint8."""
+        codes = frame.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
+        found = self._known[codes]
+        new = np.unique(codes[found == MOST_COLORS])
+        if new.size:
+            self._learn(new)
+            found = self._known[codes]
+        return found
+
+    def _learn(self, codes: Array) -> None:
+        few = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.int32)
+        apart = few[:, None] - self.palette.astype(np.int32)
+        self._known[codes] = np.sum(apart**2, axis=-1).argmin(axis=-1)
+
+
+def _colors(drawn: Moving) -> set[str]:
+    """Names of those that are drawn with."""
+    looks = [LOOKS[stroke.role] for part in drawn.parts for stroke in part.strokes]
+    names = {name for look in looks for name in (look.fill, look.line) if name is not None}
+    return names | {label.color for label in drawn.labels} | {"paper"}
+
+
+# -- how long, how large and how many frames a film may be -----------------------------------------
+
+
+def check_frames(count: int, width: int) -> None:
+    """Raise `UsageError` if that is too much to draw."""
+    most = MOST_PIXELS // width**2
+    if count > most:
+        raise UsageError(
+            f"the film has {count} frames; {width} pixels wide it can have {most}: "
+            "give a shorter time, fewer turns, or a smaller width"
+        )

@@ -1,0 +1,512 @@
+"""What a hand-held tool shows: shaft, modes, transmission, the hands, what to change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.exposure.blocks import exposure_blocks
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.exposed import IDLING, RACING, WORKING
+from equipoise.handheld.model import PLANES
+from equipoise.handheld.studies import number_of
+from equipoise.i18n import say, to_say
+from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.results.blocks import (
+    Block,
+    Cell,
+    Change,
+    Column,
+    Many,
+    Notes,
+    Section,
+    Table,
+    Text,
+    Value,
+)
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import Before, ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Station, Tool
+    from equipoise.handheld.modes import PlaneModes, ToolModes
+    from equipoise.handheld.response import ToolResponse
+    from equipoise.handheld.studies import Variation
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.handheld.transmission import Transmission, Transmissions
+
+Array = np.ndarray[Any, Any]
+
+SILENT = 1e3
+"""Times 1e-10 of the largest transmission, below which it is none."""
+MOST_QUIET, MOST_PEAKS = 8, 5
+"""Quiet speeds, and peaks, that are told of each curve."""
+MOST_ROWS = 25
+"""Rows of a variation."""
+DIGITS = 6
+"""Significant digits of lambda, as tables of beams have them."""
+RPM: tuple[Dimension, str] = ("angular speed", "rpm")
+UNITS: dict[Dimension, str] = {
+    "length": "mm",
+    "mass": "g",
+    "stiffness": "kN/m",
+    "speed": "mm/s",
+    "acceleration": "m/s^2",
+    "angular speed": "rpm",
+}
+"""Units in which tools are told."""
+NAMED = {WORKING: to_say("working"), IDLING: to_say("idling"), RACING: to_say("racing")}
+SIDES = {"vertical": to_say("vertical"), "lateral": to_say("lateral")}
+EDGES = {
+    "lowest": to_say("as low as it may be"),
+    "highest": to_say("as high as it may be"),
+}
+VARIED = {
+    "position": to_say("position of {station}"),
+    "mass": to_say("mass of {station}"),
+    "stiffness": to_say("stiffness under {station}"),
+    "damping": to_say("damping under {station}"),
+    "rotational_stiffness": to_say("rotational stiffness under {station}"),
+    "rotational_damping": to_say("rotational damping under {station}"),
+    "harness.stiffness": to_say("stiffness of the harness at {station}"),
+    "harness.damping": to_say("damping of the harness at {station}"),
+    "absorber.mass": to_say("mass of the absorber at {station}"),
+    "absorber.stiffness": to_say("stiffness of the absorber at {station}"),
+    "absorber.damping": to_say("damping of the absorber at {station}"),
+}
+"""Key of a number that a design may change -> what it is."""
+
+
+def cell(value: float, dimension: str, **more: Any) -> Value:
+    """A number of a dimension, in the unit that is usual of tools."""
+    kind: Dimension = dimension  # type: ignore[assignment]
+    return Value(value, dimension=kind, unit=UNITS.get(kind), **more)
+
+
+def column(label: str, dimension: Dimension, at: tuple[Dimension, str] = RPM) -> Column:
+    """A column of such numbers."""
+    return Column(label, dimension, UNITS.get(dimension), at)
+
+
+def varied_named(name: str) -> str:
+    """A number that a design may change, such as ``belt harness.stiffness``, in words."""
+    station, _, key = name.rpartition(" ")
+    return say(VARIED[key], station=station) if key in VARIED else name
+
+
+def ends_told(speed: Array) -> dict[str, str]:
+    """The ends of a range of speeds, rpm, as values of a text."""
+    return {
+        "low": number(float(speed[0]) / PER_RPM),
+        "high": number(float(speed[-1]) / PER_RPM),
+    }
+
+
+# -- the tool --------------------------------------------------------------------------------------
+
+
+def summary_blocks(tool: Tool) -> Iterator[Block]:
+    """Length and masses in a sentence."""
+    shaft = tool.shaft
+    section = shaft.profile.section(shaft.theory)
+    yield Text(
+        say(
+            "Shaft of {length} mm and {mass} kg, bending stiffness {stiffness} N m² ({theory}); "
+            "the whole tool has {whole} kg.",
+            length=number(1e3 * shaft.length),
+            mass=number(shaft.mass),
+            stiffness=number(section.bending_stiffness),
+            theory=shaft.theory,
+            whole=number(tool.mass),
+        )
+    )
+
+
+def model_blocks(tool: Tool) -> Iterator[Block]:
+    """Shaft, stations, and what shakes."""
+    yield from summary_blocks(tool)
+    rows = tuple(
+        (one.name, Value(one.position), Value(one.mass), say(", ").join(_holds(one)))
+        for one in tool.stations
+    )
+    columns = (
+        Column(""),
+        column(say("position"), "length"),
+        column(say("mass"), "mass"),
+        Column(say("with")),
+    )
+    yield Table(say("Stations of the shaft"), columns, rows)
+    if tool.excitations:
+        shakes = tuple(
+            (one.name or one.file, one.station, Value(one.ratio)) for one in tool.excitations
+        )
+        named = (say("source"), say("station"), say("turns a turn of the engine"))
+        yield Table(say("What shakes the tool"), tuple(map(Column, named)), shakes)
+
+
+def _holds(station: Station) -> Iterator[str]:
+    if station.hand is not None:
+        yield say("hand") if station.hand.hands == 1 else say("both hands")
+    if station.harness is not None:
+        yield say("harness")
+    if station.absorber is not None:
+        yield say("absorber")
+    if any(station.stiffness) or any(station.damping):
+        yield say("ground")
+
+
+def unbounded(tool: Tool) -> Iterator[Block]:
+    """What to know of peaks where nothing takes power."""
+    measured = any(one.hand is not None and one.hand.impedance for one in tool.stations)
+    if not (tool.damped or measured):
+        told = say(
+            "nothing takes power from this tool, so at its resonances there is no bound; peaks "
+            "are only those at the speeds that are computed"
+        )
+        yield Notes((told,))
+
+
+# -- free vibration --------------------------------------------------------------------------------
+
+
+def modes_blocks(found: ToolModes) -> Iterator[Block]:
+    """Natural frequencies, eigenvalues with damping, and points that stand still."""
+    for name, plane in _planes(found):
+        yield _frequencies(name, plane)
+        if found.tool.damped:
+            yield _damped(name, plane)
+    if found.notes:
+        yield Notes(found.notes)
+
+
+def _planes(found: ToolModes) -> Iterable[tuple[str, PlaneModes]]:
+    if found.alike:
+        return [(say("both planes"), found.planes[0])]
+    names = (say("vertical plane"), say("lateral plane"))
+    return zip(names, found.planes, strict=True)
+
+
+def _frequencies(name: str, plane: PlaneModes) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for k, frequency in enumerate(plane.cycles_per_second.tolist()):
+        if k < len(plane.rigid):
+            rigid = say("rigid: {motion}", motion=plane.rigid[k])
+            rows.append((str(k + 1), Value(0.0), Value(0.0), Value(0.0), rigid))
+            continue
+        still = tuple(cell(place, "length") for place in plane.nodes[k].tolist())
+        sizes = (Value(frequency), Value(60 * frequency))
+        parameter = Value(float(plane.parameter[k]), digits=DIGITS)
+        rows.append((str(k + 1), *sizes, parameter, Many(still)))
+    columns = (
+        Column(say("mode")),
+        Column("Hz"),
+        Column("1/min"),
+        Column("λ"),
+        column(say("stands still at"), "length"),
+    )
+    title = say("Natural frequencies without damping, {plane}", plane=name)
+    return Table(title, columns, tuple(rows))
+
+
+def _damped(name: str, plane: PlaneModes) -> Table:
+    rows = tuple(
+        (
+            Value(mode.eigenvalue.real, 1e7 * abs(mode.eigenvalue) * 1e-10),
+            Value(mode.eigenvalue.imag),
+            Value(mode.cycles_per_second),
+            Value(mode.damping_ratio, 1e-3),
+            "" if mode.eigenvalue.imag else say("does not swing"),
+        )
+        for mode in plane.damped
+    )
+    columns = (
+        Column(say("real"), unit="1/s"),
+        Column(say("imaginary"), unit="1/s"),
+        Column("Hz"),
+        Column(say("damping ratio")),
+        Column(""),
+    )
+    return Table(say("Eigenvalues with damping, {plane}", plane=name), columns, rows)
+
+
+# -- forced vibration ------------------------------------------------------------------------------
+
+
+def sweep_blocks(found: ToolSweep) -> Iterator[Block]:
+    """Transmission of a unit force, and what the stations do, over a range of speeds."""
+    count = len(found.speed)
+    yield Text(
+        say("Engine at {low} to {high} rpm, {count} speeds", count=count, **ends_told(found.speed))
+    )
+    yield from unbounded(found.tool)
+    if found.transmissions is not None:
+        yield from transmissions_blocks(found.transmissions)
+    if found.response is None:
+        return
+    yield _stations(found)
+    yield _forces(found)
+    moment, place = found.largest_moment
+    k = int(np.argmax(moment))
+    yield Text(
+        say(
+            "Largest bending moment: {moment} N m RMS at {place} mm of the shaft, engine at "
+            "{speed} rpm",
+            moment=number(float(moment[k])),
+            place=number(1e3 * float(place[k])),
+            speed=number(float(found.speed[k]) / PER_RPM),
+        )
+    )
+
+
+def transmissions_blocks(found: Transmissions) -> Iterator[Block]:
+    """Peaks and quiet speeds of the force at each station."""
+    for name, one in found.stations.items():
+        yield _transmission(name, found, one)
+
+
+def _transmission(name: str, found: Transmissions, one: Transmission) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
+        size = one.size[plane]
+        peaks = tuple(
+            Value(float(size[k]), at=float(found.speed[k])) for k in _tops(found.speed, size)
+        )
+        scale = SILENT * float(np.max(size))
+        quiet = tuple(
+            Value(float(depth), scale, float(at))
+            for at, depth in zip(one.quiet[plane], one.lowest[plane], strict=False)
+        )
+        more = max(len(one.quiet[plane]) - MOST_QUIET, 0)
+        label = say("both planes") if found.tool.alike else say(SIDES[side])
+        shown = Many(quiet[:MOST_QUIET], more) if quiet else say("none")
+        rows.append((label, Many(peaks) if peaks else say("none"), shown))
+    columns = (
+        Column(""),
+        Column(say("peaks, the largest first"), at=RPM),
+        Column(say("quiet between them"), at=RPM),
+    )
+    told = {"station": name, "source": found.source}
+    title = say("Force at {station} over a force at {source}, once a turn; at speeds", **told)
+    return Table(title, columns, tuple(rows))
+
+
+def _tops(speed: Array, size: Array) -> list[int]:
+    """The largest peaks of a curve (S,), the largest first."""
+    inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
+    return sorted(inner.tolist(), key=lambda k: -size[k])[:MOST_PEAKS]
+
+
+def _stations(found: ToolSweep) -> Table:
+    """The speed at which each station is accelerated most, and what it does there."""
+    named = [(one.name, one.position) for one in found.tool.stations]
+    named += [("", place) for place in found.further]
+    at = found.places([place for _, place in named])
+    largest = float(np.max(found.largest_moment[0]))
+    rows = []
+    for row, (name, place) in enumerate(named):
+        k = int(np.argmax(at.acceleration[row]))
+        moved = (at.displacement, at.velocity, at.acceleration)
+        cells = (Value(float(part[row, k])) for part in moved)
+        bent = Value(float(at.moment[row, k]), largest)
+        rows.append((name, Value(place), Value(float(found.speed[k])), *cells, bent))
+    columns = (
+        Column(""),
+        column(say("at"), "length"),
+        column(say("engine"), "angular speed"),
+        Column(say("displacement"), "length", "mm"),
+        column(say("velocity"), "speed"),
+        column(say("acceleration"), "acceleration"),
+        Column(say("bending moment"), "torque", "N m"),
+    )
+    title = say(
+        "Stations at the speed at which each is accelerated most, and what it does there; RMS "
+        "over time, both planes, and bending moment"
+    )
+    return Table(title, columns, tuple(rows))
+
+
+def _forces(found: ToolSweep) -> Block:
+    rows: list[tuple[Cell, ...]] = []
+    for one in found.tool.stations:
+        powers = found.power(one.name)
+        for part, force in found.force(one.name).items():
+            k = int(np.argmax(force))
+            largest = Value(float(force[k]), at=float(found.speed[k]))
+            rows.append((one.name, say(part), largest, Value(float(np.max(powers[part])), 1e-6)))
+    if not rows:
+        return Text(say("Nothing holds the tool."))
+    columns = (Column(""), Column(""), column(say("force"), "force"), column(say("power"), "power"))
+    title = say(
+        "Largest forces on what holds the tool, of both hands where two hold on, RMS over time"
+    )
+    return Table(title, columns, tuple(rows))
+
+
+def response_blocks(found: ToolResponse) -> Iterator[Block]:
+    """What every station does at each speed that was computed, at most some of them."""
+    step = -(-len(found.speed) // MOST_ROWS)
+    names = [one.name for one in found.tool.stations]
+    rows = tuple(
+        (Value(float(found.speed[k])), *(Value(_rms(found, name, k)) for name in names))
+        for k in range(0, len(found.speed), step)
+    )
+    columns = (
+        column(say("engine"), "angular speed"),
+        *(column(name, "acceleration") for name in names),
+    )
+    yield Table(say("Acceleration of the stations, RMS"), columns, rows)
+
+
+def _rms(found: ToolResponse, station: str, speed: int) -> float:
+    amplitudes = found.acceleration(station)[..., speed]
+    return float(np.sqrt(np.sum(np.abs(amplitudes) ** 2) / 2))
+
+
+# -- hands -----------------------------------------------------------------------------------------
+
+
+def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
+    """Weighted acceleration of every hand, and the day of the one that gets most."""
+    yield _hands(found)
+    low, high = (int(k) for k in (np.argmin(found.a_hv), np.argmax(found.a_hv)))
+    least, most = (
+        say(
+            "{value} m/s² at {speed} rpm",
+            value=number(float(found.a_hv[k])),
+            speed=number(float(found.speed[k]) / PER_RPM),
+        )
+        for k in (low, high)
+    )
+    yield Text(say("Worst hand over this range: a_hv from {low} to {high}", low=least, high=most))
+    yield Text(say("Along the shaft nothing moves in bending, so a_hv has two axes."))
+    yield from unbounded(found.response.tool)
+    if found.worst is None:
+        yield Text(say("There is no daily exposure without work; the file tells none."))
+        return
+    title = say("A day at {hand}, the hand that gets most", hand=found.worst)
+    yield Section("day", title, tuple(exposure_blocks(found.days[found.worst])))
+
+
+def _hands(found: ToolExposure) -> Table:
+    """At the speeds that the file names: a_hv, with idling and racing as one value."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, grip in found.grips.items():
+        for what, part in found.named.items():
+            vertical, lateral = (float(value) for value in part[name].a_hw[:, 0])
+            plain = float(np.sqrt(np.sum(part[name].acceleration[:, 0] ** 2)))
+            values = (plain, vertical, lateral, float(part[name].a_hv[0]))
+            rows.append((name, say(NAMED.get(what, what)), *map(Value, values)))
+        if name in found.equivalents:
+            label = say("idling and racing, ISO 22867")
+            rows.append((name, label, None, None, None, Value(found.equivalents[name])))
+        k = int(np.argmax(grip.a_hv))
+        top = Value(float(grip.a_hv[k]), at=float(found.speed[k]))
+        rows.append((name, say("most"), None, None, None, top))
+    labels = (say("unweighted"), say("vertical"), say("lateral"), "a_hv")
+    columns = (
+        Column(say("hand")),
+        Column(say("engine")),
+        *(column(label, "acceleration") for label in labels),
+    )
+    title = say("Acceleration of the hands, RMS, weighted by Wh of ISO 5349-1")
+    return Table(title, columns, tuple(rows))
+
+
+# -- what to change --------------------------------------------------------------------------------
+
+
+def design_blocks(found: ToolDesign) -> Iterator[Block]:
+    """What to change, and what that brings: before and after."""
+    rows: list[tuple[Cell, ...]] = []
+    for one, edge in zip(found.variables, found.edges, strict=True):
+        told = say(EDGES[edge]) if edge in EDGES else ""
+        rows.append((figure_named(one), *_pair(one), told))
+    rows += [(figure_named(one), *_pair(one, told=True), "") for one in found.figures]
+    labels = ("", say("before"), say("after"), say("change"), "")
+    title = say(
+        "What to change, and what that brings at {low} to {high} rpm", **ends_told(found.speed)
+    )
+    yield Table(title, tuple(map(Column, labels)), tuple(rows))
+    yield from unbounded(found.tool)
+    yield Text(
+        say(
+            "{arrived} of {searches} searches from places spread over the whole room came to this "
+            "design",
+            arrived=found.arrived,
+            searches=found.searches,
+        )
+    )
+
+
+def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:
+    worse = told and one.dimension != "mass" and one.after > 1.001 * one.before
+    pair = (cell(one.before, one.dimension), cell(one.after, one.dimension))
+    return (*pair, Change(one.before, one.after, worse))
+
+
+def figure_named(one: Before) -> str:
+    """A figure of a design, or a number that it may change, in words."""
+    return varied_named(one.name) if one.said is None else one.said.said()
+
+
+def variation_blocks(found: Variation) -> Iterator[Block]:
+    """Natural frequencies against a number of a station."""
+    step = -(-len(found.values) // MOST_ROWS)
+    kind: Dimension = KEYS[found.key]  # type: ignore[assignment]
+    for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
+        rows = tuple(
+            (
+                Value(float(found.values[v])),
+                *(Value(one, digits=DIGITS) for one in found.parameter[plane, v].tolist()),
+                *(Value(30 / np.pi * one) for one in found.frequency[plane, v].tolist()),
+            )
+            for v in range(0, len(found.values), step)
+        )
+        count = found.frequency.shape[-1]
+        columns = (
+            column(varied_named(f"{found.station} {found.key}"), kind),
+            *(Column(f"λ {k + 1}") for k in range(count)),
+            *(Column(f"N{k + 1}", unit="1/min") for k in range(count)),
+        )
+        what = varied_named(f"{found.station} {found.key}")
+        title = say("Natural frequencies against {what}", what=what)
+        if not found.tool.alike:
+            title = say(
+                "Natural frequencies against {what}, {plane}", what=what, plane=say(SIDES[side])
+            )
+        yield Table(title, columns, rows)
+
+
+def sensitivity_blocks(
+    tool: Tool, found: Mapping[tuple[str, str], float], ends: tuple[float, float]
+) -> Iterator[Block]:
+    """What each number of the tool does to the hands over a band of speeds, the strongest first."""
+    rows = []
+    for (station, key), slope in found.items():
+        value = number_of(tool, station, key)
+        step = 0.01 * (tool.shaft.length if key == "position" else value)
+        effect = Value(1e3 * slope * step, digits=3)
+        rows.append((varied_named(f"{station} {key}"), cell(value, KEYS[key]), effect))
+    rows = sorted((row for row in rows if row[2].value), key=lambda row: -abs(row[2].value))
+    columns = (Column(""), Column(say("now")), Column(say("effect"), unit="mm/s^2"))
+    low, high = (number(end / PER_RPM) for end in ends)
+    title = say(
+        "What 1 % more of each number (of a position, 1 % of the shaft) does to a_hv of the worst "
+        "hand, RMS over {low} to {high} rpm",
+        low=low,
+        high=high,
+    )
+    yield Table(title, columns, tuple(rows))
+
+
+SHOWS: dict[str, Any] = {
+    "ToolModes": modes_blocks,
+    "ToolSweep": sweep_blocks,
+    "ToolResponse": response_blocks,
+    "Transmissions": transmissions_blocks,
+    "ToolExposure": exposure_of_tool,
+    "ToolDesign": design_blocks,
+    "Variation": variation_blocks,
+}

@@ -1,0 +1,455 @@
+"""What planting shows: instants of a stroke, path, soil, extremes; a search before and after."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from math import pi
+from typing import TYPE_CHECKING, Any, cast
+
+from equipoise.balancing.naming import joint_named
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.linkage import assemble
+from equipoise.planting.goals import dimension_of
+from equipoise.planting.stroke import finger_base
+from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+
+if TYPE_CHECKING:
+    from equipoise.planting.goals import Goal
+    from equipoise.planting.search import Fit
+    from equipoise.planting.summary import PlantingFigures
+
+INSTANTS = {
+    "pick_up": to_say("pick-up"),
+    "entry": to_say("entry"),
+    "lowest": to_say("lowest point"),
+    "release": to_say("release"),
+    "exit": to_say("exit"),
+    "highest": to_say("highest point"),
+}
+"""Columns of the table of instants; it begins with the first that there is."""
+OF_AN_INSTANT = {
+    "x": to_say("x"),
+    "y": to_say("y"),
+    "velocity.x": to_say("velocity x"),
+    "velocity.y": to_say("velocity y"),
+    "velocity.size": to_say("velocity"),
+    "velocity.direction": to_say("direction of velocity"),
+    "acceleration.x": to_say("acceleration x"),
+    "acceleration.y": to_say("acceleration y"),
+    "acceleration.size": to_say("acceleration"),
+    "acceleration.direction": to_say("direction of acceleration"),
+    "ground_velocity.x": to_say("over ground: velocity x"),
+    "ground_velocity.size": to_say("over ground: velocity"),
+    "ground_velocity.direction": to_say("over ground: direction"),
+    "attitude": to_say("attitude of the finger"),
+}
+PATH = {
+    "curve.height": to_say("height of the curve"),
+    "curve.width": to_say("width of the curve"),
+    "curve.length": to_say("length of the curve"),
+    "curve.lift": to_say("rise above the soil"),
+    "curve.smallest_radius.value": to_say("smallest radius of the curve"),
+    "ground.smallest_radius.value": to_say("smallest radius over ground"),
+    "hill_spacing": to_say("distance of hills"),
+    "planting_frequency": to_say("planting frequency"),
+}
+SOIL = {
+    "soil.depth": to_say("depth in the soil"),
+    "soil.crank_travel": to_say("crank travel in the soil"),
+    "soil.time": to_say("time in the soil"),
+    "soil.path_length_ground": to_say("path in the soil over ground"),
+    "soil.path_length_machine": to_say("path in the soil relative to the machine"),
+    "soil.ground_distance": to_say("ground distance from entry to exit"),
+    "soil.hole_length": to_say("length of the hole at the surface"),
+    "soil.max_acceleration.value": to_say("largest acceleration in the soil"),
+}
+EXTREMES = {
+    "max_speed": to_say("largest velocity of the tip"),
+    "min_speed": to_say("smallest velocity of the tip"),
+    "max_acceleration": to_say("largest acceleration of the tip"),
+    "min_acceleration": to_say("smallest acceleration of the tip"),
+}
+LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
+UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "mm"}
+"""Units in which these are told."""
+
+
+@dataclass(frozen=True)
+class Page:
+    """Figures as cells; crank angles count from `zero`, rad."""
+
+    figures: PlantingFigures
+    zero: float = 0.0
+
+    def get(self, name: str) -> float | None:
+        return self.figures.figures.get(name)
+
+    def cell(self, name: str, scale: float = 0.0) -> Value | None:
+        """A figure with its dimension; None where there is none."""
+        return cell(self.get(name), name, scale)
+
+    def turned(self, value: float | None) -> Value | None:
+        """A crank angle, from `zero` on."""
+        if value is None:
+            return None
+        return Value(self.from_zero(value), after=2, dimension="angle")
+
+    def from_zero(self, value: float) -> float:
+        """A crank angle from `zero` on; what is rounding below a whole period is 0."""
+        period = self.figures.curve.period
+        turned = (value - self.zero) % period
+        return 0.0 if period - turned < 0.5e-2 * pi / 180 else turned
+
+    def at(self, name: str, at: str, scale: float = 0.0) -> Value | None:
+        """A figure, and the crank angle at which it holds."""
+        value, where = self.cell(name, scale), self.get(at)
+        if value is None or where is None:
+            return value
+        return replace(value, at=self.from_zero(where))
+
+
+def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
+    """A figure with its dimension, by its name."""
+    if value is None:
+        return None
+    kind = cast("Dimension | None", dimension_of(name))
+    after = 2 if kind == "angle" else None
+    unit = None if kind is None else UNITS.get(kind)
+    return Value(value, scale, after=after, dimension=kind, unit=unit)
+
+
+def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Block]:
+    """Every figure.
+
+    zero : direction (rad) from which crank angles count.
+    """
+    page = Page(figures, zero)
+    yield from map(Text, _heading(page))
+    yield _instants(page)
+    yield _values(say("Path of the tip"), PATH, page)
+    yield _values(say("In the soil"), SOIL, page)
+    yield _extremes(page)
+    for part in (_ratios, _visits, _loops, _clearances, _limits, _forces):
+        yield from part(page)
+    if figures.notes:
+        yield Notes(figures.notes)
+
+
+def _heading(page: Page) -> Iterator[str]:
+    figures = page.figures
+    drive, speed = figures.machine.drive, figures["speed"]
+    told = {
+        "link": drive.link,
+        "speed": number(abs(speed) / PER_RPM),
+        "travel": figures.planting.travel,
+        "forward": number(abs(figures["forward_speed"])),
+    }
+    if speed > 0:
+        yield say(
+            "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at "
+            "{forward} m/s",
+            **told,
+        )
+    else:
+        yield say(
+            "{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s",
+            **told,
+        )
+    base = finger_base(figures.curve)
+    tip = say("tip {tip} on {link}", tip=figures.planting.tip, link=figures.curve.link)
+    finger = [] if base is None else [say("finger from {base}", base=base)]
+    surface = number(1e3 * figures["surface"])
+    yield say(", ").join([tip, *finger, say("surface of the soil at y = {y} mm", y=surface)])
+    if page.zero:
+        yield say("Crank angles count from {angle}°.", angle=angle(page.zero, 2))
+
+
+def _instants(page: Page) -> Table:
+    names = [name for name in INSTANTS if page.get(f"{name}.crank_angle") is not None]
+    if page.figures.planting.release is None:
+        names.remove("release")
+    names = _in_time(page, names)
+    angles = (page.turned(page.get(f"{name}.crank_angle")) for name in names)
+    rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
+    for key, label in OF_AN_INSTANT.items():
+        still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
+        if still or page.get(f"entry.{key}") is None:
+            continue
+        size = key.partition(".")[0]
+        height = page.figures["curve.height"] if key in ("x", "y") else 0.0
+        scales = [page.get(f"{name}.{size}.size") or height for name in names]
+        pairs = zip(names, scales, strict=True)
+        rows.append((say(label), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
+    title = say("Instants; relative to the machine where nothing else is said, directions from x")
+    columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
+    return Table(title, columns, tuple(rows))
+
+
+def _in_time(page: Page, names: list[str]) -> list[str]:
+    """Instants in the order of time, from the first of `INSTANTS` on."""
+    figures = page.figures
+    sense = 1 if figures["speed"] > 0 else -1
+    start = figures[f"{names[0]}.crank_angle"]
+
+    def way(name: str) -> float:
+        turned = sense * (figures[f"{name}.crank_angle"] - start)
+        return round(turned, 9) % figures.curve.period
+
+    return sorted(names, key=way)
+
+
+def _values(title: str, labels: dict[str, str], page: Page) -> Table:
+    rows = tuple(
+        (say(label), page.cell(name))
+        for name, label in labels.items()
+        if page.get(name) is not None
+    )
+    return Table(title, (Column(""), Column(say("value"))), rows)
+
+
+def _extremes(page: Page) -> Table:
+    rows = tuple(
+        (
+            say(label),
+            page.at(f"{name}.value", f"{name}.crank_angle"),
+            page.cell(f"{name}.direction"),
+        )
+        for name, label in EXTREMES.items()
+    )
+    columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
+    return Table(say("Extremes relative to the machine, at crank angle"), columns, rows)
+
+
+def _ratios(page: Page) -> Iterator[Block]:
+    rows: list[tuple[Cell, ...]] = []
+    for link in page.figures.machine.links:
+        if page.get(f"ratio.{link}.min") is None:
+            continue
+        name = f"ratio.{link}"
+        ends = (
+            Value(page.figures[f"{name}.{end}"], 0.0, page.from_zero(at), after=4)
+            for end in ("min", "max")
+            for at in [page.figures[f"{name}.{end}_at"]]
+        )
+        rows.append((link, *ends))
+    if rows:
+        columns = (Column(""), Column(say("smallest")), Column(say("largest")))
+        yield Table(say("Angular velocity over that of the drive"), columns, tuple(rows))
+
+
+def _visits(page: Page) -> Iterator[Block]:
+    visits = page.figures.visits
+    if len(visits) < 2:
+        return
+    rows = tuple(
+        (
+            *map(page.turned, (visit.entry, visit.exit, visit.deepest)),
+            Value(visit.depth, dimension="length", unit="mm"),
+        )
+        for visit in visits
+    )
+    labels = (say("entry"), say("exit"), say("deepest"))
+    columns = (*(Column(label, "angle") for label in labels), Column(say("depth"), "length", "mm"))
+    yield Table(say("Every stay in the soil; crank angles"), columns, rows)
+
+
+def _loops(page: Page) -> Iterator[Block]:
+    rows = tuple(
+        (
+            page.turned(loop.first),
+            page.turned(loop.second),
+            *map(Value, (loop.y, loop.height, loop.width)),
+            say("in the soil") if loop.in_soil else say("above it"),
+        )
+        for loop in page.figures.loops
+    )
+    if rows:
+        passes = (Column(say("first pass"), "angle"), Column(say("second pass"), "angle"))
+        sizes = (say("crossing y"), say("height"), say("width"))
+        columns = (*passes, *(Column(label, "length", "mm") for label in sizes))
+        title = say("Loops of the path over ground; crank angles")
+        yield Table(title, (*columns, Column(say("crossing"))), rows)
+    for cusp in page.figures.cusps:
+        at = angle(page.from_zero(cusp), 2)
+        yield Text(say("Cusp of the path over ground at crank angle {angle}°", angle=at))
+
+
+def _clearances(page: Page) -> Iterator[Block]:
+    figures = page.figures
+    bodies = [*figures.machine.links, f"tip {figures.planting.tip}"]
+    grounds = {"soil": say("above the soil")}
+    if figures.planting.tray is not None:
+        grounds["tray"] = say("from the tray")
+    rows: list[tuple[Cell, ...]] = []
+    for body in bodies:
+        names = (f"clearance.{ground}.{body}" for ground in grounds)
+        height = figures["curve.height"]
+        cells = [page.at(f"{name}.value", f"{name}.crank_angle", height) for name in names]
+        if any(one is not None for one in cells):
+            rows.append((body, *cells))
+    columns = (Column(""), *map(Column, grounds.values()))
+    title = say("Smallest clearance of links, the tip left out, at crank angle")
+    yield Table(title, columns, tuple(rows))
+
+
+def _limits(page: Page) -> Iterator[Block]:
+    rows = tuple(
+        (
+            say(label),
+            *(
+                page.cell(f"limits.{name}.{what}")
+                for what in ("limit", "highest_speed", "highest_forward_speed")
+            ),
+        )
+        for name, label in LIMITS.items()
+        if page.get(f"limits.{name}.limit") is not None
+    )
+    if not rows:
+        return
+    columns = (
+        Column(""),
+        Column(say("limit"), "acceleration"),
+        Column(say("highest speed of the crank"), "angular speed", "rpm"),
+        Column(say("of the machine"), "speed"),
+    )
+    yield Table(say("Limits of the tip's acceleration"), columns, rows)
+
+
+def _forces(page: Page) -> Iterator[Block]:
+    forces = page.figures.forces
+    if forces is None:
+        return
+    rows: list[tuple[Cell, ...]] = []
+    for name, (air, soil) in forces.compared().items():
+        drive = name == "drive_torque"
+        kind: Dimension = "torque" if drive else "force"
+        joint = joint_named(name.removeprefix("joints."))
+        text = say("drive torque") if drive else say("joint {name}", name=joint)
+        peaks = (
+            Value(found.peak, soil.peak, page.from_zero(found.peak_at), dimension=kind)
+            for found in (air, soil)
+        )
+        ratio = Value(soil.peak / air.peak) if air.peak > 1e-9 * soil.peak else None
+        rows.append((text, *peaks, ratio))
+    labels = ("", say("in the air"), say("with soil"), say("ratio"))
+    title = say("Peaks of drive torque and joint forces, at crank angle")
+    yield Table(title, tuple(map(Column, labels)), tuple(rows))
+
+
+# -- a search --------------------------------------------------------------------------------------
+
+OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
+OTHERS = (
+    *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
+    "transmission.min",
+)
+
+
+def figure_named(name: str) -> str:
+    """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
+    labels = {**PATH, **SOIL, **{f"{key}.value": label for key, label in EXTREMES.items()}}
+    if name in labels:
+        return say(labels[name])
+    if name == "transmission.min":
+        return say("smallest transmission angle")
+    instant, _, key = name.partition(".")
+    what = say("crank angle") if key == "crank_angle" else say(OF_AN_INSTANT.get(key, ""))
+    if not what or instant not in INSTANTS:
+        return name
+    return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
+
+
+def fit_blocks(fit: Fit) -> Iterator[Block]:
+    """Goals, what was changed for them, and the figures before and after."""
+    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
+    yield _goals(fit)
+    yield _changes(fit)
+    yield _figures(fit)
+    missed = [figure_named(name) for name, met in fit.met.items() if not met]
+    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
+    if missed:
+        template = to_say(
+            "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
+        )
+        notes.append(Note(template, names=", ".join(missed)))
+    if notes:
+        yield Notes(tuple(notes))
+
+
+def _told(figures: PlantingFigures | None, name: str) -> Cell:
+    value = None if figures is None else figures.figures.get(name)
+    return say("none") if value is None else _figure(value, name)
+
+
+def _figure(value: float, name: str) -> Value:
+    found = cell(value, name)
+    assert found is not None
+    return Value(value, after=4) if found.dimension is None else found
+
+
+def _goals(fit: Fit) -> Table:
+    met = {True: say("yes"), False: say("no"), None: ""}
+    rows = tuple(
+        (
+            figure_named(goal.figure),
+            goal.make or "",
+            *_wanted(goal),
+            _told(fit.before, goal.figure),
+            _missed(_told(fit.after, goal.figure), fit.met.get(goal.figure)),
+            met[fit.met.get(goal.figure)],
+        )
+        for goal in fit.goals
+    )
+    labels = (
+        *("", say("make"), say("wanted"), say("at least"), say("at most")),
+        *(say("before"), say("after"), say("met")),
+    )
+    filled = [any(row[k] not in (None, "") for row in rows) for k in range(len(labels))]
+    kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
+    columns = tuple(Column(labels[k]) for k in kept)
+    return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
+
+
+def _missed(one: Cell, met: bool | None) -> Cell:
+    """A figure that misses its goal stands out."""
+    if met is not False or not isinstance(one, Value):
+        return one
+    return replace(one, broken=True)
+
+
+def _wanted(goal: Goal) -> Iterator[Cell]:
+    for value in (goal.target, goal.at_least, goal.at_most):
+        yield None if value is None else _figure(value, goal.figure)
+
+
+def _changes(fit: Fit) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for variable in fit.designs.variables:
+        values = (variable.start, fit.values[variable.name], variable.low, variable.high)
+        kind = variable.dimension
+        after = 2 if kind == "angle" else None
+        cells = (Value(v, after=after, dimension=kind, unit=UNITS.get(kind)) for v in values)
+        rows.append((variable.name, *cells))
+    old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
+    if old != new:
+        pair = (Value(speed, dimension="angular speed", unit="rpm") for speed in (old, new))
+        rows.append((say("crank speed"), *pair, None, None))
+    labels = ("", say("before"), say("after"), say("lowest allowed"), say("highest allowed"))
+    return Table(say("Changes"), tuple(map(Column, labels)), tuple(rows))
+
+
+def _figures(fit: Fit) -> Table:
+    asked = {goal.figure for goal in fit.goals}
+    rows: list[tuple[Cell, ...]] = []
+    for name in (*PATH, *SOIL, *(f"{name}.value" for name in EXTREMES), *OTHERS):
+        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
+        if name not in asked and known:
+            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
+    columns = (Column(""), Column(say("before")), Column(say("after")))
+    return Table(say("Other figures"), columns, tuple(rows))
+
+
+SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks, "Fit": fit_blocks}

@@ -1,0 +1,366 @@
+"""What `equipoise check` tells of a file: of a linkage, of a hand-held tool, of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from math import degrees
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.errors import ModelError
+from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.dynamics import massless
+from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.support import idle_parts
+from equipoise.quantities import PER_RPM, number
+from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
+from equipoise.studies.blocks import Unit, Units, in_unit, labelled
+from equipoise.studies.design_space import Choices, Normal, Range
+from equipoise.studies.evaluate import Outcome, evaluator
+from equipoise.vibration.body import Body, at_rest
+from equipoise.vibration.linear import Excitation as Shaking
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design_plan import DesignPlan
+    from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
+    from equipoise.handheld.shaft import Shaft
+    from equipoise.mechanism.linkage import Linkage
+    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.motor import Motor
+    from equipoise.mechanism.support import Gauge, Mount
+    from equipoise.studies.design_space import Spread
+    from equipoise.studies.study import Study
+
+Array = np.ndarray[Any, Any]
+
+
+# -- linkages --------------------------------------------------------------------------------------
+
+
+def machine_blocks(machine: Machine) -> Iterator[Block]:
+    """How the linkage is built up, and what to look at again."""
+    linkage = assemble(machine)
+    cycle, drive = linkage.cycle, machine.drive
+    yield Text(
+        f"{len(machine.links)} moving links, one free motion; driven: {drive.link} at "
+        f"{number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
+    )
+    for row in _build_up(linkage):
+        yield Text(f"  {row}")
+    turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
+    yield Text(f"the crank turns fully; the motion repeats after {turns}")
+    for row in [*_springs(machine), *_drive_train(machine), *_support(machine)]:
+        yield Text(row)
+    if notes := (*remarks(linkage), *idle_parts(machine), *_uncarried(machine)):
+        yield Notes(notes)
+    yield Text("ready to be analysed")
+
+
+def _uncarried(machine: Machine) -> Iterator[str]:
+    """Why the mounts do not hold the machine, if they do not."""
+    if machine.support is None or massless(machine):
+        return
+    try:
+        at_rest(Body(machine), Shaking(Body(machine), "moment").weights)
+    except ModelError as error:
+        yield f"{error}; respond and modes need that"
+
+
+HOW = {
+    "dyad": "dyad",
+    "geared": "geared",
+    "loops": "by Newton's method on the loop equations",
+}
+
+
+def _build_up(linkage: Linkage) -> Iterable[str]:
+    for group in linkage.groups:
+        links = " and ".join(group.links)
+        joints = ", ".join(
+            f"{r.name} ({r.kind} on {r.by})" if r.kind != "slider" else f"{r.name} (slider)"
+            for r in group.reactions
+        )
+        yield f"{links}: {HOW[group.kind]}; joints {joints}"
+
+
+MOST_SHOWN = 12
+"""Phases of rows in a line."""
+
+
+def _springs(machine: Machine) -> Iterator[str]:
+    for spring in machine.springs:
+        free = f", free at {number(spring.free_length * 1e3)} mm" if spring.free_length else ""
+        yield (
+            f"spring: from {spring.point} of {spring.link} to {spring.to}, "
+            f"{number(spring.stiffness)} N/m{free}"
+        )
+
+
+def _drive_train(machine: Machine) -> Iterator[str]:
+    drive = machine.drive
+    if drive.flywheel:
+        yield f"flywheel: {number(drive.flywheel)} kg m^2"
+    if drive.motor is not None:
+        motor = drive.motor
+        rotor = f", rotor {number(motor.inertia)} kg m^2" if motor.inertia else ""
+        speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
+        yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
+    if machine.rows:
+        shown = [number(degrees(row.phase)) for row in machine.rows[:MOST_SHOWN]]
+        more = len(machine.rows) - len(shown)
+        phases = f"{', '.join(shown)} and {more} more" if more else _listed(shown)
+        yield f"rows: {len(machine.rows)} on one shaft, ahead by {phases} deg"
+
+
+def _curve(motor: Motor) -> str:
+    if motor.table is not None:
+        first, *_, last = motor.table.speed
+        span = f"{number(first / PER_RPM)} to {number(last / PER_RPM)} rpm"
+        return f"{len(motor.table.speed)} rows from {span}"
+    assert motor.no_load_speed is not None
+    assert motor.stall_torque is not None
+    return (
+        f"{number(motor.no_load_speed / PER_RPM)} rpm without load, {number(motor.stall_torque)} "
+        "N m at standstill"
+    )
+
+
+def _support(machine: Machine) -> Iterator[str]:
+    support = machine.support
+    if support is None:
+        return
+    about = f" about the pivot at {_place(support.pivot)}" if support.pivot is not None else ""
+    ways = _listed(support.coordinates)
+    yield f"support: {number(support.mass)} kg; it can {ways}{about}"
+    for name, mount in support.mounts.items():
+        yield f"  mount {name}: {', '.join(_mount(mount))}"
+    for name, gauge in support.gauges.items():
+        yield f"  gauge {name}: reads {_reading(gauge)}"
+    if not support.mounts:
+        yield "  no mounts"
+
+
+def _mount(mount: Mount) -> Iterator[str]:
+    yield _reading(mount) if mount.point is None else f"pushes {_reading(mount)}"
+    for value, unit in (
+        (mount.stiffness, "N/m"),
+        (mount.damping, "N s/m"),
+        (mount.torsional_stiffness, "N m/rad"),
+        (mount.torsional_damping, "N m s/rad"),
+    ):
+        if value:
+            yield f"{number(value)} {unit}"
+    if mount.preload is not None:
+        yield f"{number(mount.preload)} {'N' if mount.axis is None else 'N m'} as drawn"
+    if mount.one_sided:
+        yield "one-sided"
+
+
+def _reading(item: Mount | Gauge) -> str:
+    if item.point is None:
+        return f"about the {item.axis} axis"
+    if isinstance(item.direction, tuple):
+        way = f"along ({', '.join(map(number, item.direction))})"
+    else:
+        way = f"along {number(degrees(item.direction))} deg"
+    return f"{way} at {_place(item.point)}"
+
+
+def _place(place: Sequence[float]) -> str:
+    return f"({', '.join(number(coordinate * 1e3) for coordinate in place)}) mm"
+
+
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words
+    return f"{', '.join(others)} and {last}" if others else last
+
+
+# -- tools ----------------------------------------------------------------------------------------
+
+RATES = (
+    ("inertia", "kg m^2"),
+    ("stiffness", "N/m"),
+    ("damping", "N s/m"),
+    ("rotational_stiffness", "N m/rad"),
+    ("rotational_damping", "N m s/rad"),
+)
+
+
+def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
+    """How the tool is built up."""
+    yield Text(f"{number(tool.mass)} kg without hands")
+    yield from map(Text, _shaft(tool.shaft))
+    for station in tool.stations:
+        parts = ", ".join(_station(station)) or "nothing"
+        yield Text(f"  {station.name} at {_length(station.position)}: {parts}")
+    for excitation in tool.excitations:
+        yield Text(f"shaken by {excitation.name}: {', '.join(_excitation(excitation))}")
+    if tool.operation is not None:
+        yield Text(f"engine: {', '.join(_operation(tool.operation))}")
+    if tool.work:
+        times = (f"{one.name} {number(one.duration / 3600)} h" for one in tool.work)
+        yield Text(f"day: {', '.join(times)}")
+    if tool.design is not None:
+        yield Text(f"design: {_design(tool.design)}")
+    yield Listing("", f"ready: equipoise tool {file}")
+
+
+def _length(value: float) -> str:
+    return f"{number(1e3 * value)} mm"
+
+
+def _shaft(shaft: Shaft) -> Iterator[str]:
+    pieces = shaft.pieces
+    stiffness = f"EI {number(pieces[0][2].bending_stiffness)} N m^2" if len(pieces) == 1 else ""
+    parts = [_length(shaft.length), f"{number(shaft.mass)} kg", stiffness, shaft.theory]
+    if shaft.loss_factor:
+        parts.append(f"loss factor {number(shaft.loss_factor)}")
+    yield f"shaft: {', '.join(filter(None, parts))}"
+    for start, stop, section in pieces if len(pieces) > 1 else ():
+        yield (
+            f"  from {_length(start)} to {_length(stop)}: EI {number(section.bending_stiffness)} "
+            f"N m^2, {number(section.mass_per_length)} kg/m"
+        )
+
+
+def _station(station: Station) -> Iterator[str]:
+    if station.mass:
+        yield f"{number(station.mass)} kg"
+    yield from _rates(station)
+    if station.absorber is not None:
+        parts = ", ".join([f"{number(station.absorber.mass)} kg", *_rates(station.absorber)])
+        yield f"absorber ({parts})"
+    if station.hand is not None:
+        yield f"{station.hand.hands} hand{'s' * (station.hand.hands - 1)} ({_hand(station.hand)})"
+    if station.harness is not None:
+        yield f"harness ({', '.join(_rates(station.harness))})"
+
+
+def _rates(item: object) -> Iterator[str]:
+    for key, unit in RATES:
+        pair: Both = getattr(item, key, (0.0, 0.0))
+        if any(pair):
+            yield f"{_both(pair)} {unit}"
+
+
+def _both(pair: Both) -> str:
+    vertical, lateral = map(number, pair)
+    return vertical if pair[0] == pair[1] else f"{vertical} (vertical) and {lateral} (lateral)"
+
+
+def _hand(hand: Hand) -> str:
+    mass = [f"{number(hand.mass)} kg"] if hand.mass else []
+    spans = [
+        f"impedance from {number(table.frequency[0])} to {number(table.frequency[-1])} Hz"
+        for table in hand.impedance
+    ]
+    return ", ".join([*mass, *_rates(hand), *spans])
+
+
+def _excitation(excitation: Excitation) -> Iterator[str]:
+    if excitation.force is not None:
+        yield f"{number(excitation.force)} N, {excitation.direction}"
+    elif excitation.unbalance is not None:
+        yield f"unbalance {number(1e6 * excitation.unbalance)} g mm"
+    elif excitation.linkage is not None:
+        yield f"linkage {excitation.linkage.title}"
+    yield f"at {excitation.station}"
+    if excitation.ratio != 1:
+        yield f"{number(excitation.ratio)} times the engine's speed"
+    if excitation.phase:
+        yield f"ahead by {number(degrees(excitation.phase))} deg"
+
+
+def _operation(operation: Operation) -> Iterator[str]:
+    yield f"{number(operation.speed / PER_RPM)} rpm at work"
+    if operation.speeds:
+        low, high = (number(speed / PER_RPM) for speed in operation.speeds)
+        yield f"from {low} to {high} rpm"
+    if operation.idling is not None:
+        yield f"idling at {number(operation.idling / PER_RPM)} rpm"
+    if operation.racing is not None:
+        yield f"racing at {number(operation.racing / PER_RPM)} rpm"
+
+
+def _design(design: DesignPlan) -> str:
+    low, high = (number(speed / PER_RPM) for speed in design.speeds)
+    changes = ", ".join(variable.name for variable in design.variables)
+    kept = ", ".join(f"{limit.station or ''} {limit.output}".strip() for limit in design.limits)
+    limits = f"; limits {kept}" if kept else ""
+    return f"{low} to {high} rpm, {design.measure}; may change {changes}{limits}"
+
+
+# -- studies ---------------------------------------------------------------------------------------
+
+FAST, SLOW = "many at once, in compiled loops", "one after the other"
+MOST_CHOICES = 5
+"""Values of a list that are told."""
+
+
+def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
+    """Everything about a study that can be told before it is computed."""
+    compute = evaluator(study)
+    own = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
+    outcome = compute(own[None])
+    sampling = study.sampling
+    seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
+    yield Text(f"model: {study.model.base().title}")
+    yield Text(f"{study.size} designs, {sampling.method}{seed}")
+    header = ("", "model", "in the study")
+    yield Table("What varies", tuple(map(Column, header)), tuple(_varied(study, units, own)))
+    for one in study.correlations:
+        yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
+    header = ("", "of", "model", "at least", "at most", "make")
+    rows = tuple(_computed(study, units, outcome))
+    yield Table("What is computed", tuple(map(Column, header)), rows)
+    yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
+    if outcome.reason[0] != COMPUTED:
+        reason = REASONS[int(outcome.reason[0])]
+        yield Notes((f"the model itself has no figures ({reason})",))
+    yield Listing("", "\n".join(_ready(study, file)))
+
+
+def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
+    for one, value in zip(study.vary, own.tolist(), strict=True):
+        unit = units[one.path]
+        spread = spread_told(one.spread, unit)
+        yield labelled(one.path, unit.name), in_unit(value, unit), spread
+
+
+def spread_told(spread: Spread, unit: Unit) -> str:
+    """How a number varies, such as ``60.00 to 80.00`` or ``71.50 +- 0.2000``, without its unit."""
+
+    def told(value: float) -> str:
+        return number(unit.of_si(value))
+
+    if isinstance(spread, Range):
+        steps = "" if spread.steps is None else f", {spread.steps} steps"
+        return f"{told(spread.low)} to {told(spread.high)}{steps}"
+    if isinstance(spread, Choices):
+        some = ", ".join(map(told, spread.values[:MOST_CHOICES]))
+        more = len(spread.values) - MOST_CHOICES
+        return f"{some} and {more} more" if more > 0 else some
+    if isinstance(spread, Normal):
+        cut = "" if spread.cut is None else f", cut at {spread.cut:g}"
+        return f"{told(spread.mean)}, deviation {told(spread.deviation)}{cut}"
+    return f"{told(spread.centre)} +- {told(spread.half_width)}"
+
+
+def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
+    for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
+        unit = units[output.name]
+        ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))
+        own = in_unit(figure, unit)
+        yield labelled(output.name, unit.name), output.of, own, *ends, output.make or ""
+
+
+def _ready(study: Study, file: str) -> Iterator[str]:
+    """Commands that take it."""
+    yield f"ready for: equipoise sweep {file} -o designs.zarr"
+    tolerances = [one.spread.tolerance for one in study.vary]
+    if all(tolerances):
+        yield f"ready for: equipoise tolerance {file}"
+    if not any(tolerances) and study.objectives:
+        yield f"ready for: equipoise search {file}"

@@ -1,0 +1,347 @@
+"""A report from findings: what stands in it, in which order; and on disk."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from math import pi
+
+import equipoise
+from equipoise.balancing.blocks import outcome_blocks, said
+from equipoise.errors import UsageError
+from equipoise.handheld import blocks as of_tools
+from equipoise.i18n import LANGUAGES, say, speaking, to_say
+from equipoise.planting.blocks import planting_blocks
+from equipoise.present.document import Document
+from equipoise.present.drawing import drawings
+from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.remedies import nothing_told
+from equipoise.present.summary import answers, check_whole_cycle, tiles
+from equipoise.present.tool_summary import tool_answers, tool_tiles
+from equipoise.quantities import number
+from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text
+from equipoise.results.tables import (
+    angles_told,
+    driven,
+    force_blocks,
+    joint_table,
+    model_blocks,
+    motion_blocks,
+)
+from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
+
+TITLES = {
+    "model": to_say("Model"),
+    "motion": to_say("Motion"),
+    "planting": to_say("Planting"),
+    "forces": to_say("Forces on frame and drive"),
+    "joints": to_say("Forces in the joints"),
+    "vibration": to_say("Vibration on the support"),
+    "balance": to_say("Balancing: before and after"),
+    "tool": to_say("Vibration of the tool"),
+    "sources": to_say("Sources"),
+    "settings": to_say("Version and settings"),
+    "file": to_say("The model file"),
+}
+
+MOST_TRACED = 3
+"""Points whose paths are drawn beside the moving linkage, where no finger plants."""
+
+
+def build(
+    found: Findings | ToolFindings,
+    language: str = "en",
+    command: str = "",
+    together: bool = False,
+) -> Document:
+    """Everything that a report tells, in a language.
+
+    command : that makes it again.
+    together : whether a second process may help; see `drawing.drawings`.
+
+    Raises
+    ------
+    UsageError : the analysis does not cover whole turns; errors of it otherwise.
+    """
+    with speaking(language):
+        if isinstance(found, ToolFindings):
+            return _of_tool(found, language, command)
+        check_whole_cycle(found)
+        return _of_linkage(found, language, command, together)
+
+
+def _of_linkage(found: Findings, language: str, command: str, together: bool) -> Document:
+    machine, analysis = found.machine, found.analysis
+    drawn = drawings(found, together)
+    blocks: dict[str, list[Block]] = {"model": list(model_blocks(machine))}
+    blocks["motion"] = [*drawn.pop("motion", []), *motion_blocks(analysis)]
+    if found.planting is not None:
+        blocks["planting"] = [*drawn.pop("planting", []), *planting_blocks(found.planting)]
+    if analysis.solved is not None:
+        blocks["forces"] = [*drawn.pop("forces", []), *force_blocks(analysis)]
+        blocks["joints"] = [*drawn.pop("joints", []), joint_table(analysis)]
+    if found.response is not None:
+        shown = [*drawn.pop("vibration", []), *drawn.pop("modes", [])]
+        blocks["vibration"] = [*shown, *_vibration(found)]
+    if found.balanced is not None:
+        blocks["balance"] = [*balance_blocks(found), *drawn.pop("balance", [])]
+    settings = [*_settings_of_linkage(found), _made(found)]
+    return Document(
+        language,
+        machine.title,
+        driven(machine, analysis.motion.speed),
+        machine.description,
+        tuple(tiles(found)),
+        tuple(answers(found)),
+        _animation(found),
+        _sections(found, blocks, settings, command),
+    )
+
+
+def _vibration(found: Findings) -> Iterator[Block]:
+    assert found.response is not None
+    yield from response_blocks(found.response)
+    if found.sweep is not None and found.sweep.resonances:
+        yield resonances_table(found.sweep)
+
+
+def balance_blocks(found: Findings) -> Iterator[Block]:
+    """What may be changed, what is to be changed, and every figure before and after."""
+    balanced = found.balanced
+    assert balanced is not None
+    if not found.own_plan and balanced.plan.phases is not None:
+        yield Text(
+            say(
+                "The file does not say what may be changed. So this is the remedy that costs "
+                "nothing: other phases of the rows."
+            )
+        )
+    elif not found.own_plan:
+        yield Text(
+            say(
+                "The file does not say what may be changed. So this is the usual remedy: a "
+                "counterweight on the axis of the drive link, within its reach."
+            )
+        )
+    if found.helped:
+        yield from outcome_blocks(balanced)
+    else:
+        yield from map(Text, nothing_told(found))
+
+
+def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
+    blocks: list[Block] = list(drawings(found).get("tool", []))
+    if found.design is not None:
+        blocks.extend(of_tools.design_blocks(found.design))
+    if found.exposure is not None:
+        blocks.extend(of_tools.exposure_of_tool(found.exposure))
+    if found.modes is not None:
+        blocks.extend(of_tools.modes_blocks(found.modes))
+    operation = found.tool.operation
+    subtitle = ""
+    if operation is not None:
+        speed = number(operation.speed * 30 / pi)
+        subtitle = say("hand-held tool, engine at {speed} rpm", speed=speed)
+    named = {"model": list(of_tools.model_blocks(found.tool)), "tool": blocks}
+    return Document(
+        language,
+        found.tool.title,
+        subtitle,
+        found.tool.description,
+        tuple(tool_tiles(found)),
+        tuple(tool_answers(found)),
+        "",
+        _sections(found, named, [_made(found)], command),
+    )
+
+
+def _sections(
+    found: Findings | ToolFindings,
+    blocks: dict[str, list[Block]],
+    settings: Iterable[str],
+    command: str,
+) -> tuple[Section, ...]:
+    """Sections of the blocks, then what every report ends with."""
+    notes = [Notes(found.notes)] if found.notes else []
+    again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
+    last: dict[str, list[Block]] = {
+        "sources": [Facts("", tuple(sources(found)))],
+        "settings": [Facts("", tuple(settings)), *notes, *again],
+        "file": [Listing(found.file, found.text)],
+    }
+    return tuple(
+        Section(name, say(TITLES[name]), tuple(parts))
+        for name, parts in (blocks | last).items()
+        if parts
+    )
+
+
+def _animation(found: Findings) -> str:
+    from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
+    from equipoise.symbols.scene import Scene
+
+    analysis = found.analysis
+    scene = Scene.of(analysis.motion)
+    ends = [name for name in scene.places if name not in (*scene.pins, *scene.frame)]
+    tip = () if found.machine.planting is None else (found.machine.planting.tip,)
+    arrow = None
+    if analysis.solved is not None:
+        forces = analysis.solved
+        arrow = Arrow(forces.about, forces.shaking_force.value, of_one=len(found.machine.rows) > 1)
+    return animated_svg(
+        scene,
+        title=found.machine.title,
+        traced=tip or ends[:MOST_TRACED],
+        arrow=arrow,
+        width=440,  # as wide as it stands on the page, so that its texts have their size
+    )
+
+
+def _settings_of_linkage(found: Findings) -> Iterator[str]:
+    motion = found.analysis.motion
+    yield angles_told(found.analysis)
+    if motion.acceleration:
+        yield say("Crank acceleration {value} rad/s²", value=number(motion.acceleration))
+    gravity = ", ".join(number(part) for part in found.machine.gravity)
+    yield say("Gravity ({value}) m/s²", value=gravity)
+    if found.response is not None:
+        yield model_told(found.response.model)
+    if found.balanced is not None:
+        yield say("Balanced by: {method}", method=said(found.balanced.method))
+
+
+def _made(found: Findings | ToolFindings) -> str:
+    return say(
+        "Made by Equipoise {version} from {file}", version=equipoise.__version__, file=found.file
+    )
+
+
+KINDS = {".html": "html", ".htm": "html", ".pdf": "pdf"}
+
+
+def kind_of(out: str | os.PathLike[str]) -> str:
+    """What a report becomes, by the end of its name: ``html`` or ``pdf``."""
+    _, end = os.path.splitext(out)
+    if end.lower() not in KINDS:
+        raise UsageError(f"got {os.fspath(out)!r}; give a name that ends in .html or .pdf")
+    return KINDS[end.lower()]
+
+
+def report(
+    path_or_name: str | os.PathLike[str],
+    *outs: str | os.PathLike[str],
+    language: str = "en",
+    speed: float | None = None,
+    command: str = "",
+) -> None:
+    """Write a report of a model file, or of a bundled example by its name.
+
+    Parameters
+    ----------
+    outs : files to write, pages as ``.html`` or PDF as ``.pdf`` by the ends of their names.
+    language : ``en``, ``ja`` or ``ko``.
+    speed : of the crank, or of the tool's engine, rad/s; the file's where not given.
+    command : that makes the report again, told at its end.
+
+    Raises
+    ------
+    ModelError, MobilityError, MotionError : the file is wrong, or its linkage cannot turn.
+    UsageError : a file cannot be written, there is no such language, or no font for it.
+    EquipoiseError : a PDF is wanted, and Typst is not installed.
+    """
+    check(outs, language)
+    found = find(path_or_name, speed=speed)
+    write_document(build(found, language, command, together=True), outs)
+
+
+def report_page(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
+    """A report of findings as HTML, the same text on every run.
+
+    Parameters
+    ----------
+    found : from `find`.
+    language : ``en``, ``ja`` or ``ko``.
+    command : that makes it again, told at its end.
+
+    Raises
+    ------
+    MobilityError, MotionError, UsageError : the linkage cannot be moved.
+    """
+    from equipoise.present.html import page
+
+    return page(build(found, language, command))
+
+
+def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
+    """Tell what is wrong with these names, or missing, before anything is computed."""
+    if language not in LANGUAGES:
+        raise UsageError(f"language: got {language!r}; give one of {', '.join(LANGUAGES)}")
+    if "pdf" in {kind_of(out) for out in outs}:
+        from equipoise.present.pdf import check_pdf
+
+        check_pdf(language)
+
+
+def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -> None:
+    """Write a document as each of these files."""
+    for out in outs:
+        if kind_of(out) == "pdf":
+            from equipoise.present.pdf import pdf
+
+            _write(out, pdf(document))
+        else:
+            from equipoise.present.html import page
+
+            _write(out, page(document).encode())
+
+
+def _write(out: str | os.PathLike[str], data: bytes) -> None:
+    from equipoise.schema.output import write_all
+
+    write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
+
+
+KIM_CHUNG = (
+    "Kim, K. U., Chung, C. J.: An analytical method for kinematic analysis of the planting "
+    "mechanism of a rice transplanter, c. 1977"
+)
+YAMASHITA = (
+    "山下光司, 市川真祐, 森邦男: 田植機における植付爪の振動消去に関する研究 "
+    "(Yamashita, Ichikawa, Mori: Studies on control of vibrations originating in rice "
+    "transplanting mechanism), c. 1982"
+)
+LEE_KIM = (
+    "李政基, 金景旭: 크랭크식 移秧機 植付機構의 動的 均衡에 관한 研究 "
+    "(Lee, Kim: Dynamic balancing of crank-type transplanting mechanism of rice "
+    "transplanter), c. 1990"
+)
+NAGAMINE_IRIE = (
+    "長嶺正紀, 入江敏博: 刈払機の振動特性について "
+    "(Nagamine, Irie: On the vibration characteristics of a brush cutter), 1970"
+)
+ISO_5349 = "ISO 5349-1:2001, ISO 5349-2:2001"
+DIRECTIVE = "Directive 2002/44/EC"
+ISO_22867 = "ISO 22867"
+
+USED = {
+    "force": to_say("Shaking force, drive torque, balancing, vibration on a support: {source}"),
+    "moment": to_say("Shaking moment, shaking energy, geared counterweights: {source}"),
+    "planting": to_say("Figures of planting: {source}"),
+    "shaft": to_say("Vibration of the shaft and transmission to the hands: {source}"),
+    "hands": to_say("Weighting and daily exposure of the hands: {source}"),
+}
+
+
+def sources(found: Findings | ToolFindings) -> Iterator[str]:
+    """What was used, a line each."""
+    if isinstance(found, ToolFindings):
+        yield say(USED["shaft"], source=NAGAMINE_IRIE)
+        if found.exposure is not None:
+            yield say(USED["hands"], source=f"{ISO_5349}; {DIRECTIVE}; {ISO_22867}")
+        return
+    if found.analysis.solved is not None:
+        yield say(USED["force"], source=YAMASHITA)
+        yield say(USED["moment"], source=LEE_KIM)
+    if found.planting is not None:
+        yield say(USED["planting"], source=KIM_CHUNG)

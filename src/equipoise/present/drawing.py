@@ -1,0 +1,83 @@
+"""The pictures of a report, drawn by two processes where that is safe: it takes half the time."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import warnings
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+
+from equipoise.i18n import say
+from equipoise.plotting.style import render, styled
+from equipoise.present.document import Drawn
+from equipoise.present.findings import Findings, ToolFindings
+from equipoise.present.pictures import SECTIONS, each
+
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+Drawings = dict[str, list[Drawn]]
+"""Pictures by section."""
+
+
+def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings:
+    """All pictures.
+
+    together : whether a copy of this process may draw half of them, where there are two processors,
+        Linux, and no other thread, which the copy would lack.
+    """
+    other = _others(found) if together and _may_fork() else ()
+    if not other:
+        return _draw(found, SECTIONS)
+    _ = found.notes  # everything that both need is computed once
+    import multiprocessing
+
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    helper = context.Process(target=_send, args=(there, found, other), daemon=True)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # threads of BLAS can be forked
+        helper.start()
+    there.close()
+    try:
+        drawn = _draw(found, [section for section in SECTIONS if section not in other])
+        of_helper: Drawings = here.recv()
+        return drawn | of_helper
+    except EOFError:  # the helper failed, and what it failed of is to be told
+        return drawn | _draw(found, other)
+    finally:
+        helper.kill()
+        helper.join()
+
+
+def _may_fork() -> bool:
+    processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
+    return processors > 1 and threading.active_count() == 1
+
+
+def _others(found: Findings | ToolFindings) -> Collection[str]:
+    """Sections that hold about half of the pictures."""
+    if isinstance(found, ToolFindings):
+        return ()
+    if found.response is not None:
+        return ("vibration",) if found.planting is None else ("vibration", "modes", "balance")
+    return ("motion", "forces") if found.planting is None else ("motion", "planting")
+
+
+def _send(pipe: Connection, found: Findings | ToolFindings, sections: Collection[str]) -> None:
+    try:
+        pipe.send(_draw(found, sections))
+    except BaseException:  # what goes wrong here goes wrong again where it can be told
+        pipe.close()
+
+
+def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
+    drawn: Drawings = {}
+    with styled():  # once for all of them
+        for picture in each(found, sections=sections):
+            svg = render(picture.draw(), "svg").decode()
+            block = Drawn(picture.name, say(picture.caption), svg)
+            drawn.setdefault(picture.section, []).append(block)
+    return drawn

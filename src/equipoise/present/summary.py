@@ -1,0 +1,288 @@
+"""The summary of a linkage in plain words: what shakes, how much, why, and what that does."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import cos, pi, sin
+
+import numpy as np
+
+from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.naming import CAUSES, joint_named, objective_named, scaled
+from equipoise.errors import UsageError
+from equipoise.i18n import say
+from equipoise.present.document import Answer, Tile
+from equipoise.present.findings import Findings
+from equipoise.present.remedies import good_already, helps_told
+from equipoise.present.shaking import Shaking
+from equipoise.quantities import PER_RPM, angle, brief, change, percent
+from equipoise.results.tables import shares
+from equipoise.signals import Figures
+
+SMALL = 0.005
+"""Share of a link or cause below which it is not named."""
+LEADING = 0.5
+"""Share of the mean square from which one order is told as the whole."""
+STRETCHED, ROUND = 0.8, 0.6
+"""Share of the mean square along one direction: from where, and up to where, it is called so."""
+
+
+def answers(found: Findings) -> Iterator[Answer]:
+    """The summary, a question at a time; what the file does not tell is left out."""
+    if found.analysis.solved is None:
+        missing = say("Forces are not computed, because masses of links are missing.")
+        yield Answer(say("What shakes"), (missing,))
+    else:
+        shaking = Shaking.of(found)
+        yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
+        yield Answer(say("Why"), tuple(_why(found)))
+        if helps := tuple(helps_told(found)):
+            yield Answer(say("What helps most"), helps)
+    if vibration := tuple(vibration_told(found)):
+        yield Answer(say("What that does to the support"), vibration)
+    if planting := tuple(planting_told(found)):
+        yield Answer(say("Planting"), planting)
+
+
+def tiles(found: Findings) -> Iterator[Tile]:
+    """The figures that are seen at once."""
+    analysis = found.analysis
+    speed = abs(analysis.motion.speed) / PER_RPM
+    yield Tile(say("crank speed"), brief(speed), "rpm", found.machine.drive.link)
+    if analysis.solved is None:
+        return
+    size = Shaking.of(found).size
+    several = len(found.machine.rows) > 1
+
+    def of_one(what: str) -> str:
+        return say("one row: {what}", what=what) if several else what
+
+    yield Tile(say("shaking force, peak"), brief(size.peak), "N", _at(size.peak_at))
+    least = analysis.summary["frame_moment"].peak
+    for what, name in (
+        (say("shaking moment, peak"), "shaking_moment"),
+        (say("drive torque, peak"), "drive_torque"),
+    ):
+        one = analysis.summary[name]
+        value = brief(one.peak, least)
+        note = _at(one.peak_at) if value != "0" else ""
+        yield Tile(of_one(what), value, "N m", note)
+    name, largest = _largest_joint(found)
+    if name:
+        label = say("largest joint force")
+        yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=joint_named(name)))
+    if found.balanced is not None:
+        yield _by_balancing(found, found.balanced)
+
+
+def _by_balancing(found: Findings, balanced: Balanced) -> Tile:
+    one = balanced.plan.objectives[0]
+    before, after = balanced.objectives[one.name]
+    told = change(before, after).removesuffix(" %") or percent(0)
+    what = objective_named(one, len(found.machine.rows))
+    return Tile(say("by balancing"), told, "%", what if found.helped else good_already(found))
+
+
+def _at(crank_angle: float) -> str:
+    return say("at crank angle {angle}°", angle=angle(crank_angle, 0))
+
+
+def _largest_joint(found: Findings) -> tuple[str, Figures]:
+    summary = found.analysis.summary
+    joints = {
+        name: one
+        for name, one in summary.items()
+        if name.startswith("joints.") and not name.endswith(".moment")
+    }
+    if not joints:
+        return "", summary["shaking_force"]
+    name = max(joints, key=lambda name: joints[name].peak)
+    return name.removeprefix("joints."), joints[name]
+
+
+# -- what shakes, and why --------------------------------------------------------------------------
+
+
+def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
+    size, rows = shaking.size, len(found.machine.rows)
+    speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
+    told = {"speed": speed, "peak": brief(size.peak), "rms": brief(size.rms)}
+    told["angle"] = angle(size.peak_at, 0)
+    summary = found.analysis.summary
+    if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
+        yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
+    else:
+        if rows > 1:
+            yield say(
+                "At {speed} rpm the {rows} rows together shake their frame with a force of up to "
+                "{peak} N ({rms} N RMS), largest at a crank angle of {angle}°.",
+                rows=rows,
+                **told,
+            )
+        else:
+            yield say(
+                "At {speed} rpm the linkage shakes its frame with a force of up to {peak} N "
+                "({rms} N RMS), largest at a crank angle of {angle}°.",
+                **told,
+            )
+        if shaking.over_weight:
+            ratio = brief(shaking.over_weight)
+            yield say("That is {ratio} times the weight of its links.", ratio=ratio)
+        yield _directed(shaking)
+        yield _ordered(found, shaking)
+    moment, scale = summary["shaking_moment"], summary["frame_moment"].peak
+    if brief(moment.peak, scale) == "0":
+        yield say("There is no shaking moment about the drive pivot.")
+        return
+    reached = {"peak": brief(moment.peak), "rms": brief(moment.rms)}
+    if rows > 1:
+        yield say(
+            "The shaking moment of one row about its drive pivot reaches {peak} N m "
+            "({rms} N m RMS).",
+            **reached,
+        )
+    else:
+        yield say(
+            "The shaking moment about the drive pivot reaches {peak} N m ({rms} N m RMS).",
+            **reached,
+        )
+
+
+def _directed(shaking: Shaking) -> str:
+    way, share = shaking.direction
+    if share <= ROUND:
+        return say("It acts in all directions alike, turning with the crank.")
+    if share >= STRETCHED and abs(sin(way)) > cos(pi / 6):
+        return say("It acts mostly up and down.")
+    if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
+        return say("It acts mostly to and fro.")
+    return say("It acts mostly along a direction of {angle}° from the x axis.", angle=angle(way, 0))
+
+
+def _ordered(found: Findings, shaking: Shaking) -> str:
+    order, share = shaking.loudest
+    frequency = brief(order * abs(found.analysis.motion.speed) / (2 * pi))
+    told = {"share": percent(share), "frequency": frequency}
+    if order == 1 and share >= LEADING:
+        return say("{share} % of it (mean square) comes once a turn, at {frequency} Hz.", **told)
+    return say(
+        "Its largest part, {share} % of the mean square, comes {order} times a turn, at "
+        "{frequency} Hz.",
+        order=f"{order:.4g}",
+        **told,
+    )
+
+
+def _why(found: Findings) -> Iterator[str]:
+    split, summary = found.analysis.forces.split, found.analysis.summary
+    if summary["shaking_force"].rms > 0:
+        by_link = shares(split.by_link("shaking_force"))
+        parts = [
+            say("{name} {share} %", name=name, share=percent(share))
+            for name, share in by_link.items()
+            if abs(share) >= SMALL
+        ]
+        yield say("The shaking force comes from: {parts}.", parts=say(", ").join(parts))
+        against = [name for name, share in by_link.items() if share <= -SMALL]
+        if against:
+            yield say("A minus means that the link works against the others.")
+    torque = summary["drive_torque"]
+    if torque.rms > 0:
+        by_cause = shares(
+            {name: part - np.mean(part) for name, part in split.by_cause("drive_torque").items()}
+        )
+        causes = [
+            say("{name} {share} %", name=say(CAUSES[name]), share=percent(share))
+            for name, share in by_cause.items()
+            if abs(share) >= SMALL
+        ]
+        swing = {"low": brief(torque.min, torque.peak), "high": brief(torque.max, torque.peak)}
+        swing["parts"] = say(", ").join(causes)
+        if len(found.machine.rows) > 1:
+            yield say(
+                "The drive torque of one row swings between {low} and {high} N m; that comes "
+                "from: {parts}.",
+                **swing,
+            )
+        else:
+            yield say(
+                "The drive torque swings between {low} and {high} N m; that comes from: {parts}.",
+                **swing,
+            )
+
+
+def check_whole_cycle(found: Findings) -> None:
+    """A report shows whole turns."""
+    if not found.analysis.motion.whole_cycle:
+        raise UsageError("a report needs crank angles over the whole cycle; give a number of them")
+
+
+def vibration_told(found: Findings) -> Iterator[str]:
+    """What the gauges read, and the nearest resonance."""
+    response = found.response
+    if response is None:
+        return
+    for name, gauge in response.gauges.items():
+        scale, unit = scaled("rad" if gauge.rotation else "m")
+        yield say(
+            "The gauge {gauge} moves by {size} {unit} peak to peak at {speed} rpm.",
+            gauge=name,
+            size=brief(float(gauge.displacement.peak_to_peak) * scale),
+            unit=unit,
+            speed=brief(abs(response.speed) / PER_RPM),
+        )
+    if found.sweep is None or not found.sweep.resonances:
+        return
+    nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))
+    told = {
+        "order": f"{nearest.order:.4g}",
+        "mode": nearest.mode,
+        "frequency": brief(nearest.frequency / (2 * pi)),
+        "speed": brief(abs(nearest.speed) / PER_RPM),
+    }
+    yield say(
+        "The nearest resonance is at {speed} rpm, where order {order} meets mode {mode} "
+        "({frequency} Hz).",
+        **told,
+    )
+    if nearest.avoid is not None and _within(abs(response.speed), nearest.avoid):
+        low, high = sorted(abs(end) / PER_RPM for end in nearest.avoid)
+        yield say(
+            "The crank turns at a speed that is to be avoided: between {low} and {high} rpm this "
+            "resonance amplifies more than three times.",
+            low=brief(low),
+            high=brief(high),
+        )
+
+
+def _within(value: float, ends: tuple[float, float]) -> bool:
+    low, high = sorted(map(abs, ends))
+    return low <= value <= high
+
+
+def planting_told(found: Findings) -> Iterator[str]:
+    """Depth, entry and exit, hills, speed of the tip."""
+    if found.planting is None:
+        return
+    get = found.planting.figures.get
+
+    def told(name: str, scale: float = 1.0) -> str:
+        return brief((get(name) or 0.0) * scale)
+
+    yield say(
+        "The tip of the finger goes {depth} mm into the soil; it enters at a crank angle of "
+        "{entry}° and leaves at {exit}°.",
+        depth=told("soil.depth", 1e3),
+        entry=angle(get("entry.crank_angle") or 0.0, 0),
+        exit=angle(get("exit.crank_angle") or 0.0, 0),
+    )
+    if get("hill_spacing"):
+        yield say(
+            "Hills are {spacing} mm apart; the hole at the surface is {hole} mm long.",
+            spacing=told("hill_spacing", 1e3),
+            hole=told("soil.hole_length", 1e3),
+        )
+    yield say(
+        "The tip moves at up to {speed} m/s relative to the machine.",
+        speed=told("max_speed.value"),
+    )

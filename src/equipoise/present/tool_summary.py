@@ -1,0 +1,197 @@
+"""The summary of a hand-held tool in plain words: what the hands get, why, and what helps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from math import pi
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.exposure.blocks import VERDICTS
+from equipoise.handheld.blocks import UNITS, varied_named
+from equipoise.handheld.exposed import WORKING, grips
+from equipoise.handheld.response import respond_tool
+from equipoise.i18n import say, spoken
+from equipoise.present.document import Answer, Tile
+from equipoise.present.findings import ToolFindings
+from equipoise.present.remedies import capital
+from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+
+HOUR, DAY = 3600.0, 86400.0
+"""s."""
+NEAR = 0.1
+"""Distance of a natural frequency from what shakes, over the latter, below which it is told."""
+
+
+def tool_tiles(found: ToolFindings) -> Iterator[Tile]:
+    """The figures that are seen at once."""
+    tool, exposure = found.tool, found.exposure
+    yield Tile(say("mass"), brief(tool.mass), "kg", say("whole tool"))
+    if tool.operation is not None:
+        yield Tile(
+            say("engine speed"), brief(tool.operation.speed / PER_RPM), "rpm", say("working")
+        )
+    if exposure is not None and WORKING in exposure.named:
+        name, value = _worst_at_work(exposure)
+        yield Tile(say("vibration of the hand"), brief(value), "m/s²", name)
+    if exposure is not None and exposure.a8 is not None and exposure.worst is not None:
+        verdict = say(VERDICTS[exposure.days[exposure.worst].verdict])
+        yield Tile(say("daily exposure A(8)"), brief(exposure.a8), "m/s²", verdict)
+    if found.design is not None:
+        best = found.design.figures[0]
+        told = change(best.before, best.after).removesuffix(" %")
+        yield Tile(say("by the changes below"), told, "%", say("vibration of the hand"))
+
+
+def tool_answers(found: ToolFindings) -> Iterator[Answer]:
+    """The summary, a question at a time."""
+    if found.exposure is not None:
+        yield Answer(say("What the hands get"), tuple(_felt(found.exposure)))
+        if why := tuple(_why(found.tool)):
+            yield Answer(say("Why"), why)
+    elif found.transmission is not None:
+        yield Answer(say("What comes to the hands"), tuple(_transmitted(found)))
+    if found.modes is not None:
+        yield Answer(say("Natural frequencies"), tuple(_near(found, found.modes)))
+    if found.design is not None:
+        yield Answer(say("What helps most"), tuple(_helps(found.design)))
+
+
+def _worst_at_work(exposure: ToolExposure) -> tuple[str, float]:
+    at_work = {name: float(grip.a_hv[0]) for name, grip in exposure.named[WORKING].items()}
+    name = max(at_work, key=lambda name: at_work[name])
+    return name, at_work[name]
+
+
+def _felt(exposure: ToolExposure) -> Iterator[str]:
+    if WORKING in exposure.named:
+        name, value = _worst_at_work(exposure)
+        yield say(
+            "At the working speed the hand at {hand} gets most: a weighted acceleration a_hv of "
+            "{value} m/s².",
+            hand=name,
+            value=brief(value),
+        )
+    if exposure.worst is None:
+        return
+    day = exposure.days[exposure.worst]
+    yield say(
+        "The day's work amounts to A(8) = {a8} m/s² at {hand}; that is {verdict}.",
+        a8=brief(day.a8),
+        hand=exposure.worst,
+        verdict=say(VERDICTS[day.verdict]),
+    )
+    action, limit = day.times.to_action, day.times.to_limit
+    if limit < DAY:
+        yield say(
+            "The action value is reached after {action} of such work a day, the limit value "
+            "after {limit}.",
+            action=_time(action),
+            limit=_time(limit),
+        )
+    elif action < DAY:
+        yield say(
+            "The action value is reached after {action} of such work a day, the limit value "
+            "not in a day.",
+            action=_time(action),
+        )
+    else:
+        yield say("A whole day of such work does not reach the action value.")
+
+
+def _begun(words: str) -> str:
+    """Words that begin a sentence; in other languages a name of the file does, as it is."""
+    return capital(words) if spoken() == "en" else words
+
+
+def _time(seconds: float) -> str:
+    """A part of a day, in minutes where it is less than an hour."""
+    if seconds < HOUR:
+        return say("{minutes} min", minutes=brief(seconds / 60))
+    return say("{hours} h", hours=brief(seconds / HOUR))
+
+
+def _why(tool: Tool) -> Iterator[str]:
+    """What each excitation would do to the worst hand if it were alone."""
+    if tool.operation is None or len(tool.excitations) < 2:
+        return
+    speed = tool.operation.speed
+    whole = {name: float(one.a_hv[0]) for name, one in grips(respond_tool(tool, speed)).items()}
+    hand = max(whole, key=lambda name: whole[name])
+    parts = []
+    for one in tool.excitations:
+        alone = grips(respond_tool(replace(tool, excitations=(one,)), speed))[hand]
+        name = one.name or one.file or one.station
+        value = brief(float(alone.a_hv[0]))
+        parts.append(say("{name} {value} m/s²", name=name, value=value))
+    yield say(
+        "Each source alone would give the hand at {hand}: {parts}.",
+        hand=hand,
+        parts=say(", ").join(parts),
+    )
+
+
+def _transmitted(found: ToolFindings) -> Iterator[str]:
+    transmission = found.transmission
+    assert transmission is not None
+    for name, one in transmission.stations.items():
+        size = np.max(one.size, axis=0)
+        k = int(np.argmax(size))
+        yield say(
+            "Of a force at {source}, {name} gets at most {ratio} times as much, at {speed} rpm.",
+            source=transmission.source,
+            name=name,
+            ratio=brief(float(size[k])),
+            speed=brief(float(transmission.speed[k]) / PER_RPM),
+        )
+
+
+def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
+    """The natural frequency nearest to what shakes once a turn."""
+    plane = modes.planes[0]
+    swinging = plane.cycles_per_second[len(plane.rigid) :]
+    told = say(", ").join(brief(float(value)) for value in swinging[:4])
+    if told:
+        yield say("The lowest are {list} Hz.", list=told)
+    operation = found.tool.operation
+    if operation is None or not len(swinging):
+        return
+    firing = operation.speed / (2 * pi)
+    nearest = float(swinging[int(np.argmin(np.abs(swinging - firing)))])
+    away = nearest / firing - 1
+    if abs(away) < NEAR:
+        yield say(
+            "One of {frequency} Hz is only {share} % away from once a turn of the engine.",
+            frequency=brief(nearest),
+            share=percent(abs(away)),
+        )
+
+
+def _helps(design: ToolDesign) -> Iterator[str]:
+    for one in design.variables:
+        kind: Dimension = one.dimension  # type: ignore[assignment]
+        unit = in_unit(UNITS.get(kind, SI[kind]))
+        before, after = unit.text(one.before), unit.text(one.after)
+        if before != after:
+            yield say(
+                "{name}: {before} → {after} {unit}.",
+                name=_begun(varied_named(one.name)),
+                before=before,
+                after=after,
+                unit=unit.name,
+            )
+    best = design.figures[0]
+    yield say(
+        "The worst hand then gets {after} instead of {before} m/s² over the band ({change}).",
+        before=brief(best.before),
+        after=brief(best.after),
+        change=change(best.before, best.after),
+    )

@@ -1,1 +1,0 @@
-"""Everything that can be told of a model file: findings, their pictures, the report."""

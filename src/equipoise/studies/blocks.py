@@ -1,0 +1,494 @@
+"""What studies show: designs, the best of them, a search, tolerances, a landscape, a store."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from math import isnan
+from shlex import quote
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+
+from equipoise.balancing.naming import objective_named
+from equipoise.i18n import say
+from equipoise.quantities import number, percent
+from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.studies.design_space import Normal, Uniform
+from equipoise.studies.selection import far_apart
+
+if TYPE_CHECKING:
+    from equipoise.studies.objective_map import Landscape
+    from equipoise.studies.search import Searched
+    from equipoise.studies.selection import Best
+    from equipoise.studies.store import Store
+    from equipoise.studies.study import Make, Output
+    from equipoise.studies.tolerances import Cause, Tolerances
+    from equipoise.studies.variance import Estimate, Scatter
+
+Array = np.ndarray[Any, Any]
+
+MOST = 20
+"""Designs of a front that are told."""
+
+
+class Unit(Protocol):
+    """A unit in which a number or a figure of a study is told."""
+
+    @property
+    def name(self) -> str: ...
+
+    def of_si(self, value: float) -> float: ...
+
+
+@dataclass(frozen=True)
+class Plain:
+    """The SI unit, where no other is known."""
+
+    name: str = ""
+
+    def of_si(self, value: float) -> float:
+        """A value as it is."""
+        return value
+
+
+Units = Mapping[str, Unit]
+
+
+def unit_in(units: Units | None, name: str) -> Unit:
+    """The unit of a number or figure; SI where none is told."""
+    return Plain() if units is None or name not in units else units[name]
+
+
+def in_unit(value: float | None, unit: Unit, **more: Any) -> Value | None:
+    """A value in SI units as a cell."""
+    return None if value is None else Value(unit.of_si(float(value)), **more)
+
+
+# -- designs ---------------------------------------------------------------------------------------
+
+
+def columns_of(
+    numbers: Sequence[str], values: Array, outputs: Sequence[str], figures: Array
+) -> dict[str, Array]:
+    """Columns (K,) of designs by name: values (K, d) of numbers, figures (K, m) of outputs."""
+    columns = {name: values[:, k] for k, name in enumerate(numbers)}
+    return columns | {name: figures[:, k] for k, name in enumerate(outputs)}
+
+
+def designs_table(
+    title: str, labels: Sequence[str], columns: Mapping[str, Array], units: Units | None
+) -> Table:
+    """Designs (K), one row each, with columns (K,) in SI units by name."""
+    own = {name: unit_in(units, name) for name in columns}
+    heads = (Column(name, unit=own[name].name or None) for name in columns)
+    cells = ([in_unit(one, own[name]) for one in column] for name, column in columns.items())
+    return Table(title, (Column(say("design")), *heads), tuple(zip(labels, *cells, strict=True)))
+
+
+def wanted(by: Mapping[str, Make]) -> str:
+    """Such as ``vertical smallest, swing largest``."""
+    ways = {"smallest": say("smallest"), "largest": say("largest")}
+    return say(", ").join(f"{name} {ways[way]}" for name, way in by.items())
+
+
+def limits(outputs: Iterable[Output], units: Units | None) -> list[str]:
+    """Every limit as one says it, such as ``vertical at most 12.00 N``."""
+    told = []
+    for output in outputs:
+        unit = unit_in(units, output.name)
+        for words, limit in ((say("at least"), output.at_least), (say("at most"), output.at_most)):
+            if limit is not None:
+                value = number(unit.of_si(limit))
+                told.append(f"{output.name} {words} {value} {unit.name}".strip())
+    return told
+
+
+def _limits(outputs: Iterable[Output], units: Units | None) -> Iterator[Block]:
+    if told := limits(outputs, units):
+        yield Text(say("Limits: {limits}", limits=say(", ").join(told)))
+
+
+def best_blocks(
+    found: Best, outputs: Sequence[Output] = (), units: Units | None = None
+) -> Iterator[Block]:
+    """What is best of how many, within which limits, and the designs."""
+    counted = {"stored": found.stored, "computed": found.computed, "kept": found.kept}
+    if limits(outputs, units):
+        yield Text(
+            say(
+                "{stored} designs: {computed} have figures, {kept} keep every limit",
+                **counted,
+            )
+        )
+    else:
+        yield Text(say("{stored} designs: {computed} have figures", **counted))
+    yield from _limits(outputs, units)
+    if len(found.by) > 1:
+        yield Text(say("{count} designs that no other beats in everything", count=found.front))
+    yield best_table(found, units)
+
+
+def best_table(found: Best, units: Units | None = None) -> Table:
+    """The designs, the best first."""
+    columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
+    order = dict.fromkeys((*found.by, *found.outputs, *found.numbers))
+    labels = [str(design) for design in found.designs]
+    aims = wanted(found.by)
+    if len(found.by) > 1:
+        title = say("Designs that no other beats; {aims}", aims=aims)
+    else:
+        title = say("The best designs; {aims}", aims=aims)
+    return designs_table(title, labels, {name: columns[name] for name in order}, units)
+
+
+# -- a search --------------------------------------------------------------------------------------
+
+
+def searched_blocks(
+    found: Searched, units: Units | None = None, own: tuple[Array, Array] | None = None
+) -> Iterator[Block]:
+    """How the search went, and the front.
+
+    own : values (d,) and figures (m,) of the model itself, if it can be computed.
+    """
+    failed = sum(found.failures.values())
+    parts = [
+        say(
+            "{count} designs in {generations} generations, seed {seed}",
+            count=found.computed,
+            generations=found.generations,
+            seed=found.seed,
+        )
+    ]
+    parts += [say("{count} failed", count=failed)] if failed else []
+    still, growing = say("the front stands still"), say("the front may still grow")
+    parts.append(still if found.stood_still else growing)
+    yield Text("; ".join(parts))
+    yield from _limits(found.study.outputs, units)
+    yield _front(found, units, own)
+    if not found.stood_still:
+        yield Notes((say("it may get better yet; give more generations"),))
+
+
+def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
+    columns = [objective_column(found, name) for name in found.objectives]
+    shown = far_apart(np.column_stack(columns), MOST)
+    labels = [str(one) for one in shown]
+    values, figures = found.values[shown], found.figures[shown]
+    if own is not None:
+        labels = [say("model"), *labels]
+        values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
+    told = columns_of(found.study.paths, values, found.study.names, figures)
+    order = dict.fromkeys((*found.objectives, *found.study.names, *found.study.paths))
+    aims = wanted(found.objectives)
+    if len(found.objectives) == 1:
+        title = say("The best design; {aims}", aims=aims)
+    elif len(shown) < found.front:
+        title = say(
+            "{shown} of {count} designs that no other beats; {aims}",
+            shown=len(shown),
+            count=found.front,
+            aims=aims,
+        )
+    else:
+        title = say("{count} designs that no other beats; {aims}", count=found.front, aims=aims)
+    return designs_table(title, labels, {name: told[name] for name in order}, units)
+
+
+def objective_column(found: Searched, name: str) -> Array:
+    """Figures (K,) of one objective, such that small ones are good."""
+    sign = 1.0 if found.objectives[name] == "smallest" else -1.0
+    column: Array = sign * found.figures[:, found.study.names.index(name)]
+    return column
+
+
+# -- a store ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Summary:
+    """What is in a store.
+
+    failures : how many designs failed, by why.
+    best : of those that keep every limit; None where there is none, or nothing to go by.
+    note : why there is none.
+    """
+
+    title: str
+    store: Store
+    outputs: Sequence[Output]
+    failures: Mapping[str, int]
+    kept: int
+    best: Best | None
+    note: str
+
+    @property
+    def limited(self) -> bool:
+        """Whether there are limits to keep."""
+        return any((one.at_least, one.at_most) != (None, None) for one in self.outputs)
+
+
+def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") -> Iterator[Block]:
+    """Counts, the best designs, and what can be done with the store.
+
+    run : how long it took.
+    """
+    store = summary.store
+    path = _path(store)
+    yield Text(f"{path}: {_size(store)}{run}")
+    size = store.size
+    counts = {say("computed"): size - sum(summary.failures.values()), **summary.failures}
+    if summary.limited:
+        counts[say("keep every limit")] = summary.kept
+    rows = tuple(
+        (what, Value(count, after=0), Value(100 * count / size, after=2))
+        for what, count in counts.items()
+    )
+    columns = (Column(""), Column(say("designs")), Column("", unit="%"))
+    yield Table(say("Designs"), columns, rows)
+    if summary.best is not None:
+        yield best_table(summary.best, units)
+    if summary.note:
+        yield Notes((summary.note,))
+    yield Listing(say("Next:"), "\n".join(_next(summary, path)))
+
+
+def _path(store: Store) -> str:
+    return "".join(sign if sign.isprintable() else ascii(sign)[1:-1] for sign in str(store.path))
+
+
+def _size(store: Store) -> str:
+    return say("{count} designs of {numbers} numbers", count=store.size, numbers=len(store.numbers))
+
+
+def _next(summary: Summary, path: str) -> Iterator[str]:
+    """Commands that take it, each below what it does."""
+    by = "" if any(one.make for one in summary.outputs) else f" --by {summary.outputs[0].name}"
+    told = {}
+    if not summary.note:
+        told[f"equipoise best {quote(path)}{by}"] = say(
+            "the best designs; --out writes one as a model file"
+        )
+    table = quote(f"{path.rpartition('/')[2].removesuffix('.zarr')}.parquet")
+    told[f"equipoise export {quote(path)} -o {table}"] = say("all designs as one table, or as .csv")
+    told[f"xarray.open_zarr({path!r})"] = say("the same in Python, without reading it all")
+    for command, what in told.items():
+        yield from (f"  {what}:", f"    {command}")
+
+
+def store_blocks(store: Store) -> Iterator[Block]:
+    """How many designs of what."""
+    yield Text(f"{_path(store)}: {_size(store)}")
+    names = [*store.numbers, *store.outputs]
+    rows = tuple((name, store.units.get(name, "")) for name in names)
+    yield Table(say("Columns"), (Column(""), Column(say("unit"))), rows)
+
+
+# -- tolerances ------------------------------------------------------------------------------------
+
+LITTLE = 0.01
+"""Share of the variance below which it is not worth tightening anything."""
+CHANCE, FINE = 4, 1000
+"""Machines that a change has to bring within all limits not to be chance; rows for two digits."""
+
+
+def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator[Block]:
+    """Scatter, limits, causes, and a sentence on what to do."""
+    drawn = say(
+        "{count} machines drawn, seed {seed}", count=found.designs, seed=found.study.sampling.seed
+    )
+    failed = say(", ").join(f"{what} {count}" for what, count in found.failures.items())
+    yield Text(f"{drawn}; {say('failed: {list}', list=failed)}" if failed else drawn)
+    if found.within is not None:
+        yield Text(say("Every limit is kept by {share} of them.", share=_share(found.within)))
+    yield _scatters(found, units)
+    if any(one.within is not None for one in found.scatters.values()):
+        yield _kept(found, units)
+    yield _causes(found, units)
+    yield _variances(found)
+    yield Text(advice(found))
+    if notes := (*_outside(found), *found.notes):
+        yield Notes(notes)
+
+
+def _scatters(found: Tolerances, units: Units | None) -> Table:
+    scatters = found.scatters.values()
+    every = sorted({p for one in scatters for p in one.percentiles})
+    shared = [p for p in every if all(p in one.percentiles for one in scatters)]
+    rows = []
+    for name, one in found.scatters.items():
+        unit = unit_in(units, name)
+        told = (one.base, one.mean, one.deviation, *(one.percentiles[p] for p in shared))
+        rows.append((labelled(name, unit.name), *(in_unit(value, unit) for value in told)))
+    labels = ("", say("model"), say("mean"), say("deviation"), *(f"{p:g} %" for p in shared))
+    title = say("Figures; the columns with % tell below what so many machines lie")
+    return Table(title, tuple(map(Column, labels)), tuple(rows))
+
+
+def labelled(name: str, unit: str) -> str:
+    """A name with its unit."""
+    return say(", ").join(filter(None, (name, unit)))
+
+
+def _kept(found: Tolerances, units: Units | None) -> Table:
+    rows = []
+    for name, one in found.scatters.items():
+        if one.within is None:
+            continue
+        unit = unit_in(units, name)
+        ends = (in_unit(end, unit) for end in (one.output.at_least, one.output.at_most))
+        out = (Value(100 * share, after=2) for share in (one.below, one.above))
+        inside = _share(one.within).replace(" %", "")
+        rows.append((labelled(name, unit.name), *ends, *out, inside))
+    columns = (
+        Column(""),
+        Column(say("at least")),
+        Column(say("at most")),
+        Column(say("below"), unit="%"),
+        Column(say("above"), unit="%"),
+        Column(f"{say('within')}, %"),
+    )
+    return Table(say("Limits"), columns, tuple(rows))
+
+
+def _share(share: Estimate) -> str:
+    """A share with its interval: ``93.2 % (92.7 to 93.7 %)``."""
+    value, low, high = (percent(one, 2) for one in (share.value, share.low, share.high))
+    return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"
+
+
+def _causes(found: Tolerances, units: Units | None) -> Table:
+    digits, kept = _digits(found), found.unchanged is not None
+    rows: list[tuple[Cell, ...]] = []
+    for cause in found.causes:
+        shares = (cause.halved, cause.removed) if kept else ()
+        cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
+        given = say(", ").join(tolerance_told(found, path, units) for path in cause.numbers)
+        rows.append(
+            (say(", ").join(cause.numbers), given, Value(100 * cause.gain, after=1), *cells)
+        )
+    columns = [Column(""), Column(say("tolerance")), Column(say("variance less by"), unit="%")]
+    title = say("What half of a tolerance does, the most first")
+    if found.unchanged is not None:
+        columns += [
+            Column(say("keep limits with half"), unit="%"),
+            Column(say("keep limits without"), unit="%"),
+        ]
+        share = percent(found.unchanged, digits)
+        title = say("{title}; with all of them {share} % keep limits", title=title, share=share)
+    return Table(title, tuple(columns), tuple(rows))
+
+
+def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
+    """A tolerance as one says it: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
+    unit = unit_in(units, path)
+    (spread,) = (one.spread for one in found.study.vary if one.path == path)
+    if isinstance(spread, Uniform):
+        return f"+- {number(unit.of_si(spread.half_width))} {unit.name}".strip()
+    assert isinstance(spread, Normal)
+    size = f"{number(unit.of_si(spread.deviation))} {unit.name}".strip()
+    if spread.cut is None:
+        return say("deviation {size}", size=size)
+    return say("deviation {size}, cut at {cut}", size=size, cut=f"{spread.cut:g}")
+
+
+def _variances(found: Tolerances) -> Table:
+    """The share of each cause in the variance of each figure."""
+    names = [name for name in found.scatters if name in found.causes[0].effects]
+    rows = tuple((say(", ").join(cause.numbers), *_effects(cause, names)) for cause in found.causes)
+    title = say("Share of the variance by cause, with what it does together with others, %")
+    return Table(title, (Column(""), *map(Column, names)), rows)
+
+
+def _effects(cause: Cause, names: Sequence[str]) -> Iterator[str]:
+    for name in names:
+        total = cause.effects[name].total
+        half = 0.5 * (total.high - total.low)
+        yield f"{percent(total.value, 1)} +- {percent(half, 1)}"
+
+
+def _digits(found: Tolerances) -> int:
+    """Digits of a share of the rows that mean something."""
+    return 2 if found.rows >= FINE else 1
+
+
+def advice(found: Tolerances) -> str:
+    """What to tighten first, and what that brings."""
+    first = found.causes[0]
+    if first.gain < LITTLE:
+        return say(
+            "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
+        )
+    limited = [name for name, one in found.scatters.items() if one.within is not None]
+    names = [*(limited or found.scatters)]
+    if len(names) == 1:
+        of = names[0]
+    else:
+        of = say("the figures with limits") if limited else say("the figures")
+    what = say(" and ").join(first.numbers)
+    told = {
+        "what": say("{names} together", names=what) if len(first.numbers) > 1 else what,
+        "share": f"{100 * first.gain:.0f}",
+        "of": of,
+    }
+    text = say(
+        "Tighten first: {what}. Half of the tolerance takes {share} % off the variance of {of}",
+        **told,
+    )
+    if first.halved is None or found.unchanged is None:
+        return f"{text}."
+    if (first.halved - found.unchanged) * found.rows < CHANCE:
+        return say("{text}; hardly more machines keep every limit then.", text=text)
+    before, after = (percent(share, _digits(found)) for share in (found.unchanged, first.halved))
+    return say(
+        "{text}, and {after} % of the machines keep every limit, not {before} %.",
+        text=text,
+        after=after,
+        before=before,
+    )
+
+
+def _outside(found: Tolerances) -> Iterator[str]:
+    """Limits that the model itself does not keep."""
+    for name, one in found.scatters.items():
+        if _beyond(one):
+            yield say(
+                "the model itself does not keep the limits of {name}; change its numbers first",
+                name=name,
+            )
+
+
+def _beyond(one: Scatter) -> bool:
+    low, high = one.output.at_least, one.output.at_most
+    return (low is not None and one.base < low) or (high is not None and one.base > high)
+
+
+# -- a landscape -----------------------------------------------------------------------------------
+
+
+def landscape_blocks(found: Landscape) -> Iterator[Block]:
+    """Where over two numbers an objective is least, and what it is as the model stands."""
+    rows: list[tuple[Cell, ...]] = [
+        (say("least"), *map(Value, found.best), Value(found.least)),
+    ]
+    if found.start is not None:
+        rows.append((say("as it is"), *map(Value, found.start), Value(found.before)))
+    columns = (
+        Column(""),
+        *(Column(path) for path in found.paths),
+        Column(objective_named(found.objective), unit=found.unit),
+    )
+    yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
+    values = found.values[np.isfinite(found.values)]
+    if isnan(found.least) or not values.size:
+        yield Text(say("Nowhere in this range can the linkage turn."))
+
+
+SHOWS: dict[str, Any] = {
+    "Best": best_blocks,
+    "Searched": searched_blocks,
+    "Tolerances": tolerances_blocks,
+    "Landscape": landscape_blocks,
+    "Store": store_blocks,
+}

@@ -1,0 +1,116 @@
+"""How signs look, by their role, and in which colours: for pictures, animations and pages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+Colors = Mapping[str, str]
+
+LIGHT: Colors = {
+    "paper": "#ffffff",
+    "ink": "#1a1a1a",
+    "lines": "#595959",
+    "faint": "#a6a6a6",
+    "pale": "#d9d9d9",
+    "wheel": "#f1f1f1",
+    "main": "#0060a8",
+    "stress": "#c8500a",
+    "soil": "#efe4d2",
+    "earth": "#7a5c33",
+}
+"""Blue and vermilion keep apart for the colour-blind; in grey, width and dashes tell them apart."""
+DARK: Colors = {
+    "paper": "#16191d",
+    "ink": "#e8e8e8",
+    "lines": "#a8adb3",
+    "faint": "#6c737b",
+    "pale": "#3d444c",
+    "wheel": "#22272d",
+    "main": "#62aef0",
+    "stress": "#f29055",
+    "soil": "#2c261c",
+    "earth": "#b0946a",
+}
+
+
+@dataclass(frozen=True)
+class Look:
+    """How a shape is drawn.
+
+    fill, line : names of colours; none where there is none.
+    width : of the line, units.  dashes : lengths of dash and gap, units.
+    flat : whether the line ends where it ends, instead of in a half circle.
+    """
+
+    fill: str | None
+    line: str | None
+    width: float = 0.0
+    dashes: tuple[float, ...] | None = None
+    flat: bool = False
+
+    def css(self, unit: float) -> str:
+        """As a style sheet has it; unit : pixels."""
+        fill = f"var(--{self.fill})" if self.fill else "none"
+        if self.line is None:
+            return f"fill:{fill}"
+        more = ";stroke-linecap:butt" if self.dashes or self.flat else ""
+        if self.dashes:
+            lengths = " ".join(pixels(length * unit) for length in self.dashes)
+            more += f";stroke-dasharray:{lengths}"
+        width = pixels(self.width * unit)
+        return f"fill:{fill};stroke:var(--{self.line});stroke-width:{width}{more}"
+
+
+EDGE, BODY = 10.4, 8.6
+"""Width of a bar with and without its outline, units."""
+BASE = 30.0
+"""Width of the outline that a support has around its points, units."""
+
+LOOKS = {
+    "soil": Look("soil", None),
+    "stubble": Look(None, "earth", 0.8),
+    "surface": Look(None, "earth", 1.6, flat=True),
+    "support-edge": Look("faint", "faint", BASE),
+    "support": Look("wheel", "wheel", BASE - 1.6),
+    "wheel": Look("wheel", "lines", 1.0),
+    "pitch": Look(None, "faint", 1.2, (5.0, 3.0)),
+    "spoke": Look(None, "faint", 3.0),
+    "trace": Look(None, "main", 1.6),
+    "force-path": Look(None, "stress", 1.1, (4.0, 3.0)),
+    "tie": Look(None, "faint", 3.0),
+    "rail": Look(None, "lines", 1.2),
+    "hatch": Look(None, "lines", 0.8),
+    "edge": Look("lines", "lines", EDGE),
+    "body": Look("pale", "pale", BODY),
+    "rim": Look("pale", "lines", 1.0),
+    "slot": Look("paper", "lines", 1.0),
+    "block": Look("paper", "lines", 1.2),
+    "spring": Look(None, "lines", 1.4),
+    "planned": Look(None, "main", 1.2, (3.0, 2.4)),
+    "mount": Look(None, "lines", 1.4),
+    "foot": Look("lines", "lines", 1.4),
+    "float": Look("paper", "lines", 1.4),
+    "gauge": Look("paper", "ink", 1.5),
+    "needle": Look(None, "ink", 1.5),
+    "needle-head": Look("ink", None),
+    "tray": Look(None, "ink", 3.4),
+    "stand": Look("paper", "lines", 1.2),
+    "dot": Look("lines", None),
+    "pin": Look("paper", "lines", 1.4),
+    "mass": Look("paper", "ink", 0.9),
+    "quarter": Look("ink", None),
+    "tip": Look("main", "paper", 1.2),
+    "driver": Look(None, "ink", 1.6),
+    "driver-head": Look("ink", None),
+    "force": Look(None, "stress", 2.6, flat=True),
+    "force-head": Look("stress", None),
+    "scale": Look(None, "ink", 1.4),
+}
+"""Role -> look."""
+
+
+def pixels(value: float, digits: int = 2) -> str:
+    """A number without needless signs."""
+    text = f"{value:.{digits}f}".rstrip("0").rstrip(".") if digits else f"{value:.0f}"
+    return "0" if text == "-0" else text

@@ -1,0 +1,308 @@
+"""A machine as signs that move as rigid bodies do: whatever draws them only places them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.support import Direction, Mount, unit_vector
+from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene
+from equipoise.symbols.shapes import (
+    PIN,
+    Shape,
+    block,
+    circle,
+    coils,
+    driver,
+    gauge,
+    line,
+    mass,
+    mount,
+    off_outline,
+    pivot,
+    plate,
+    rails,
+    slot,
+    soil,
+    turning,
+    wheel,
+    zigzag,
+)
+
+Array = np.ndarray[Any, Any]
+
+BESIDE = 0.6
+"""How much farther than the machine the soil reaches, over its size: out of every picture."""
+AHEAD = np.radians(np.linspace(24, 84, 26))
+"""Angles from the crank over which the arrow of its sense goes."""
+SENSE = 0.55, 30.0
+"""Radius of that arrow: over the crank's length, and in units at least."""
+
+
+@dataclass(frozen=True, eq=False)
+class Track:
+    """How a piece moves over N crank angles.
+
+    place : of its origin, (N,) complex, m.  angle : (N,) rad, counterclockwise, counted on.
+    stretch : (N,) factor of its places along its x axis.
+    """
+
+    place: Array
+    angle: Array
+    stretch: Array
+
+
+@dataclass(frozen=True)
+class Hold:
+    """What a piece moves with.
+
+    point : its origin.  Its x axis is that of a link, the way of a guide, or points to another
+    point, between which and the origin it is stretched; one of the three is given.
+    """
+
+    point: str
+    link: str = ""
+    guide: str = ""
+    to: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Shapes that move together, in axes of their own; those without a hold stand still.
+
+    layer : ``field``, ``support``, ``wheels``, ``guides``, ``stands``, ``links``, ``springs``,
+        ``pivots``, ``blocks``, ``joints``, ``tray`` or ``drive``.
+    link : whose plate or bar it is, if any.
+    """
+
+    layer: str
+    shapes: tuple[Shape, ...]
+    hold: Hold | None = None
+    link: str = ""
+
+    def track(self, scene: Scene) -> Track | None:
+        """How it moves."""
+        if self.hold is None:
+            return None
+        place = scene.places[self.hold.point]
+        if self.hold.link:
+            return Track(place, scene.angles[self.hold.link], np.ones(len(place)))
+        if self.hold.guide:
+            (way,) = (guide.way for guide in scene.guides if guide.name == self.hold.guide)
+            return Track(place, np.unwrap(np.angle(way)), np.ones(len(place)))
+        way = scene.places[self.hold.to] - place
+        length = abs(way)
+        usual = float(length.mean()) or 1.0
+        return Track(place, np.unwrap(np.angle(way)), length / usual)
+
+
+def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> list[Piece]:
+    """Everything of a machine that is drawn, from the back to the front.
+
+    Large plates lie below small ones; signs of pins and masses are covered by nothing.
+
+    traced : points that have a sign of their own because their path is drawn.
+    field : whether soil and tray are among it.
+    """
+    found = [*_field(scene)] if field else []
+    found += [*_carrier(scene), *_wheels(scene), *_stands(scene)]
+    found += _links(scene)
+    found += [*_springs(scene), Piece("pivots", tuple(_pivots(scene)))]
+    found += [Piece("blocks", tuple(block()), _on(guide)) for guide in scene.guides]
+    found += [
+        Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
+    ]
+    found += [*_tray(scene)] if field else []
+    found += _sense(scene)
+    return [piece for piece in found if piece.shapes]
+
+
+def _with(body: Body) -> Hold:
+    return Hold(body.points[0], link=body.name)
+
+
+def _on(guide: Guide) -> Hold:
+    return Hold(guide.point, guide=guide.name)
+
+
+# -- the field and the support ---------------------------------------------------------------------
+
+
+def _field(scene: Scene) -> Iterator[Piece]:
+    if scene.field is None:
+        return
+    low, high = scene.linkage_box
+    over = BESIDE * WIDE * scene.unit
+    surface, depth = scene.field.surface, scene.field.depth
+    ends = low.real - over, high.real + over
+    yield Piece("field", tuple(soil(*ends, surface, surface - depth - over, scene.unit)))
+
+
+def _tray(scene: Scene) -> Iterator[Piece]:
+    if scene.field is not None and scene.field.tray:
+        yield Piece("tray", (line("tray", *scene.field.tray),))
+
+
+def _carrier(scene: Scene) -> Iterator[Piece]:
+    carrier = scene.carrier
+    if carrier is None:
+        return
+    body = plate(np.array(carrier.corners), ("support-edge", "support"))
+    yield Piece("support", tuple(body))
+    held = tuple(_held(carrier))
+    if carrier.support.pivot is not None:
+        held += (*pivot(carrier.reference), circle("pin", carrier.reference, grown=PIN))
+    yield Piece("support", (*held, *mass(carrier.center)))
+
+
+def _held(carrier: Carrier) -> Iterator[Shape]:
+    """Mounts and gauges as the side shows them; what would lie on its like is drawn once."""
+    seen, ring = set(), 0
+    for item in carrier.items.values():
+        kind = Mount if isinstance(item, Mount) else None
+        if item.point is None:
+            if item.axis == "pitch":
+                yield from turning(carrier.reference, ring, kind is None)
+                ring += 1
+            continue
+        place, way = complex(*item.point[:2]), _seen(item.direction)
+        if (key := (kind, round(abs(place), 9), place, way)) in seen:
+            continue
+        seen.add(key)
+        if isinstance(item, Mount):
+            yield from mount(place, way, carrier.center, bool(item.stiffness), item.one_sided)
+        else:
+            yield from gauge(place, way)
+
+
+def _seen(direction: Direction) -> complex:
+    """The view of a direction from the side."""
+    return complex(*unit_vector(direction)[:2])
+
+
+# -- the linkage -----------------------------------------------------------------------------------
+
+
+def _wheels(scene: Scene) -> Iterator[Piece]:
+    bodies = {body.name: body for body in scene.bodies}
+    seen = set()
+    for gear in sorted(scene.wheels, key=lambda gear: -gear.radius):
+        if (key := (gear.link, gear.center, round(gear.radius / scene.unit))) in seen:
+            continue
+        seen.add(key)
+        if gear.link == FRAME:
+            still = complex(scene.places[gear.center][0])
+            yield Piece("wheels", (circle("wheel", still, gear.radius),))
+            continue
+        body = bodies[gear.link]
+        center = scene.local(body, scene.places[gear.center])
+        yield Piece("wheels", tuple(wheel(center, gear.radius)), _with(body))
+
+
+def _stands(scene: Scene) -> Iterator[Piece]:
+    """What the frame holds links with; on a support it is that, and no ground."""
+    grounded = scene.carrier is None
+    stands = (pivot(_first(scene, name), grounded) for name in scene.standing)
+    yield Piece("stands", tuple(shape for stand in stands for shape in stand))
+    for guide in scene.guides:
+        if guide.on == FRAME:
+            low, high = (complex(end[0]) for end in _ends(scene, guide))
+            yield Piece("guides", tuple(rails(low, high, scene.unit, grounded)))
+
+
+def _first(scene: Scene, name: str) -> complex:
+    return complex(scene.places[name][0])
+
+
+def _ends(scene: Scene, guide: Guide) -> tuple[Array, Array]:
+    """First and last place of a block on its line, (N,) complex, m."""
+    place = scene.places[guide.point]
+    return place - guide.behind * guide.way, place + guide.ahead * guide.way
+
+
+def _links(scene: Scene) -> Iterator[Piece]:
+    slotted = {guide.on for guide in scene.guides}
+
+    def order(body: Body) -> tuple[bool, int, int]:
+        corners = scene.corners(body)
+        area = float(np.sum((np.conj(corners) * np.roll(corners, -1)).imag)) / 2
+        length = float(np.max(abs(corners - corners[0])))
+        finest = scene.unit / 100  # what is less is rounding
+        return body.name not in slotted, -round(area / finest**2), -round(length / finest)
+
+    for body in sorted(scene.bodies, key=order):
+        yield Piece("links", tuple(_body(scene, body)), _with(body), body.name)
+
+
+def _body(scene: Scene, body: Body) -> Iterator[Shape]:
+    corners = list(map(complex, scene.corners(body)))
+    if body.name in scene.mass_centers:
+        center = scene.local(body, scene.mass_centers[body.name])
+        nearest = min(corners, key=lambda corner: abs(corner - center))
+        if len(corners) == 1:  # it reaches to where its mass is
+            corners += [center] * (abs(center - nearest) > 6 * scene.unit)
+        elif off_outline(center, corners) > 8 * scene.unit:
+            yield line("tie", nearest, center)
+    if len(corners) > 1:
+        yield from plate(np.array(corners))
+    for guide in scene.guides:
+        if guide.on == body.name:
+            yield from slot(*(scene.local(body, end) for end in _ends(scene, guide)))
+
+
+def _springs(scene: Scene) -> Iterator[Piece]:
+    for role, every in (("spring", scene.springs), ("planned", scene.planned)):
+        for one, other in every:
+            usual = float(abs(scene.places[other] - scene.places[one]).mean()) or 1.0
+            shape = zigzag(0, usual, coils(usual, scene.unit), role)
+            yield Piece("springs", (shape,), Hold(one, to=other))
+
+
+def _pivots(scene: Scene) -> Iterator[Shape]:
+    for name in scene.frame:
+        place = _first(scene, name)
+        if name in scene.standing:
+            yield circle("pin", place, grown=PIN)
+        else:
+            yield circle("dot", place, grown=2.0)
+
+
+def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]:
+    """Pins, traced points and centre of mass of a link."""
+    others = scene.bodies[: scene.bodies.index(body)]
+    hung = {point for point, _ in (*scene.springs, *scene.planned)}
+    drawn = {*scene.frame, *(point for other in others for point in other.points)}
+    for point in body.points:
+        if point in drawn:
+            continue
+        place = scene.local(body, scene.places[point])
+        if point in traced:
+            yield circle("tip", place, grown=4.6)
+        elif point in scene.pins or point in hung:
+            yield circle("pin", place, grown=PIN)
+        else:
+            yield circle("dot", place, grown=2.0)
+    center = scene.mass_centers.get(body.name)
+    if center is not None:
+        place = scene.local(body, center)
+        pins = (scene.places[point] for point in body.points if point in scene.pins)
+        if all(abs(place - scene.local(body, pin)) > 2 * scene.unit for pin in pins):
+            yield from mass(place)
+
+
+def _sense(scene: Scene) -> Iterator[Piece]:
+    """An arrow about the drive's pivot in the sense in which it turns, ahead of the crank."""
+    drive = scene.drive
+    if not drive.sense:
+        return
+    (body,) = (body for body in scene.bodies if body.name == drive.link)
+    center = scene.local(body, scene.places[drive.pivot])
+    arms = scene.corners(body) - center
+    arm = complex(arms[np.argmax(abs(arms))])
+    radius = max(SENSE[0] * abs(arm), SENSE[1] * scene.unit)
+    angles = np.angle(arm) + drive.sense * AHEAD
+    yield Piece("drive", tuple(driver(center, radius, angles)), _with(body))

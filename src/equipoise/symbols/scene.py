@@ -1,0 +1,324 @@
+"""What there is to draw of a machine: for pictures, animations and the live page."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.errors import EquipoiseError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.joints import gear_pins
+from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.support import Mount
+from equipoise.mechanism.tip import surface_of
+from equipoise.symbols.shapes import MOUNT
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.support import Gauge, Support
+
+Array = np.ndarray[Any, Any]
+
+
+@dataclass(frozen=True)
+class Body:
+    """A link: its points, and those of them that lie around it.
+
+    outline : one name for a point, two for a bar, more for a plate, counterclockwise.
+    """
+
+    name: str
+    points: tuple[str, ...]
+    outline: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """The pitch circle of a gear.
+
+    link : what turns with it, maybe the frame.  center : the point in its middle.  radius : m.
+    """
+
+    link: str
+    center: str
+    radius: float
+
+
+@dataclass(frozen=True, eq=False)
+class Guide:
+    """A sliding joint.
+
+    point : of the block.  way : direction of its line, (N,) complex of size 1.
+    on : the body that has the line.
+    behind, ahead : how far the line reaches from the block against and along its way, so that it
+        holds the block at all N crank angles, (N,), m.
+    """
+
+    name: str
+    point: str
+    way: Array
+    on: str
+    behind: Array
+    ahead: Array
+
+
+@dataclass(frozen=True)
+class Drive:
+    """The link that is driven, the point that it turns about, and its sense: 1, -1, or 0."""
+
+    link: str
+    pivot: str
+    sense: int
+
+
+@dataclass(frozen=True)
+class Field:
+    """What a machine plants into and picks up from.
+
+    surface : height of the soil, m.  depth : below it, m, that the tip reaches.
+    tray : both ends of the edge of the seedling tray, complex, m; empty where there is none.
+    """
+
+    surface: float
+    depth: float
+    tray: tuple[complex, ...]
+
+
+@dataclass(frozen=True)
+class Carrier:
+    """The support as it is seen from the side; places complex, m.
+
+    corners : all places by which it is drawn.  center : its centre of mass.
+    reference : the pivot or, where there is none, the centre of mass.
+    """
+
+    support: Support
+    corners: tuple[complex, ...]
+    center: complex
+    reference: complex
+
+    @property
+    def items(self) -> dict[str, Mount | Gauge]:
+        """Mounts, then gauges."""
+        return {**self.support.mounts, **self.support.gauges}
+
+
+GROWN = 2.0
+"""How much larger than the linkage a picture may get that shows what its support is held by."""
+WIDE = 560
+"""Units in the size of a machine, about."""
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A machine at N crank angles.
+
+    crank_angle : (N,) rad.
+    places : every point by name, those of the frame first; (N,) complex, m.
+    pins : points that bodies share.
+    mass_centers : of links whose mass is known; (N,) complex, m.
+    springs : ends of each, on its link and on the frame, as names of points.
+    angles : of each link, counted on through the turns; (N,) rad.
+    planned : springs that balancing may set, likewise.
+    """
+
+    crank_angle: Array
+    frame: tuple[str, ...]
+    bodies: tuple[Body, ...]
+    places: Mapping[str, Array]
+    pins: frozenset[str]
+    mass_centers: Mapping[str, Array]
+    wheels: tuple[Wheel, ...]
+    guides: tuple[Guide, ...]
+    springs: tuple[tuple[str, str], ...]
+    angles: Mapping[str, Array]
+    drive: Drive
+    planned: tuple[tuple[str, str], ...] = ()
+    field: Field | None = None
+    carrier: Carrier | None = None
+
+    @classmethod
+    def of(cls, motion: Motion) -> Scene:
+        """Everything of a motion that can be seen."""
+        machine, joints = motion.machine, motion.linkage.joints
+        places = {name: point.place for name, point in motion.points.items()}
+        return cls(
+            motion.crank_angle,
+            tuple(machine.frame),
+            tuple(_bodies(machine)),
+            places,
+            frozenset(joints.pins),
+            {name: center.place for name, center in motion.mass_centers.items()},
+            tuple(_wheels(motion)),
+            tuple(_guides(motion)),
+            springs := tuple((spring.point, spring.to) for spring in machine.springs),
+            {name: link.angle for name, link in motion.links.items()},
+            Drive(machine.drive.link, motion.linkage.pivot, int(np.sign(motion.speed))),
+            tuple(ends for ends in _planned(machine) if ends not in springs),
+            _field(motion),
+            _carrier(machine),
+        )
+
+    @property
+    def ends(self) -> tuple[str, ...]:
+        """Points that join nothing, such as the tip of a coupler."""
+        joining = {*self.frame, *self.pins, *(guide.point for guide in self.guides)}
+        joining.update(point for spring in self.springs for point in spring)
+        return tuple(name for name in self.places if name not in joining)
+
+    @property
+    def standing(self) -> tuple[str, ...]:
+        """Points of the frame at which something is held."""
+        held = {to for _, to in (*self.springs, *self.planned)} | self.pins
+        return tuple(name for name in self.frame if name in held)
+
+    @cached_property
+    def linkage_box(self) -> tuple[complex, complex]:
+        """Lower left and upper right corner of all places, wheels and ways of blocks, m."""
+        every = [*self.places.values(), *self.mass_centers.values()]
+        for guide in self.guides:
+            place = self.places[guide.point]
+            every += [place - guide.behind * guide.way, place + guide.ahead * guide.way]
+        for wheel in self.wheels:
+            reach = wheel.radius * (1 + 1j)
+            every += [self.places[wheel.center] + way for way in (reach, -reach)]
+        return _box(np.concatenate(every))
+
+    @property
+    def unit(self) -> float:
+        """Of signs, m, about."""
+        low, high = self.linkage_box
+        return max((high - low).real, (high - low).imag) / WIDE or 1e-6
+
+    @cached_property
+    def box(self) -> tuple[complex, complex]:
+        """Lower left and upper right corner of all that a picture should hold, m.
+
+        Of what the support is held by, only what is near enough that the linkage stays in sight.
+        """
+        low, high = self.linkage_box
+        if self.field is not None:
+            bottom = complex(low.real, self.field.surface - self.field.depth)
+            low, high = _box(np.array([low, high, bottom, *self.field.tray]))
+        if self.carrier is None:
+            return low, high
+        most = GROWN * max((high - low).real, (high - low).imag)
+        room = (MOUNT[0] + 5) * self.unit * (1 + 1j)
+        points = [item.point for item in self.carrier.items.values() if item.point is not None]
+        places = {self.carrier.reference, *(complex(*point[:2]) for point in points)}
+        middle = (low + high) / 2
+        for place in sorted(places, key=lambda z: (abs(z - middle), z.real, z.imag)):
+            grown = _box(np.array([low, high, place - room, place + room]))
+            span = grown[1] - grown[0]
+            if max(span.real, span.imag) <= most:
+                low, high = grown
+        return low, high
+
+    def corners_at(self, k: int) -> Array:
+        """Places and wheels at the k-th crank angle, complex, m."""
+        wheels = [
+            self.places[wheel.center][k] + wheel.radius * way
+            for wheel in self.wheels
+            for way in (1, -1, 1j, -1j)
+        ]
+        return np.array([*(place[k] for place in self.places.values()), *wheels])
+
+    def local(self, body: Body, place: Array) -> complex:
+        """Where a place (N,) of a link is from its first point, in the link's own axes, m."""
+        arm = place[0] - self.places[body.points[0]][0]
+        return complex(arm * np.exp(-1j * self.angles[body.name][0]))
+
+    def corners(self, body: Body) -> Array:
+        """The same of what lies around a link, (n,)."""
+        return np.array([self.local(body, self.places[name]) for name in body.outline])
+
+
+def _box(places: Array) -> tuple[complex, complex]:
+    x, y = places.real, places.imag
+    return complex(x.min(), y.min()), complex(x.max(), y.max())
+
+
+def _planned(machine: Machine) -> Iterator[tuple[str, str]]:
+    """Springs that balancing may set."""
+    for spring in machine.balance.springs if machine.balance is not None else ():
+        yield spring.point, spring.to
+
+
+def _field(motion: Motion) -> Field | None:
+    planting = motion.machine.planting
+    if planting is None:
+        return None
+    try:
+        surface = surface_of(motion.machine)
+    except EquipoiseError:  # it cannot turn all the way round
+        return None
+    lowest = float(motion.points[planting.tip].place.imag.min())
+    depth = surface - lowest if planting.depth is None else planting.depth
+    return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
+
+
+def _carrier(machine: Machine) -> Carrier | None:
+    support = machine.support
+    if support is None:
+        return None
+    offsets = {complex(*row.offset) for row in machine.rows} or {0j}
+    corners = [complex(*place) + by for place in machine.frame.values() for by in offsets]
+    items: list[Mount | Gauge] = [*support.mounts.values(), *support.gauges.values()]
+    corners += [complex(*item.point[:2]) for item in items if item.point is not None]
+    center, reference = (complex(*z[:2]) for z in (support.center_of_mass, support.reference))
+    around = hull(np.array([*corners, center, reference]))
+    return Carrier(support, tuple(map(complex, around)), center, reference)
+
+
+def _bodies(machine: Machine) -> Iterator[Body]:
+    for name, link in machine.links.items():
+        named = {complex(*place): point for point, place in reversed(list(link.points.items()))}
+        around = tuple(named[complex(place)] for place in hull(np.array(list(named))))
+        yield Body(name, tuple(link.points), around)
+
+
+def _wheels(motion: Motion) -> Iterator[Wheel]:
+    joints = motion.linkage.joints
+    for gear in joints.gears:
+        driver, driven = gear_pins(joints, gear)
+        carrier = motion.machine.points_of(gear.carrier)
+        apart = abs(complex(*carrier[driver]) - complex(*carrier[driven]))
+        radius = apart / abs(1 - gear.speed_ratio)
+        yield Wheel(gear.driver, driver, radius * abs(gear.speed_ratio))
+        yield Wheel(gear.driven, driven, radius)
+
+
+def _guides(motion: Motion) -> Iterator[Guide]:
+    for slider in motion.machine.sliders:
+        place = motion.points[slider.point].place
+        angle = 0 * motion.crank_angle
+        if slider.on != FRAME:
+            angle = motion.links[slider.on].angle
+            place = place - motion.points[next(iter(motion.machine.points_of(slider.on)))].place
+        way = np.exp(1j * (angle + slider.direction))
+        along = (place * way.conj()).real
+        ends = along - along.min(), along.max() - along
+        yield Guide(slider.name, slider.point, way, slider.on, *ends)
+
+
+def hull(places: Array) -> Array:
+    """Corners of the smallest convex outline around places, counterclockwise."""
+    ordered = sorted({complex(place) for place in places}, key=lambda z: (z.real, z.imag))
+    if len(ordered) < 3:
+        return np.array(ordered)
+    size = abs(ordered[-1] - ordered[0])
+    chains = []
+    for row in (ordered, ordered[::-1]):
+        chain: list[complex] = []
+        for place in row:
+            while len(chain) > 1 and (
+                kernels.cross(chain[-1] - chain[-2], place - chain[-2]) <= 1e-9 * size**2
+            ):
+                chain.pop()
+            chain.append(place)
+        chains += chain[:-1]
+    return np.array(chains)

@@ -1,0 +1,311 @@
+"""Signs of machines as plain geometry, for whatever draws them.
+
+A corner of a shape has a place in the machine, m, and an offset from there in units, of which
+whatever draws it says how large they are: a picture 640 pixels wide has units of a pixel.  So links
+are to scale, and pins have one size.  Both are complex, x to the right and y upward.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+
+Array = np.ndarray[Any, Any]
+
+PIN = 3.6
+"""Radius."""
+BLOCK = 13.0, 8.0
+"""Half the length and half the height of a sliding block."""
+STAND = 9.0, 15.0
+"""Half the width of a pivot's stand, and its height."""
+FOOT = 22.0
+"""How far a pivot's sign reaches below it."""
+APART = 6.0
+"""Between two strokes of hatching."""
+MOUNT = 40.0, 7.0
+"""Length of a spring or damper between support and ground, and half its width."""
+NEEDLE = 32.0
+"""Length of a gauge's arrow."""
+SEEN = 0.3
+"""Length of the view of a unit vector below which it is seen end on."""
+RING = 22.0, 10.0
+"""Radius of the first arc about an axis that is seen end on, and how much larger others are."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """A line through corners, or a circle about the only one.
+
+    role : name in `looks.LOOKS`.
+    places : (n,) complex, m.  offsets : (n,) complex, units.
+    closed : whether it ends where it begins.
+    radius, grown : of a circle: m and units, one of them not 0.
+    """
+
+    role: str
+    places: Array
+    offsets: Array
+    closed: bool = False
+    radius: float = 0.0
+    grown: float = 0.0
+
+    def at(self, scale: float, unit: float) -> Array:
+        """Corners (n,) where a meter and a unit are so long."""
+        return np.asarray(self.places * scale + self.offsets * unit)
+
+    def size(self, scale: float, unit: float) -> float:
+        """Radius of the circle there; 0 for a line."""
+        return self.radius * scale + self.grown * unit
+
+
+def runs(shapes: Iterable[Shape]) -> Iterator[list[Shape]]:
+    """Neighbours that are drawn alike."""
+    for _, run in groupby(shapes, lambda one: (one.role, one.radius + one.grown > 0)):
+        yield list(run)
+
+
+def line(role: str, *places: complex, closed: bool = False) -> Shape:
+    """A line through places, m."""
+    corners = np.array(places, complex)
+    return Shape(role, corners, 0 * corners, closed)
+
+
+def sign(role: str, place: complex, offsets: Any, closed: bool = False) -> Shape:
+    """A line through offsets (units) from a place."""
+    corners = np.array(offsets, complex)
+    return Shape(role, np.full(len(corners), complex(place)), corners, closed)
+
+
+def circle(role: str, center: complex, radius: float = 0.0, grown: float = 0.0) -> Shape:
+    """A circle, of a radius in m or in units."""
+    return Shape(role, np.array([center], complex), np.zeros(1, complex), True, radius, grown)
+
+
+# -- links and what holds them ---------------------------------------------------------------------
+
+
+def plate(corners: Array, roles: Sequence[str] = ("edge", "body")) -> list[Shape]:
+    """A link with rounded corners: a bar between two points, a plate around several."""
+    if len(corners) == 1:  # a dot is a line of next to no length
+        return [sign(role, corners[0], [0, 0.01]) for role in roles]
+    return [line(role, *corners, closed=len(corners) > 2) for role in roles]
+
+
+def wheel(center: complex, radius: float) -> list[Shape]:
+    """A gear: its pitch circle with three spokes, so that one sees it turn."""
+    ways = np.exp(2j * np.pi * np.arange(3) / 3)
+    spokes = [line("spoke", center, center + 0.94 * radius * way) for way in ways]
+    return [circle("wheel", center, radius), *spokes]
+
+
+def pivot(place: complex, grounded: bool = True) -> list[Shape]:
+    """The sign of a point that stands still: a stand, on hatched ground or on what carries it."""
+    half, high = STAND
+    foot = -1j * high
+    found = _hatching(place, foot + 1.6 * half, foot - 1.6 * half) if grounded else []
+    reach = 1.6 if grounded else 1.0
+    return [
+        *found,
+        sign("stand", place, [0, foot - half, foot + half], closed=True),
+        sign("rail", place, [foot - reach * half, foot + reach * half]),
+    ]
+
+
+def rails(low: complex, high: complex, unit: float, grounded: bool = True) -> list[Shape]:
+    """The frame on both sides of a block that slides from one place to the other.
+
+    unit : m, about; by which strokes of hatching are counted.
+    """
+    way = _direction(low, high)
+    side = way * 1j if (way * 1j).imag < -1e-6 or way.imag < 0 else way * -1j
+    off, over = BLOCK[1] + 1, BLOCK[0] + 4
+    ends = np.array([low, high])
+    found = []
+    for s in (side, -side):
+        offsets = np.array([-over * way, over * way]) + off * s
+        found.append(Shape("rail", ends, offsets))
+        if s == side and grounded:
+            found[:0] = _hatched(ends, offsets, side, unit)
+    return found
+
+
+def slot(low: complex, high: complex) -> list[Shape]:
+    """The part of a link that holds a block on its way from one place to the other."""
+    grown = (BLOCK[0] + 5, BLOCK[1] + 5), (BLOCK[0] + 1, BLOCK[1])
+    return [_box(role, low, high, *by) for role, by in zip(("rim", "slot"), grown, strict=True)]
+
+
+def block() -> list[Shape]:
+    """A sliding block at the origin, along x."""
+    return [_box("block", 0, 0, *BLOCK)]
+
+
+def zigzag(start: complex, end: complex, coils: int, role: str = "spring") -> Shape:
+    """A spring between two places, straight at both ends."""
+    steps = (np.arange(2 * coils) + 0.5) / (2 * coils)
+    along = np.concatenate([[0, 0.15], 0.15 + 0.7 * steps, [0.85, 1]])
+    side = 7j * np.array([0, 0, *([1, -1] * coils), 0, 0]) * _direction(start, end)
+    return Shape(role, start + (end - start) * along, side)
+
+
+def coils(length: float, unit: float) -> int:
+    """How many a spring has; unit : m, about."""
+    return max(5, round(0.7 * length / (16 * unit)))
+
+
+def mass(center: complex) -> list[Shape]:
+    """The sign of a centre of mass: two dark quarters of a circle."""
+    radius = 4.6
+    arc = np.concatenate([[0], radius * np.exp(1j * np.linspace(0, np.pi / 2, 7))])
+    quarters = [sign("quarter", center, way * arc, closed=True) for way in (1, -1)]
+    return [circle("mass", center, grown=radius), *quarters]
+
+
+def driver(center: complex, radius: float, angles: Array) -> list[Shape]:
+    """An arrow about a drive's pivot: its arc over some angles, rad, at a radius in m."""
+    arc = center + radius * np.exp(1j * angles)
+    sense = np.sign(angles[-1] - angles[0])
+    way = 1j * sense * np.exp(1j * (angles[-1] - 0.12 * sense))
+    return [line("driver", *arc), _head("driver-head", complex(arc[-1]), complex(way), 9.0)]
+
+
+def arrow(role: str, length: float) -> tuple[Shape, Shape]:
+    """An arrow: its shaft from the origin along x, so long, m, and its head, the tip at the origin.
+
+    The head comes apart, because it keeps its size while the shaft gets longer.
+    """
+    return line(role, 0, length), _head(f"{role}-head", 0, 1, 13.0)
+
+
+def _head(role: str, place: complex, way: complex, size: float) -> Shape:
+    back = size * (-1 + np.array([0.38j, -0.38j]))
+    return sign(role, place, way * np.array([0, *back]), closed=True)
+
+
+# -- the field -------------------------------------------------------------------------------------
+
+
+def soil(left: float, right: float, surface: float, bottom: float, unit: float) -> list[Shape]:
+    """Earth from its surface down to a depth, all m."""
+    corners = complex(left, surface), complex(right, surface)
+    deep = complex(right, bottom), complex(left, bottom)
+    count = max(int((right - left) / (28 * unit)), 3)
+    x = left + (right - left) * (np.arange(count) + 0.5) / count
+    strokes = [
+        sign("stubble", complex(at, surface), [k - 4j, k - 7 - 11j]) for at in x for k in (-5, 0, 5)
+    ]
+    ground = line("soil", *corners, *deep, closed=True)
+    return [ground, *strokes, line("surface", *corners)]
+
+
+# -- the support -----------------------------------------------------------------------------------
+
+
+def mount(
+    place: complex, way: complex, center: complex, sprung: bool, one_sided: bool
+) -> list[Shape]:
+    """A spring or damper from the support to hatched ground.
+
+    way : the view of the direction in which it pushes the support, at most 1 long.
+    center : of the support, from which one that goes along points away.
+    """
+    if abs(way) < SEEN:
+        return [circle("float", place, grown=5.0), circle("dot", place, grown=1.5)]
+    way = -way / abs(way)
+    if not one_sided and abs(way.imag) < 0.5 and ((place - center) * np.conj(way)).real < 0:
+        way = -way
+    length = MOUNT[0]
+    lines = [sign("mount", place, length * way * piece) for piece in _BODIES[sprung]]
+    ends = length * way + 16 * 1j * way * np.array([-1, 1])
+    ground = [*_hatching(place, *ends, away=way), sign("rail", place, ends)]
+    return [*lines, *ground, circle("float" if one_sided else "foot", place, grown=PIN)]
+
+
+def _spring_and_dashpot() -> dict[bool, list[Array]]:
+    """From 0 to 1, sides over the length: a zigzag; a piston in a cylinder open to the ground."""
+    half = MOUNT[1] / MOUNT[0]
+    along = np.concatenate([[0, 0.2], 0.2 + 0.6 * (np.arange(6) + 0.5) / 6, [0.8, 1]])
+    spring = [along + 1j * half * np.array([0, 0, *([1, -1] * 3), 0, 0])]
+    cylinder = np.array([0.75 + 1j * half, 0.35 + 1j * half, 0.35 - 1j * half, 0.75 - 1j * half])
+    piston = np.array([0.6 + 0.8j * half, 0.6 - 0.8j * half])
+    return {
+        True: spring,
+        False: [np.array([0, 0.35 + 0j]), cylinder, piston, np.array([0.6, 1 + 0j])],
+    }
+
+
+_BODIES = _spring_and_dashpot()
+
+
+def gauge(place: complex, way: complex) -> list[Shape]:
+    """A gauge: a diamond with an arrow in its direction, the view of which is at most 1 long."""
+    diamond = sign("gauge", place, 5.5 * np.array([1, 1j, -1, -1j]), closed=True)
+    if abs(way) < SEEN:
+        return [diamond]
+    way /= abs(way)
+    head = sign("needle-head", place, way * (NEEDLE + np.array([0, -8 + 3j, -8 - 3j])), closed=True)
+    return [sign("needle", place, [0, way * (NEEDLE - 6)]), head, diamond]
+
+
+def turning(place: complex, ring: int, of_gauge: bool) -> list[Shape]:
+    """An arc with a head about an axis that is seen end on, the first or one outside of it."""
+    radius = RING[0] + RING[1] * ring
+    arc = radius * np.exp(1j * np.radians(np.linspace(-60, 195, 40)))
+    way = 1j * arc[-1] / abs(arc[-1])
+    role = "needle" if of_gauge else "mount"
+    head = arc[-1] + way * 8 * np.array([1, 0.38j, -0.38j])
+    tip = "needle-head" if of_gauge else "foot"
+    return [sign(role, place, arc), sign(tip, place, head, closed=True)]
+
+
+# -- parts of signs --------------------------------------------------------------------------------
+
+
+def off_outline(place: complex, corners: Sequence[complex]) -> float:
+    """How far a place lies outside a line or a convex plate; 0 inside."""
+    around = np.array(corners)
+    edges = np.roll(around, -1) - around
+    arms = place - around
+    lengths = np.maximum(abs(edges) ** 2, 1e-300)
+    along = np.clip((arms * edges.conj()).real / lengths, 0, 1)
+    inside = (edges.conj() * arms).imag
+    if len(around) > 2 and (np.all(inside >= 0) or np.all(inside <= 0)):
+        return 0.0
+    return float(abs(arms - along * edges).min())
+
+
+def _box(role: str, low: complex, high: complex, over: float, half: float) -> Shape:
+    """A rectangle around a line, so much longer at both ends and so far to both sides."""
+    way = _direction(low, high)
+    offsets = np.array([-over + 1j * half, over + 1j * half, over - 1j * half, -over - 1j * half])
+    return Shape(role, np.array([low, high, high, low], complex), offsets * way, True)
+
+
+def _hatching(place: complex, start: complex, end: complex, away: complex = -1j) -> list[Shape]:
+    """Short strokes behind a line between two offsets from a place, on the side away."""
+    ends = np.array([place, place], complex)
+    return _hatched(ends, np.array([start, end]), away, 1.0)
+
+
+def _hatched(places: Array, offsets: Array, away: complex, unit: float) -> list[Shape]:
+    """Strokes behind a line between two corners, on the side away; unit : m, about."""
+    along = (places[1] - places[0]) / unit + offsets[1] - offsets[0]
+    count = max(3, round(abs(along) / APART))
+    way = along / abs(along)
+    shares = (np.arange(count) + 0.5) / count
+    foot = places[0] + (places[1] - places[0]) * shares
+    off = offsets[0] + (offsets[1] - offsets[0]) * shares
+    stroke = 5 * away - 5 * way
+    return [
+        Shape("hatch", np.array([at, at]), np.array([by, by + stroke]))
+        for at, by in zip(foot, off, strict=True)
+    ]
+
+
+def _direction(low: complex, high: complex) -> complex:
+    way = complex(high) - complex(low)
+    return way / abs(way) if abs(way) > 1e-12 else 1 + 0j

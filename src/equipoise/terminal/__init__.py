@@ -1,1 +1,0 @@
-"""What the commands print, one module a command."""

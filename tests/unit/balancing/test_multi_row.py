@@ -1,0 +1,173 @@
+"""Outputs of all rows: against sums of signals in time, and against changed machines.
+
+Phases of rows as part of a plan."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.multi_row import of_all_rows
+from equipoise.balancing.phase_search import choose_phases
+from equipoise.balancing.problem import Problem
+from equipoise.errors import UsageError
+from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Phases, Weight
+from equipoise.mechanism.support import Row
+
+Array = np.ndarray[Any, Any]
+
+ROWS = (
+    Row(0.3, -0.2, (0.01, 0.02)),
+    Row(2.0, 0.1, (0.0, 0.0)),
+    Row(4.5, 0.35, (-0.03, 0.04)),
+)
+MACHINE = replace(eq.load("yamashita-1"), rows=ROWS)
+COUNTER = AddedMass("crank", "A", Weight("any", 0.06, at_most=0.5))
+OUTPUTS = ("shaking_force.x", "shaking_force.y", "shaking_moment", "frame_force.y", "frame_moment",
+           "drive_torque", "roll_moment", "yaw_moment")  # fmt: skip
+EXACT = 1e-9
+
+
+def in_time(machine: eq.Machine, output: str, about: complex) -> Array:
+    """The sum over rows at 720 angles, each row moved to its place and ahead by its phase."""
+    total: Array = np.zeros(720)
+    for row in machine.rows:
+        angles = np.arange(720) * np.pi / 360 + row.phase
+        found = eq.forces(eq.move(machine, angles), about - complex(*row.offset))
+        signals = {
+            "shaking_force.x": found.shaking_force.x,
+            "shaking_force.y": found.shaking_force.y,
+            "shaking_moment": found.shaking_moment,
+            "frame_force.y": found.frame_force.y,
+            "frame_moment": found.frame_moment,
+            "drive_torque": found.drive_torque,
+            "roll_moment": -row.lateral * found.shaking_force.y,
+            "yaw_moment": row.lateral * found.shaking_force.x,
+        }
+        total = total + signals[output]
+    return total
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_sum_in_time(output: str) -> None:
+    signal = of_all_rows(Effects(MACHINE, ()), output)
+    wanted = in_time(MACHINE, output, 0j)
+    np.testing.assert_allclose(signal.start, wanted, rtol=0, atol=EXACT * np.max(np.abs(wanted)))
+
+
+def test_about_another_point() -> None:
+    signal = of_all_rows(Effects(MACHINE, ()), "shaking_moment", "D")
+    wanted = in_time(MACHINE, "shaking_moment", complex(*MACHINE.frame["D"]))
+    np.testing.assert_allclose(signal.start, wanted, rtol=0, atol=EXACT * np.max(np.abs(wanted)))
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_columns_are_those_of_changed_machines(output: str) -> None:
+    plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force.x"),))
+    problem = Problem.of(MACHINE, plan)
+    numbers = np.array([0.7, 0.3, -0.2, 0.5])
+    changed = problem.machine_with([numbers])
+    signal = of_all_rows(problem.effects, output)
+    wanted = in_time(changed, output, 0j)
+    atol = EXACT * np.max(np.abs(wanted))
+    np.testing.assert_allclose(signal.at(numbers), wanted, rtol=0, atol=atol)
+
+
+def test_a_counterweight_against_rows_that_cancel_already() -> None:
+    """Two rows opposed leave no first order, and a counterweight has nothing to do."""
+    rows = (Row(0.0), Row(np.pi))
+    machine = replace(eq.load("yamashita-1"), rows=rows)
+    plan = Balance(masses=(COUNTER,), objectives=(Objective("shaking_force"),))
+    with pytest.raises(eq.EquipoiseError, match="nothing that is free to change has an effect"):
+        eq.balance(machine, plan)
+
+
+def test_roll_is_balanced_by_what_is_free() -> None:
+    found = eq.balance(MACHINE, Balance(masses=(COUNTER,), objectives=(Objective("roll_moment"),)))
+    before, after = found.objectives["rms of roll_moment"]
+    assert before == pytest.approx(np.sqrt(np.mean(in_time(MACHINE, "roll_moment", 0j) ** 2)))
+    assert after == pytest.approx(np.sqrt(np.mean(in_time(found.machine, "roll_moment", 0j) ** 2)))
+    assert after < 0.7 * before
+    assert any("masses are those of one row" in note for note in found.notes)
+
+
+TRANSPLANTER = eq.load("four-row-transplanter")
+LIFT = Objective("shaking_force.y")
+CRANK = AddedMass("crank", "A", Weight("point", 0.05, at_most=1.0))
+COARSE = Phases(step=np.pi / 6)
+
+
+def rows_value(machine: eq.Machine) -> float:
+    """RMS of the vertical force of all rows, turned and added."""
+    angles = np.arange(720) * np.pi / 360
+    total = sum(
+        eq.forces(eq.move(machine, angles + row.phase, acceleration=0.0)).shaking_force.y
+        for row in machine.rows
+    )
+    return float(np.sqrt(np.mean(total**2)))
+
+
+def test_phases_alone() -> None:
+    found = eq.balance(TRANSPLANTER, Balance(phases=COARSE, objectives=(LIFT,)))
+    phasing = choose_phases(TRANSPLANTER, (LIFT,), COARSE)
+    before, after = found.objectives[LIFT.name]
+    assert before == pytest.approx(rows_value(TRANSPLANTER))
+    assert after == pytest.approx(rows_value(found.machine), rel=1e-6)
+    assert found.phasing is not None
+    assert found.phasing.phases == phasing.phases
+    (change,) = found.changes
+    assert (change.kind, change.link) == ("phases", "rows")
+    assert change.values["phases"] == tuple(row.phase for row in found.machine.rows)
+    assert found.cost == pytest.approx(after / before)
+    assert (found.bound, found.gap) == (None, None)
+    assert "arrangements of the rows" in found.method
+    assert found.machine.links == TRANSPLANTER.links
+    told = json.loads(json.dumps(found.to_dict(), default=np.ndarray.tolist))
+    assert told["rows"]["phases"] == list(phasing.phases)
+
+
+def test_linkage_first_and_phases_after_it() -> None:
+    """The cost counts from the machine as it was, not from the balanced linkage."""
+    plan = Balance(masses=(CRANK,), phases=COARSE, objectives=(LIFT,))
+    found = eq.balance(TRANSPLANTER, plan)
+    linkage = eq.balance(TRANSPLANTER, replace(plan, phases=None))
+    before, after = found.objectives[LIFT.name]
+    assert before == pytest.approx(rows_value(TRANSPLANTER))
+    assert after == pytest.approx(rows_value(found.machine), rel=1e-6)
+    assert found.cost == pytest.approx(after / before)
+    assert [change.kind for change in found.changes] == ["added mass", "phases"]
+    assert found.machine.links == linkage.machine.links
+    assert found.prices == linkage.prices
+    assert found.notes[0].startswith("the linkage was balanced first")
+    assert found.added_mass == pytest.approx(linkage.added_mass)
+
+
+def test_two_objectives_as_squares() -> None:
+    both = (LIFT, Objective("shaking_force.x", weight=0.5))
+    found = eq.balance(
+        TRANSPLANTER,
+        Balance(masses=(CRANK,), phases=COARSE, objectives=both, combine="squares"),
+    )
+    shares = [after / before for before, after in found.objectives.values()]
+    assert found.cost == pytest.approx(np.hypot(shares[0], 0.5 * shares[1]))
+
+
+def test_roll_counts_for_the_linkage_too() -> None:
+    both = (LIFT, Objective("roll_moment"))
+    found = eq.balance(TRANSPLANTER, Balance(masses=(CRANK,), phases=COARSE, objectives=both))
+    alone = eq.balance(TRANSPLANTER, Balance(masses=(CRANK,), objectives=both))
+    assert set(found.objectives) == {one.name for one in both}
+    assert found.machine.links == alone.machine.links
+
+
+def test_what_is_refused() -> None:
+    limit = Limit(Objective("shaking_force.x"), ratio=1.0)
+    plan = Balance(phases=COARSE, objectives=(LIFT,), limits=(limit,))
+    with pytest.raises(UsageError, match="limits are not kept while phases are looked for"):
+        eq.balance(TRANSPLANTER, plan)

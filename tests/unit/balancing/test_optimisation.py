@@ -1,0 +1,234 @@
+"""Plans at the edge: what is 0 before, what makes no difference, what was stopped.
+
+What is balanced where nothing in particular is asked."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.optimisation import default_plan
+from equipoise.cli.plan import Freed, plan_of
+from equipoise.errors import MassError, UsageError
+from equipoise.mechanism.balance import (
+    AddedMass,
+    Balance,
+    CenterMove,
+    GearedWeight,
+    Limit,
+    Objective,
+    SpringChoice,
+    Weight,
+)
+
+MACHINE = eq.load("yamashita-1")
+PLATE = {"thickness": 0.02, "density": 7850.0}
+
+
+def pump() -> eq.Machine:
+    """A slider-crank without shaking moment about its pivot: a rod of two mass points."""
+    machine = eq.load("balance-shafts").with_balance(None)
+    rod = machine.links["rod"]
+    center = rod.center_of_mass
+    assert rod.mass is not None and center is not None
+    inertia = rod.mass * center[0] * (0.1 - center[0])
+    return replace(machine.with_link("rod", inertia=inertia), gravity=(0.0, 0.0))
+
+
+@pytest.mark.parametrize("at_most", [0.5, 5.0, 50.0])
+def test_a_limit_on_what_is_0_before(at_most: float) -> None:
+    moment = Objective("shaking_moment", "peak")
+    plan = Balance(
+        moves=(CenterMove("rod", x=(0.0, 0.1), y=(-0.02, 0.02)),),
+        objectives=(Objective("shaking_force"),),
+        limits=(Limit(moment, at_most=at_most),),
+    )
+    found = eq.balance(pump(), plan)
+    assert found.cost < 1
+    assert found.after["shaking_moment.peak"] <= at_most * (1 + 1e-7)
+    assert found.gap is not None and found.gap < 1e-8
+
+
+def test_a_share_of_what_is_0_before() -> None:
+    limit = Limit(Objective("shaking_moment", "peak"), ratio=1.1)
+    plan = Balance(
+        moves=(CenterMove("rod"),), objectives=(Objective("shaking_force"),), limits=(limit,)
+    )
+    with pytest.raises(UsageError, match="is 0 before, of which there is no share"):
+        eq.balance(pump(), plan)
+
+
+def test_what_makes_no_difference_stays() -> None:
+    """The crank's centre of mass does nothing to the moment about its pivot."""
+    moves = tuple(CenterMove(link) for link in ("crank", "coupler", "rocker"))
+    plan = Balance(moves=moves, objectives=(Objective("shaking_moment", "peak"),))
+    found = eq.balance(MACHINE, plan)
+    assert found.changes[0].values["to"] == pytest.approx((0.012, 0.0), abs=1e-12)
+    assert found.changes[1].values["to"] != pytest.approx((-0.05, -0.02), abs=1e-3)
+
+
+@pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
+def test_no_mass_without_use(shape: str) -> None:
+    """A force in the coupler's pin knows nothing of the crank."""
+    cut = PLATE if shape in {"disc", "sector"} else {}
+    masses = tuple(
+        AddedMass(link, at, Weight(shape, 0.05, **cut))  # type: ignore[arg-type]
+        for link, at in (("rocker", "D"), ("crank", "A"))
+    )
+    found = eq.balance(MACHINE, Balance(masses=masses, objectives=(Objective("joints.B", "peak"),)))
+    assert found.changes[1].values["mass"] == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("shape", ["any", "point", "disc", "sector"])
+def test_the_least_mass_of_a_moment(shape: str) -> None:
+    """One that is only pushed to the edge of its room where that is what the moment needs."""
+    cut = PLATE if shape in {"disc", "sector"} else {}
+    weight = Weight(shape, 0.1, **cut)  # type: ignore[arg-type]
+    plan = Balance(
+        masses=(AddedMass("crank", "A", weight),), objectives=(Objective("shaking_force.y"),)
+    )
+    found = eq.balance(MACHINE, plan)
+    change = found.changes[0].values
+    assert change["moment"] == pytest.approx(0.0408822, rel=1e-4)
+    mass, moment = change["mass"], change["moment"]
+    if shape in {"any", "point"}:
+        assert mass == pytest.approx(moment / 0.1, rel=1e-6)
+    elif shape == "disc":
+        radius = np.sqrt(mass / (np.pi * 0.02 * 7850))
+        assert moment / mass + radius == pytest.approx(0.1, rel=1e-6)
+    else:
+        (piece,) = change["pieces"]
+        assert 2 / 3 * 0.02 * 7850 * 0.1**3 * np.sin(piece["angle"] / 2) == pytest.approx(moment)
+
+
+def test_teeth_with_a_range_of_directions() -> None:
+    weight = Weight("any", 0.05, at_most=0.4)
+    geared = GearedWeight("rocker", weight, teeth=(38, 40), module=0.0025, direction=(0.0, 1.0))
+    force = Objective("joints.O4", "peak")
+    found = eq.balance(eq.load("lee-kim-b"), Balance(geared=(geared,), objectives=(force,)))
+    assert found.changes[0].values["teeth"][0] in range(38, 41)
+    assert found.scope.endswith("for each of the gears tried")
+    assert found.cost < 1
+
+
+def test_gears_tell_their_mass() -> None:
+    weight = Weight("any", 0.05, at_most=0.4)
+    geared = GearedWeight("rocker", weight, (0.6, 0.6), pitch_radius=0.05, gear_thickness=0.006,
+                          gear_density=7850.0)  # fmt: skip
+    moment = Objective("shaking_moment")
+    found = eq.balance(eq.load("lee-kim-a"), Balance(geared=(geared,), objectives=(moment,)))
+    on_driver, on_shaft = found.changes[0].values["masses"]
+    assert on_driver == pytest.approx(np.pi * 0.05**2 * 0.006 * 7850)
+    assert on_shaft == pytest.approx(on_driver / 0.36)
+    weights = found.changes[1].values["mass"]
+    assert found.added_mass == pytest.approx(on_driver + on_shaft + weights)
+
+
+def test_what_was_stopped_is_told() -> None:
+    """An endless mass close to its axis would do better still."""
+    geared = GearedWeight("rocker", Weight("any", 0.065), (0.6, 0.6), pitch_radius=0.05)
+    plan = Balance(geared=(geared,), objectives=(Objective("shaking_moment"),))
+    found = eq.balance(eq.load("lee-kim-a"), plan)
+    assert found.scope == "within where it was stopped"
+    assert any("ten times the mass of the links" in note for note in found.notes)
+
+
+def test_a_spring_without_free_length() -> None:
+    machine = eq.load("balance-spring").with_balance(None)
+    plan = Balance(
+        springs=(SpringChoice("rocker", "F", "S", 1e4),),
+        objectives=(Objective("drive_torque", "peak"),),
+    )
+    found = eq.balance(machine, plan)
+    assert 0 <= found.machine.springs[0].free_length < 0.5
+    assert found.objectives["peak of drive_torque"][1] < 0.6
+
+
+@pytest.mark.parametrize("order", [999.0, 1.5])
+def test_orders_that_there_are_not(order: float) -> None:
+    plan = Balance(
+        moves=(CenterMove("coupler"),),
+        objectives=(Objective("shaking_force.y", orders=(order,)),),
+    )
+    with pytest.raises(UsageError, match=f"there is no order {order:g}"):
+        eq.balance(MACHINE, plan)
+
+
+@pytest.mark.parametrize("ratio", [0.45, 0.5])
+def test_a_limit_on_a_gauge_is_kept_where_it_is_read(ratio: float) -> None:
+    """Added mass makes the support heavier: what counts is the machine that comes out."""
+    machine = eq.load("balance-rig")
+    assert machine.balance is not None
+    gauge, joint = machine.balance.objectives[0], Objective("joints.A", "peak")
+    plan = Balance(
+        masses=machine.balance.masses, objectives=(joint,), limits=(Limit(gauge, None, ratio),)
+    )
+    found = eq.balance(machine, plan)
+    price = found.prices[gauge.name]
+    assert price.used == pytest.approx(price.at_most, rel=1e-7)
+    assert price.active
+    assert found.gap is not None and found.gap < 1e-8
+
+
+def test_the_ends_of_a_front() -> None:
+    """At the far end the second is least, and of all those the first."""
+    rocker = AddedMass("rocker", "D", Weight("any", 0.05, at_most=0.5))
+    crank = AddedMass("crank", "A", Weight("any", 0.05, at_most=0.5))
+    first, second = Objective("shaking_force", "peak"), Objective("joints.D")
+    plan = Balance(masses=(rocker, crank))
+    front = eq.balancing.trade_off(MACHINE, first, second, plan, points=4)
+    alone = eq.balance(MACHINE, replace(plan, objectives=(second,)))
+    least = alone.objectives[second.name][1]
+    assert front.values[-1, 1] == pytest.approx(least, rel=1e-7)
+    assert np.all(np.diff(front.values[:, 0]) > 0)
+    assert np.all(np.diff(front.values[:, 1]) < 1e-9)
+    assert front.gap < 1e-8
+
+
+def test_flanks_of_gears_are_those_of_the_result() -> None:
+    """A weight that turns the tooth force round changes the flank, and the bearing's force."""
+    machine = eq.load("geared-counterweight")
+    weight = Weight("any", 0.08, at_most=0.5)
+    masses = (AddedMass("counterweight", "E", weight), AddedMass("rocker", "O4", weight))
+    bearing = Objective("joints.E")
+    found = eq.balance(machine, Balance(masses=masses, objectives=(bearing,)))
+    force = eq.forces(eq.move(found.machine, 720)).joints["E"].size
+    after = found.objectives[bearing.name][1]
+    assert after == pytest.approx(np.sqrt(np.mean(force**2)))
+    assert after < 8.44135
+    assert found.gap is not None and found.gap < 1e-8
+    assert found.scope == "for the flanks of gears in contact here"
+
+
+def test_a_machine_is_balanced_as_its_file_says() -> None:
+    machine = eq.load("balance-crank")
+    assert default_plan(machine) is machine.balance
+
+
+def test_else_by_a_counterweight_on_the_crank_as_the_command_has_it() -> None:
+    machine = eq.load("yamashita-1")
+    asked = plan_of(machine, Freed(crank_counterweight=True), ["rms shaking_force"], None)
+    assert default_plan(machine) == asked
+    found = eq.balance(machine, default_plan(machine))
+    (change,) = found.changes
+    assert (change.link, change.values["at"]) == ("crank", "A")
+    ((before, after),) = found.objectives.values()
+    assert after < 0.6 * before
+
+
+def test_rows_are_balanced_by_their_phases() -> None:
+    """A counterweight on each crank does nothing where opposite rows have cancelled order 1."""
+    found = eq.balance(eq.load("riding-transplanter"), default_plan(eq.load("riding-transplanter")))
+    assert [change.kind for change in found.changes] == ["phases"]
+    ((before, after),) = found.objectives.values()
+    assert after < 0.5 * before
+
+
+def test_a_machine_without_masses_has_nothing_to_balance() -> None:
+    with pytest.raises(MassError, match="crank"):
+        default_plan(
+            eq.load("yamashita-1").with_link("crank", mass=None, center_of_mass=None, inertia=None)
+        )

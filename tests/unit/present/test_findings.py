@@ -1,0 +1,101 @@
+"""What can be told of a file, computed when it is asked for; and its pictures."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError
+from equipoise.plotting.style import blank
+from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.pictures import SECTIONS, Picture, each, pictures
+from surface.running import example_text
+
+
+def of(name: str, **options: float) -> Findings:
+    found = find(name, **options)  # type: ignore[arg-type]
+    assert isinstance(found, Findings)
+    return found
+
+
+def massless(folder: Path) -> Path:
+    lines = example_text("yamashita-rig").splitlines(keepends=True)
+    masses = ("mass =", "center_of_mass =", "inertia =")
+    start = lines.index("[support]\n")
+    kept = [line for line in lines[:start] if not line.startswith(masses)]
+    path = folder / "light.toml"
+    path.write_text("".join([*kept, *lines[start:]]), encoding="utf-8")
+    return path
+
+
+def test_findings_are_those_of_the_functions() -> None:
+    found = of("yamashita-rig", speed=15.0)
+    assert found.machine.drive.speed == 15.0
+    assert found.file == "yamashita-rig" and "schema = 1" in found.text
+    force = eq.analyze(found.machine, 720).forces.shaking_force
+    np.testing.assert_array_equal(found.analysis.forces.shaking_force.value, force.value)
+    response, sweep = found.response, found.sweep
+    assert response is not None and sweep is not None and found.modes is not None
+    at = sweep.gauges["gauge"].peak_to_peak
+    beside = np.interp(15.0, sweep.speed, at)
+    assert float(response.gauges["gauge"].displacement.peak_to_peak) == pytest.approx(beside, 0.02)
+    assert found.modes.modes[0].natural_frequency == pytest.approx(12.415, abs=1e-3)
+    assert found.balanced is not None and not found.own_plan
+    assert found.planting is None and found.notes == ()
+
+
+def test_what_cannot_be_found_is_told_and_the_rest_is_there(tmp_path: Path) -> None:
+    found = of(str(massless(tmp_path)))
+    assert found.analysis.solved is None
+    parts = [note.split(":")[0] for note in found.notes]
+    assert parts == ["vibration", "natural frequencies", "balance"]
+    names = {picture.section for picture in pictures(found)}
+    assert names == {"motion"}
+
+
+@cache
+def pictured(name: str) -> list[Picture]:
+    return pictures(of(name))
+
+
+@pytest.mark.parametrize(
+    ("name", "some"),
+    [
+        ("yamashita-rig", {"linkage", "polar", "mode-1", "resonance-map", "balanced-polar"}),
+        ("four-row-transplanter", {"spectrum", "phases", "rows", "joint-polars"}),
+        ("transplanter", {"path", "ratio-rocker", "tip-velocity-x", "soil-torque", "changes"}),
+    ],
+)
+def test_pictures_have_a_place_a_caption_and_a_name_of_their_own(name: str, some: set[str]) -> None:
+    every = pictured(name)
+    places = [SECTIONS.index(picture.section) for picture in every]
+    assert places == sorted(places)
+    for picture in every:
+        assert picture.caption.endswith(".") and picture.caption[0].isupper()
+    names = [picture.name for picture in every]
+    assert len(names) == len({*names}) and some <= {*names}
+
+
+def test_what_comes_later_is_not_computed() -> None:
+    found = of("yamashita-rig")
+    first = next(iter(each(found)))
+    assert first.name == "linkage" and type(first.draw()) is type(blank(1, 1))
+    assert not {"response", "sweep", "balanced"} & vars(found).keys()
+
+
+def test_a_tool_is_found_at_another_speed() -> None:
+    found = find("pole-saw", speed=700.0)
+    assert isinstance(found, ToolFindings)
+    assert found.tool.operation is not None and found.tool.operation.speed == 700.0
+    assert found.modes is not None and found.exposure is not None and found.design is None
+    assert found.transmission is not None and found.notes == ()
+    assert [p.name for p in pictures(found)][:2] == ["modes", "modes-lateral"]
+
+
+def test_a_study_is_refused() -> None:
+    with pytest.raises(EquipoiseError, match="this is a study"):
+        find("study-of-lengths")

@@ -1,0 +1,134 @@
+"""The report as a page and as a PDF: whole, by itself, always the same, safe with any name."""
+
+from __future__ import annotations
+
+import sys
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.present import pdf as pdf_module
+from equipoise.present.composition import build
+from equipoise.present.findings import ToolFindings, find
+from equipoise.present.html import page
+from equipoise.present.pdf import pdf
+from equipoise.present.pictures import pictures
+
+
+class Page(HTMLParser):
+    """Tags, names and references of a page."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.tags: list[str] = []
+        self.ids: list[str] = []
+        self.refs: list[str] = []
+        self.words: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append(tag)
+        for name, value in attrs:
+            assert not name.startswith("on")
+            if name == "id":
+                self.ids.append(value)
+            elif name in ("href", "src", "xlink:href", "action", "data"):
+                self.refs.append(value)
+            elif "url(" in (value or ""):
+                self.refs += [part.split(")")[0] for part in value.split("url(")[1:]]
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+
+@pytest.fixture(scope="module")
+def found():
+    return find("yamashita-rig")
+
+
+@pytest.fixture(scope="module")
+def document(found):
+    return build(found, "en", "equipoise report yamashita-rig")
+
+
+@pytest.fixture(scope="module")
+def html(document):
+    return page(document)
+
+
+def test_the_page_needs_nothing_but_itself(html):
+    read = Page(html)
+    assert not {"script", "iframe", "link", "object", "embed", "form", "img"} & set(read.tags)
+    assert len(read.ids) == len(set(read.ids))
+    assert {ref.removeprefix("#") for ref in read.refs} <= set(read.ids)
+    assert "@import" not in html and "http://" not in html.replace("http://www.w3.org", "")
+
+
+def test_the_page_holds_every_picture_and_the_model(found, html):
+    read = Page(html)
+    drawn = pictures(found)
+    assert read.tags.count("svg") == len(drawn) + 1  # the moving linkage
+    words = " ".join(read.words)
+    for part in (*(one.caption for one in drawn), found.machine.description, eq.__version__):
+        assert part in words
+    assert found.text.strip() in words
+    assert "equipoise report yamashita-rig" in words
+
+
+def test_it_is_the_same_on_every_run_in_another_language():
+    text, again = (page(build(find("scotch-yoke"), "ja")) for _ in range(2))
+    assert text == again
+    assert '<html lang="ja">' in text and "要約" in text and "Summary" not in text
+
+
+def test_a_tool_has_its_report():
+    found = find("brush-cutter")
+    assert isinstance(found, ToolFindings)
+    shorter = ToolFindings(replace(found.tool, design=None), found.text, found.file)
+    document = build(shorter)
+    told = " ".join(one for answer in document.summary for one in answer.sentences)
+    worst = max(grip.a_hv[0] for grip in shorter.exposure.named["working"].values())
+    assert f"a_hv of {worst:.2f}" in told.replace("\xa0", " ")
+    assert {section.name for section in document.sections} >= {"model", "tool", "file"}
+
+
+EVIL = 'A <script>alert("x")</script> & #image("/etc/passwd") \\ {{ 1 }} $x$ `'
+
+
+def test_names_are_never_read_as_markup(document):
+    evil = replace(document, title=EVIL, description=EVIL, animation="")
+    read = Page(page(evil))
+    assert "script" not in read.tags and EVIL in read.words
+    assert pdf(evil).startswith(b"%PDF")
+
+
+def test_the_pdf_is_the_same_on_every_run(document):
+    made = pdf(document)
+    assert made == pdf(document)
+    assert made.startswith(b"%PDF") and len(made) > 50_000
+
+
+def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
+    class Latin:
+        def families(self):
+            return ["DejaVu Sans"]
+
+    monkeypatch.setattr(pdf_module, "_fonts", Latin)
+    with pytest.raises(UsageError, match="no font with 한국어 letters, so that a PDF would"):
+        eq.report("scotch-yoke", tmp_path / "report.pdf", language="ko")
+    monkeypatch.undo()
+    pdf_module._fonts.cache_clear()
+    monkeypatch.setitem(sys.modules, "typst", None)
+    with pytest.raises(EquipoiseError, match=r'pip install "equipoise\[report\]"'):
+        eq.report("scotch-yoke", tmp_path / "report.pdf")
+    assert not list(tmp_path.iterdir())
+
+
+def test_other_names_and_languages_are_refused(tmp_path):
+    with pytest.raises(UsageError, match=r"ends in \.html or \.pdf"):
+        eq.report("scotch-yoke", tmp_path / "report.docx")
+    with pytest.raises(UsageError, match="give one of en, ja, ko"):
+        eq.report("scotch-yoke", tmp_path / "report.html", language="fr")

@@ -1,0 +1,135 @@
+"""What the summary says, held to the same found another way."""
+
+from __future__ import annotations
+
+from math import pi
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.i18n import Note, speaking
+from equipoise.present.cells import grid, noted, printed
+from equipoise.present.composition import balance_blocks
+from equipoise.present.findings import find
+from equipoise.present.pictures import pictures
+from equipoise.present.shaking import Shaking
+from equipoise.present.summary import answers, tiles
+from equipoise.quantities import brief
+from equipoise.results.blocks import Table
+from equipoise.results.tables import shares
+
+
+def text_of(found) -> str:
+    return " ".join(" ".join(answer.sentences) for answer in answers(found)).replace("\xa0", " ")
+
+
+def test_shares_of_links_follow_from_masses_and_accelerations():
+    found = find("yamashita-1")
+    machine, motion = found.machine, found.analysis.motion
+    pulls = {
+        name: -machine.links[name].mass * center.acceleration_vector
+        for name, center in motion.mass_centers.items()
+    }
+    whole = sum(pulls.values())
+    by_link = shares(found.analysis.forces.split.by_link("shaking_force"))
+    for name, pull in pulls.items():
+        expected = np.vdot(whole, pull).real / np.vdot(whole, whole).real
+        assert by_link[name] == pytest.approx(expected, rel=1e-9)
+        assert f"{name} {100 * expected:.0f} %" in text_of(found)
+    assert sum(by_link.values()) == pytest.approx(1)
+
+
+def test_rows_shake_together_as_they_do_one_by_one():
+    found = find("riding-transplanter")
+    rows = found.machine.rows
+    theta = np.arange(720) * (2 * pi / 720)
+    force = sum(
+        eq.analyze(found.machine, theta + row.phase).forces.shaking_force.value for row in rows
+    )
+    shaking = Shaking.of(found)
+    np.testing.assert_allclose(shaking.force, force, rtol=0, atol=1e-9 * np.max(np.abs(force)))
+    orders = np.abs(np.fft.fft(force))[1:360] ** 2 + np.abs(np.fft.fft(force))[:360:-1] ** 2
+    assert shaking.loudest == pytest.approx((1 + np.argmax(orders), np.max(orders) / sum(orders)))
+    assert (
+        f"the 4 rows together shake their frame with a force of up to {brief(max(abs(force)))} N"
+        in (text_of(found))
+    )
+
+
+def test_what_helps_most_is_what_balancing_finds():
+    found = find("yamashita-rig-counterweight")
+    told = text_of(found)
+    better = eq.analyze(found.balanced.machine).forces.shaking_force.value
+    rms = float(np.sqrt(np.mean(np.abs(better) ** 2)))
+    assert f"→ {brief(rms)} N" in told
+    gauge = found.response.gauges["gauge"].displacement.peak_to_peak
+    assert f"moves by {brief(1e3 * float(gauge))} mm peak to peak at 193 rpm" in told
+
+
+def test_without_masses_nothing_is_said_of_forces():
+    found = find("drag-link")
+    told = text_of(found)
+    assert (found.analysis.solved is None) == ("masses of links are missing" in told)
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_no_placeholder_is_left(language):
+    with speaking(language):
+        told = text_of(find("kim-chung-a"))
+    assert not {"{", "}"} & set(told)
+
+
+def test_numbers_are_set_as_in_print():
+    shown = printed("-0.01235 to 1.000e-09 m/s^2, a-1 and 2026-11-22, (-1, -2)")
+    assert shown == "\u22120.01235 to 1.000×10⁻⁹ m/s², a-1 and 2026-11-22, (\u22121, \u22122)"
+    told = "2.22 N m and 4 rows, ratio in N m s/rad, (5.4 g mm) at (1, 2) mm, 7 milestones, 3 %"
+    assert printed(told) == (
+        "2.22\xa0N\xa0m and 4 rows, ratio in N\xa0m s/rad, (5.4\xa0g\xa0mm) at (1, 2)\xa0mm, "
+        "7 milestones, 3\xa0%"
+    )
+
+
+def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
+    found = find("slider-crank-engine")
+    before, after = next(iter(found.balanced.objectives.values()))
+    assert 0.99 * before < after <= before
+    told = text_of(found)
+    assert f"RMS, {brief(before)} N, is already as small as a counterweight on the crank" in told
+    assert "add a counterweight" not in told
+    assert [tile.note for tile in tiles(found)][-1].startswith("already as small as")
+    assert "balance" not in {one.section for one in pictures(found)}
+
+
+def test_rows_are_not_told_of_a_counterweight():
+    found = find("walking-transplanter")
+    told = " ".join(str(block) for block in balance_blocks(found))
+    assert "other phases of the rows" in told and "counterweight" not in told
+    rolls = found.balanced.after["rows.roll_moment.peak"]
+    assert f"roll moment from 0 to {brief(rolls)} N m" in text_of(found)
+
+
+def test_a_mass_that_is_large_beside_the_links_is_told():
+    found = find("quick-return")
+    added = found.balanced.after["mass"] - found.balanced.before["mass"]
+    assert f"have {brief(found.machine.mass)} kg, and {brief(added)} kg are added" in text_of(found)
+
+
+def test_rounding_has_no_crank_angle():
+    found = find("planetary-planting-arm")
+    moment = next(tile for tile in tiles(found) if "moment" in tile.label)
+    assert (moment.value, moment.note) == ("0", "")
+    tables = [block for block in balance_blocks(found) if isinstance(block, Table)]
+    rows = [row for table in tables for row in grid(table).rows]
+    area = [
+        row for row in rows if row[0].text.startswith("shaking moment, area") and len(row) == 4
+    ][-1]
+    assert [cell.text for cell in area[1:]] == ["0", "0", ""]
+
+
+def test_notes_are_said_in_the_language_of_the_reader():
+    note = Note("{name} does not touch at rest, and is left out", name="float")
+    assert str(note) == "float does not touch at rest, and is left out"
+    with speaking("ko"):
+        assert noted(note).startswith("참고: float: 정지")
+        assert noted("the moon is full") == "참고(원문): the moon is full"

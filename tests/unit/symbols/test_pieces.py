@@ -1,0 +1,192 @@
+"""Signs of machines, held to the motion: where they are, what they move with, how they look."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.symbols.clear import clear_angle
+from equipoise.symbols.looks import DARK, LIGHT, LOOKS
+from equipoise.symbols.pieces import Piece, pieces
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Shape
+
+NAMES = sorted(eq.examples("linkage"))
+COUNT = 48
+
+
+def scene_of(machine: eq.Machine | str) -> Scene:
+    machine = eq.load(machine) if isinstance(machine, str) else machine
+    return Scene.of(eq.move(machine, COUNT))
+
+
+def placed(scene: Scene, piece: Piece, shape: Shape, offsets: float = 0.0) -> np.ndarray:
+    """Corners of a shape at every crank angle, (corners, N), m; units are so long."""
+    corners = shape.at(1.0, offsets)[:, None]
+    track = piece.track(scene)
+    if track is None:
+        return np.repeat(corners, len(scene.crank_angle), axis=1)
+    stretched = corners.real * track.stretch + 1j * corners.imag
+    return track.place + stretched * np.exp(1j * track.angle)
+
+
+def of_role(scene: Scene, *roles: str) -> list[tuple[Piece, Shape, np.ndarray]]:
+    return [
+        (piece, shape, placed(scene, piece, shape))
+        for piece in pieces(scene)
+        for shape in piece.shapes
+        if shape.role in roles
+    ]
+
+
+def near(found: list[np.ndarray], wanted: np.ndarray) -> float:
+    return min(float(np.max(np.abs(one - wanted))) for one in found)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_and_pins_are_where_the_motion_has_them(name: str) -> None:
+    scene = scene_of(name)
+    size = abs(scene.linkage_box[1] - scene.linkage_box[0])
+    corners = [corner for *_, line in of_role(scene, "body") for corner in line]
+    for body in scene.bodies:
+        for point in body.outline if len(body.outline) > 1 else ():
+            assert near(corners, scene.places[point]) < 1e-9 * size
+    signs = [line[0] for *_, line in of_role(scene, "pin", "dot")]
+    for point, place in scene.places.items():
+        assert near(signs, place) < 1e-9 * size, point
+    stands = of_role(scene, "stand")
+    still = [line[0, 0] for piece, _, line in stands if piece.layer == "stands"]
+    assert still == pytest.approx([complex(scene.places[name][0]) for name in scene.standing])
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_role_has_a_look_in_colors_that_there_are(name: str) -> None:
+    for piece in pieces(scene_of(name)):
+        for shape in piece.shapes:
+            look = LOOKS[shape.role]
+            assert {look.fill, look.line} - {None} <= LIGHT.keys() == DARK.keys()
+            assert len(shape.places) == len(shape.offsets)
+            assert np.all(np.isfinite(shape.at(1.0, 1.0)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_small_links_lie_on_large_ones(name: str) -> None:
+    scene = scene_of(name)
+    areas = []
+    slotted = {guide.on for guide in scene.guides}
+    for piece, _, line in of_role(scene, "body"):
+        if piece.link not in slotted:
+            corners = line[:, 0]
+            area = abs(np.sum((np.conj(corners) * np.roll(corners, -1)).imag))
+            areas.append(round(float(area), 9))
+    assert areas == sorted(areas, reverse=True)
+
+
+def test_mass_centers_have_their_sign_in_their_links() -> None:
+    scene = scene_of("watt-six-bar")
+    signs = [line[0] for *_, line in of_role(scene, "mass")]
+    for place in scene.mass_centers.values():
+        assert near(signs, place) < 1e-12
+
+
+def test_gears_touch_and_turn_with_their_links() -> None:
+    scene = scene_of("planetary-planting-arm")
+    wheels = of_role(scene, "wheel")
+    assert len({(p.hold, s.radius) for p, s, _ in wheels}) == len(wheels) == 3
+    for wheel in scene.wheels:
+        assert any(
+            np.allclose(line[0], scene.places[wheel.center]) and shape.radius == wheel.radius
+            for _, shape, line in wheels
+        )
+
+
+@pytest.mark.parametrize("role", ["spring", "planned"])
+def test_springs_are_zigzags_between_their_ends(role: str) -> None:
+    scene = scene_of("spring-balanced-crank" if role == "spring" else "balance-spring")
+    ((_, shape, line),) = of_role(scene, role)
+    ((one, other),) = scene.springs if role == "spring" else scene.planned
+    np.testing.assert_allclose(line[0], scene.places[one], atol=1e-12)
+    np.testing.assert_allclose(line[-1], scene.places[other], atol=1e-12)
+    assert np.ptp(shape.offsets.imag) > 10 and len(shape.places) >= 14
+
+
+@pytest.mark.parametrize("name", ["quick-return", "scotch-yoke", "slider-crank-engine"])
+def test_blocks_keep_to_their_lines(name: str) -> None:
+    """A line stands still in the axes of its body, as long as the block's way on it."""
+    machine, scene = eq.load(name), scene_of(name)
+    for guide in scene.guides:
+        place = scene.places[guide.point]
+        ends = place - guide.way * guide.behind, place + guide.way * guide.ahead
+        if guide.on != "frame":
+            origin = scene.places[next(iter(machine.links[guide.on].points))]
+            turned = np.exp(-1j * scene.angles[guide.on])
+            ends = tuple((end - origin) * turned for end in ends)
+        for end in ends:
+            assert np.ptp(end.real) < 1e-12 > np.ptp(end.imag)
+        for reach in (guide.behind, guide.ahead):
+            assert np.min(reach) == pytest.approx(0, abs=1e-15)
+    assert len(of_role(scene, "block")) == len(scene.guides)
+
+
+@pytest.mark.parametrize("speed", [12.0, -12.0, 0.0])
+def test_the_driver_shows_its_sense(speed: float) -> None:
+    scene = scene_of(eq.load("yamashita-1").with_drive(speed=speed))
+    found = of_role(scene, "driver")
+    assert len(found) == bool(speed)
+    for _, _, line in found:
+        arms = line - scene.places[scene.drive.pivot]
+        assert np.all(np.sign(np.diff(np.unwrap(np.angle(arms), axis=0), axis=0)) == np.sign(speed))
+
+
+def test_the_field_is_drawn_with_its_surface_its_depth_and_the_tray() -> None:
+    machine = eq.load("transplanter")
+    scene = scene_of(machine)
+    ((_, _, ground),) = of_role(scene, "soil")
+    lowest = scene.places["P"].imag.min()
+    assert ground[:, 0].imag.max() == pytest.approx(lowest + 0.04, abs=1e-3)
+    assert ground[:, 0].imag.min() < lowest
+    ((_, _, tray),) = of_role(scene, "tray")
+    assert list(tray[:, 0]) == [complex(*end) for end in machine.planting.tray]
+    assert not of_role(scene_of("yamashita-1"), "soil", "tray")
+
+
+def test_the_support_is_drawn_with_what_holds_it() -> None:
+    scene = scene_of("riding-transplanter")
+    support = eq.load("riding-transplanter").support
+    (outline,) = (line[:, 0] for *_, line in of_role(scene, "support"))
+    assert len(outline) >= 3
+    at = {complex(line[0, 0]) for *_, line in of_role(scene, "float", "foot")}
+    assert {complex(*m.point[:2]) for m in support.mounts.values() if m.point} == at
+    assert len(of_role(scene, "gauge")) == 1  # both ends lie on one line of sight
+    assert not of_role(scene, "hatch") or scene.carrier is not None
+    walking = scene_of("walking-transplanter")
+    pivot = complex(*eq.load("walking-transplanter").support.pivot)
+    assert near([line[0] for *_, line in of_role(walking, "stand")], np.full(COUNT, pivot)) < 1e-12
+
+
+def test_a_picture_holds_what_is_near_and_keeps_the_linkage_large() -> None:
+    near_by, far = scene_of("walking-transplanter"), scene_of("yamashita-rig")
+    assert near_by.box[0].imag < -0.25  # its float
+    assert far.box[0].real > -0.5  # its pivot is more than a meter away
+    for scene in (near_by, far):
+        spans = [
+            max((e[1] - e[0]).real, (e[1] - e[0]).imag) for e in (scene.linkage_box, scene.box)
+        ]
+        assert spans[1] <= 2 * spans[0] * (1 + 1e-9)
+
+
+def test_the_angle_is_clear() -> None:
+    """Nothing is drawn in a line where it need not be: an engine not at its dead centres."""
+    for name in ("slider-crank-engine", "scotch-yoke", "exudyn-slider-crank"):
+        scene = Scene.of(eq.move(eq.load(name), 360))
+        angle = np.degrees(scene.crank_angle[clear_angle(scene)])
+        assert min(abs(angle % 90), 90 - angle % 90) > 14
+
+
+def test_a_spring_does_not_lie_on_its_link() -> None:
+    scene = Scene.of(eq.move(eq.load("balance-spring"), 360))
+    k = clear_angle(scene)
+    arm = scene.places["E"][k] - scene.places["F"][k]
+    spring = scene.places["S"][k] - scene.places["F"][k]
+    assert abs(np.degrees(np.angle(spring / arm))) > 8
