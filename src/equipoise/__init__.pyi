@@ -11,6 +11,7 @@ from . import vibration as vibration
 from .balancing.optimisation import balance as balance
 from .errors import EquipoiseError as EquipoiseError
 from .mechanism.dynamics import forces as forces
+from .mechanism.force_elements import Spring as Spring
 from .mechanism.model import Drive as Drive
 from .mechanism.model import Gear as Gear
 from .mechanism.model import Link as Link
@@ -18,7 +19,6 @@ from .mechanism.model import Load as Load
 from .mechanism.model import Machine as Machine
 from .mechanism.model import Slider as Slider
 from .mechanism.motion import move as move
-from .mechanism.spring import Spring as Spring
 from .mechanism.support import Gauge as Gauge
 from .mechanism.support import Mount as Mount
 from .mechanism.support import Row as Row

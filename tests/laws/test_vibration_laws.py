@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.motor import Motor
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Gauge, Mount, Row, Support, unit_vector
 from equipoise.signals import Periodic
 from equipoise.vibration.exact import solve_exact

@@ -24,8 +24,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import MEASURES, Balance, Objective, Weight
-from equipoise.mechanism.balance_outputs import joint_names
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import joint_names
 from support.balancing_reference import (
     FreeShaft,
     Problem,

@@ -103,14 +103,14 @@ class Balanced(Result):
     def sensitivities(self) -> dict[str, Any]:
         """Effect of each parameter of the original on what was made small; see `sensitivities`.
 
-        For components of the shaking force, shaking moment and drive torque.
+        For what `known_outputs` has, and for the components of vectors among them.
         """
-        from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
+        from equipoise.balancing.sensitivity import known_outputs, sensitivities
 
         asked = dict.fromkeys(one.output for one in self.plan.objectives)
-        if "shaking_force" in asked:
-            asked |= {"shaking_force.x": None, "shaking_force.y": None}
-        found = {name: sensitivities(self.original, name) for name in asked if name in OUTPUTS}
+        asked |= {f"{name}.{axis}": None for name in asked for axis in "xy"}
+        known = known_outputs()
+        found = {name: sensitivities(self.original, name) for name in asked if name in known}
         return {name: one.to_dict(signals=False) for name, one in found.items()}
 
     @property

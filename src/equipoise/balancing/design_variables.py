@@ -18,10 +18,10 @@ import numpy as np
 
 from equipoise.balancing.program import Affine, Program
 from equipoise.mechanism.balance import CenterMove, SpringChoice
+from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import spring_columns
-from equipoise.mechanism.spring import Spring
 
 Array = np.ndarray[Any, Any]
 

@@ -14,8 +14,8 @@ import numpy as np
 
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.mechanism.balance import Measure, Objective
-from equipoise.mechanism.balance_outputs import quantity_of
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import quantity_of
 
 Array = np.ndarray[Any, Any]
 

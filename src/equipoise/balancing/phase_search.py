@@ -30,8 +30,8 @@ from equipoise.balancing.phase_grid import (
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import Objective, Phases
-from equipoise.mechanism.balance_outputs import OF_ROWS
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]

@@ -283,7 +283,7 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
 
 def _limit(machine: Machine, head: str, tail: str) -> Limit:
     from equipoise.mechanism.balance import Limit
-    from equipoise.mechanism.balance_outputs import quantity_of
+    from equipoise.mechanism.objectives import quantity_of
     from equipoise.schema.numbers import parse_share
 
     asked = read_objective("--limit", head)

@@ -25,6 +25,7 @@ import numpy as np
 
 from equipoise.codegen.source import Source
 from equipoise.mechanism import kernels
+from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]
 Loop = Callable[[Array, Array, Array], None]
@@ -314,11 +315,17 @@ def _columns(source: Source, table: Array) -> list[Array]:
     return found
 
 
+def _first_highest(x: Array) -> Array:
+    """Place (P,) of the highest of values (P, N), of equal ones the first."""
+    high: Array = x.max(axis=1, keepdims=True)
+    return np.asarray(np.argmax(high - x <= ROUNDING * np.abs(high), axis=1))
+
+
 _GATHER: dict[str, Callable[[Array], Array]] = {
     "sum": lambda x: x.sum(axis=1),
     "squares": lambda x: np.einsum("ij,ij->i", x, x),
     "highest": lambda x: x.max(axis=1),
     "lowest": lambda x: x.min(axis=1),
-    "highest_at": lambda x: x.argmax(axis=1),
-    "lowest_at": lambda x: x.argmin(axis=1),
+    "highest_at": _first_highest,
+    "lowest_at": lambda x: _first_highest(-x),
 }

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.signals import EQUAL
+from equipoise.signals import EQUAL, ROUNDING
 
 COMPUTED = 0
 NO_ASSEMBLY = 1
@@ -109,7 +109,8 @@ class Gathered:
                 extreme = kind.removesuffix("_at")
                 first = sign * self.column(one, signal, extreme)
                 second = sign * self.column(other, signal, extreme)
-                result[:, k] = np.where(second > first, b, a)
+                equal = np.abs(second - first) <= ROUNDING * np.abs(first)
+                result[:, k] = np.where(equal, np.minimum(a, b), np.where(second > first, b, a))
         return result
 
     def figure(self, found: Array, figure: Figure, count: int) -> Array:

@@ -19,6 +19,7 @@ import numpy as np
 from equipoise.codegen.figures import Gathered
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
+from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]
 Read = Callable[[Linkage], Any]
@@ -36,11 +37,12 @@ ADD = {
     "highest": ("{g} = greatest({g}, {x})",),
     "lowest": ("{g} = smallest({g}, {x})",),
 }
-PLACE = {"highest_at": ">", "lowest_at": "<"}
-"""Beside its place an extreme is found by a branch, which costs the loop its speed."""
+PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
+"""An extreme has a new place where it grows by more than rounding, so that of equal ones the first
+is told; this takes a branch, which costs the loop its speed."""
 RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
 RESERVED |= {*keyword.kwlist, "smallest", "greatest", "angle_of", "rotation", "complex", "range"}
-RESERVED |= {"state", "loop", "table", "grid", "out", "i", "k"}
+RESERVED |= {"abs", "state", "loop", "table", "grid", "out", "i", "k"}
 
 
 @dataclass(frozen=True)
@@ -226,11 +228,7 @@ def _gathering(gathered: Gathered, signals: dict[str, str], names: list[str]) ->
     for (signal, kind), name in columns.items():
         x = signals[signal]
         place = columns.get((signal, f"{kind}_at"))
-        if kind in PLACE:
-            continue
-        if place is None:
-            yield from (line.format(g=name, x=x) for line in ADD[kind])
-        else:
-            yield f"if {x} {PLACE[f'{kind}_at']} {name}:"
-            yield f"    {name} = {x}"
+        if place is not None:
+            yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
             yield f"    {place} = k"
+        yield from (line.format(g=name, x=x) for line in ADD.get(kind, ()))

@@ -5,6 +5,9 @@ from .dynamics import forces as forces
 from .field import Planting as Planting
 from .field import Soil as Soil
 from .field import SoilTable as SoilTable
+from .force_elements import Motor as Motor
+from .force_elements import MotorTable as MotorTable
+from .force_elements import Spring as Spring
 from .linkage import Linkage as Linkage
 from .linkage import assemble as assemble
 from .model import Drive as Drive
@@ -17,13 +20,10 @@ from .model import Position as Position
 from .model import Slider as Slider
 from .motion import Motion as Motion
 from .motion import move as move
-from .motor import Motor as Motor
-from .motor import MotorTable as MotorTable
 from .parameters import BaseParameters as BaseParameters
 from .parameters import Regressor as Regressor
 from .parameters import base_parameters as base_parameters
 from .parameters import regressor as regressor
-from .spring import Spring as Spring
 from .support import Gauge as Gauge
 from .support import Mount as Mount
 from .support import Row as Row

@@ -11,10 +11,10 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.field import Soil
+from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Load, LoadTable
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import Demand
-from equipoise.mechanism.spring import Spring
 from equipoise.mechanism.tip import surface_of, tip_link
 
 Array = np.ndarray[Any, Any]

@@ -5,10 +5,10 @@ They are part of the model; `equipoise.planting` computes with them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from math import pi
-from typing import TYPE_CHECKING, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
@@ -25,10 +25,7 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import unknown
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.model import Machine, Vector
+from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown
 
 WAYS = ("forward", "backward")
 PARTS = ("resistance", "per_depth", "per_speed", "per_depth_and_speed")
@@ -169,17 +166,16 @@ class Planting(Frozen):
         return size if self.travel == "forward" else -size
 
 
-def wrong_planting(machine: Machine) -> Iterator[ModelError]:
+def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelError]:
     """Everything that is wrong with the planting values of a machine."""
-    planting = machine.planting
     if planting is None:
         return
-    links = [name for name, link in machine.links.items() if planting.tip in link.points]
+    links = [name for name, points in bodies.items() if name != FRAME and planting.tip in points]
     if not links:
-        known = dict.fromkeys(point for link in machine.links.values() for point in link.points)
+        known = dict.fromkeys(point for name in bodies if name != FRAME for point in bodies[name])
         yield ModelError("planting.tip", unknown(planting.tip, known, "point of a moving link"))
         return
-    yield from _wrong_finger(planting, machine, links[0])
+    yield from _wrong_finger(planting, links[0], bodies[links[0]])
     yield from _wrong_travel(planting)
     if (planting.depth is None) == (planting.surface is None):
         yield ModelError("planting", "give either depth or surface")
@@ -189,8 +185,8 @@ def wrong_planting(machine: Machine) -> Iterator[ModelError]:
         yield from _wrong_soil(planting.soil)
 
 
-def _wrong_finger(planting: Planting, machine: Machine, link: str) -> Iterator[ModelError]:
-    points = [point for point in machine.links[link].points if point != planting.tip]
+def _wrong_finger(planting: Planting, link: str, names: Iterable[str]) -> Iterator[ModelError]:
+    points = [point for point in names if point != planting.tip]
     if planting.finger_from is not None and planting.finger_from not in points:
         yield ModelError(
             "planting.finger_from",

@@ -6,40 +6,57 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from fractions import Fraction
-from itertools import chain
-from math import hypot, pi, radians
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
-    NO_INERTIA,
-    ROW,
     VERSION,
-    Conditions,
-    File,
     Frozen,
-    Key,
     Keys,
     Listing,
     Named,
-    Number,
     Point,
     Quantity,
     Table,
     Tables,
     Text,
-    Whole,
     declared,
-    inside,
     key,
+    wrong_values,
 )
-from equipoise.mechanism.checks import FRAME, SIDES, problems, unknown
+from equipoise.mechanism.checks import (
+    FRAME,
+    SIDES,
+    Bodies,
+    Vector,
+    numbered,
+    too_many,
+    unknown,
+    unknown_link,
+    wrong_text,
+)
 from equipoise.mechanism.field import Planting, wrong_planting
-from equipoise.mechanism.motor import Motor, wrong_motor
-from equipoise.mechanism.spring import Spring, wrong_springs
+from equipoise.mechanism.force_elements import (
+    Load,
+    LoadTable,
+    Spring,
+    wrong_ends,
+    wrong_load,
+    wrong_motor,
+)
+from equipoise.mechanism.parts import (
+    Drive,
+    Gear,
+    Link,
+    Slider,
+    size_of,
+    wrong_gear,
+    wrong_link,
+    wrong_points,
+    wrong_slider,
+)
 from equipoise.mechanism.support import Row, Support, wrong_support
 
 if TYPE_CHECKING:
@@ -61,226 +78,12 @@ __all__ = [
     "unknown",
 ]
 
-Vector = tuple[float, float]
-"""Components along x (forward) and y (up)."""
 
+MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
+"""Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
-MESHES = ("external", "internal")
+
 MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
-
-
-@declared
-class Link(Frozen):
-    """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
-
-    A point whose name another link or the frame also has is a pin.  Without a mass no forces are
-    computed.
-    """
-
-    conditions: ClassVar[Conditions] = {
-        "dependentRequired": {
-            "mass": ["center_of_mass", "inertia"],
-            "center_of_mass": ["mass", "inertia"],
-            "inertia": ["mass", "center_of_mass"],
-        }
-    }
-
-    points: Mapping[str, Vector] = key(
-        Named(Point()),
-        "in the link's own axes; links that share a name are pinned together there",
-        example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
-    )
-    mass: float | None = key(
-        "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
-    )
-    center_of_mass: Vector | None = key(
-        Point(), "needed for forces; in the link's own axes", default=None
-    )
-    inertia: float | None = key(
-        "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
-    )
-
-    @property
-    def has_mass(self) -> bool:
-        return self.mass is not None
-
-
-@declared
-class Drive(Frozen):
-    """The link that is driven."""
-
-    link: str = key(
-        Text(),
-        "the driven link; it shares exactly one point with the frame, about which it turns",
-        example="crank",
-    )
-    speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
-    acceleration: float = key(
-        "angular acceleration", "of the driven link, at every crank angle analysed", default=0.0
-    )
-    flywheel: float = key(
-        "inertia",
-        "of what turns with the driven link beside it",
-        default=0.0,
-        at_least=0,
-        why=NO_INERTIA,
-    )
-    motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
-
-
-@declared
-class Slider(Frozen):
-    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
-
-    link: str = key(Text(), "the sliding link", example="piston")
-    point: str = key(Text(), "its point on the line", example="C")
-    on: str = key(Text(), 'the guiding link, or `"frame"`', example="frame")
-    through: str = key(Text(), "a point of the guide on the line", example="A")
-    direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
-    angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
-
-    @property
-    def name(self) -> str:
-        return f"{self.link} on {self.on}"
-
-
-@declared
-class Gear(Frozen):
-    """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
-
-    beside: ClassVar[Keys] = {
-        "between": Key(
-            "between",
-            Listing(Text(), (2,)),
-            "driver and driven link; the driver is the one that is moved already, and may be "
-            '`"frame"` where the carrier turns',
-            example=["crank", "wheel"],
-        ),
-        "mesh": Key(
-            "mesh",
-            Text(MESHES),
-            "goes with `teeth`",
-            default=None,
-            shown="external",
-        ),
-    }
-    file_order = ("between", "ratio", "teeth", "mesh")
-    conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
-        "dependentRequired": {"mesh": ["teeth"]},
-    }
-
-    driver: str = inside(Text())
-    driven: str = inside(Text())
-    ratio: float | None = key(
-        Number(),
-        "speed of driven over driver, both relative to the carrier; negative for an external mesh",
-        default=None,
-        example=-2,
-    )
-    teeth: tuple[int, int] | None = key(
-        Listing(Whole(1), (2,)),
-        "of driver and driven, instead of `ratio`",
-        default=None,
-        example=[20, 40],
-    )
-    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
-    carrier: str = key(Text(), "link to which both are pinned", default=FRAME, example="frame")
-    start: float = key("angle", "of the driven link in the frame at crank angle 0", default=0.0)
-    pressure_angle: float = key(
-        "angle",
-        "of the teeth; it sets the radial part of the tooth force",
-        default=radians(20),
-        at_least=0,
-        below=pi / 2,
-        why="give an angle from 0 deg to less than 90 deg",
-    )
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> Gear:
-        if "mesh" in given and "teeth" not in given:
-            raise ModelError(
-                "mesh",
-                f"got {given['mesh']!r} without teeth; leave it out, the sign of ratio tells: "
-                "negative for external",
-            )
-        return cls(*given.pop("between"), **given)
-
-    @classmethod
-    def to_table(cls, value: Gear) -> dict[str, Any]:
-        mesh = {} if value.teeth is None else {"mesh": value.mesh}
-        return {"between": (value.driver, value.driven), **mesh, **super().to_table(value)}
-
-    @property
-    def name(self) -> str:
-        return f"{self.driver} to {self.driven}"
-
-    @property
-    def speed_ratio(self) -> float:
-        """Speed of driven over driver relative to the carrier."""
-        if self.teeth is None:
-            assert self.ratio is not None
-            return self.ratio
-        ratio = self.teeth[0] / self.teeth[1]
-        return ratio if self.mesh == "internal" else -ratio
-
-    @property
-    def exact_ratio(self) -> Fraction | None:
-        """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
-        if self.teeth is not None:
-            ratio = Fraction(*self.teeth)
-            return ratio if self.mesh == "internal" else -ratio
-        near = Fraction(self.speed_ratio).limit_denominator(100_000)
-        return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
-
-
-@declared
-class LoadTable(Frozen):
-    """A load over one turn, linear between its rows and from the last row to the first.
-
-    crank_angle : rad, rising, within one turn.
-    values : force_x and force_y (N) or torque (N m), each as long as `crank_angle`.
-    file : name of the CSV file that it came from.
-    """
-
-    crank_angle: tuple[float, ...] = inside(ROW)
-    values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
-    file: str = inside(Text(), default="", compare=False)
-
-
-@declared
-class Load(Frozen):
-    """A force at a point of a link, or a torque on a link, from outside the machine.
-
-    Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
-    """
-
-    file_order = ("link", "point", "force", "torque", "table", "from", "to")
-    conditions: ClassVar[Conditions] = {
-        "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
-        "dependentRequired": {"from": ["to"], "to": ["from"], "force": ["point"]},
-    }
-
-    link: str = key(Text(), "the loaded link", example="coupler")
-    point: str | None = key(Text(), "where a force acts; not for torques", default=None)
-    force: Vector | None = key(
-        Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
-    )
-    torque: float | None = key("torque", "positive counterclockwise", default=None)
-    start: float | None = key(
-        "angle",
-        "crank angle at which it begins to act; it may pass through 0",
-        name="from",
-        default=None,
-    )
-    stop: float | None = key("angle", "crank angle at which it ends", name="to", default=None)
-    table: LoadTable | None = key(
-        File("load"),
-        "CSV file beside this one: `crank_angle [deg],force_x [N],force_y [N]` or "
-        "`crank_angle [deg],torque [N m]`",
-        default=None,
-        example="force.csv",
-    )
 
 
 @declared
@@ -378,22 +181,13 @@ class Machine(Frozen):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        for problem in chain(
-            problems(self),
-            wrong_springs(self),
-            wrong_planting(self),
-            wrong_motor(self),
-            wrong_support(self),
-            self._wrong_balance(),
-        ):
+        for problem in _problems(self):
             raise problem
 
-    def _wrong_balance(self) -> Iterable[ModelError]:
-        if self.balance is None:  # most machines have none, and these modules take time to import
-            return ()
-        from equipoise.mechanism.balance_checks import wrong_balance
-
-        return wrong_balance(self)
+    @property
+    def bodies(self) -> Bodies:
+        """Points of the frame and of every link, in their own axes."""
+        return {FRAME: self.frame} | {name: link.points for name, link in self.links.items()}
 
     @property
     def mass(self) -> float:
@@ -447,7 +241,56 @@ class Machine(Frozen):
         return self.frame if body == FRAME else self.links[body].points
 
 
-def size_of(points: Mapping[str, Vector]) -> float:
-    """Diagonal of the rectangle around some points, m: how large a body is."""
-    xs, ys = zip(*points.values(), strict=True)
-    return hypot(max(xs) - min(xs), max(ys) - min(ys))
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def _problems(machine: Machine) -> Iterator[ModelError]:
+    """Everything that is wrong with the values of a machine, the first things first."""
+    bodies, motor = machine.bodies, machine.drive.motor
+    yield from _too_much(machine)
+    yield from wrong_values("", machine)
+    yield from wrong_points("frame", machine.frame)
+    if not machine.links:
+        yield ModelError("links", "there is no link; give at least the drive's")
+    for name, link in machine.links.items():
+        yield from wrong_link(f"links.{name}", name, link)
+    yield from unknown_link("drive.link", machine.drive.link, bodies)
+    for where, slider in numbered("sliders", machine.sliders):
+        yield from wrong_slider(where, slider, bodies)
+    for where, gear in numbered("gears", machine.gears):
+        yield from wrong_gear(where, gear, bodies)
+    for where, load in numbered("loads", machine.loads):
+        yield from wrong_load(where, load, bodies)
+    if machine.position is not None:
+        yield from _wrong_position(machine.position, bodies)
+    yield from too_many("springs", machine.springs, MOST["springs"])
+    for where, spring in numbered("springs", machine.springs):
+        yield from wrong_ends(where, spring, bodies)
+    yield from wrong_planting(machine.planting, bodies)
+    if motor is not None:
+        yield from wrong_motor("drive.motor", motor)
+    yield from wrong_support(machine.support, machine.rows)
+    if machine.balance is not None:
+        yield from machine.balance.problems(machine)
+
+
+def _too_much(machine: Machine) -> Iterator[ModelError]:
+    points = [(body, point) for body, points in machine.bodies.items() for point in points]
+    yield from too_many("links", machine.links, MOST["links"])
+    yield from too_many("points", points, MOST["points"])
+    for what in ("sliders", "gears", "loads"):
+        yield from too_many(what, getattr(machine, what), MOST[what])
+    yield from wrong_text("title", machine.title)
+    for body, names in machine.bodies.items():
+        yield from wrong_text("links", body)
+        for point in names:
+            yield from wrong_text(f"points of {body}", point)
+
+
+def _wrong_position(position: Position, bodies: Bodies) -> Iterator[ModelError]:
+    known = {point for body in bodies if body != FRAME for point in bodies[body]}
+    for point in position.points:
+        if point not in known:
+            yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
+    for link in position.angles:
+        yield from unknown_link(f"position.angles.{link}", link, bodies)

@@ -229,7 +229,8 @@ class Motion:
             w,
             a,
         )
-        return SliderMotion(*(part.real for part in way), self.speed, self.acceleration)
+        travel, first, second = (part.real for part in way)
+        return SliderMotion(travel, first, second, self.speed, self.acceleration)
 
     def _transmission(self, group: Group) -> Array:
         assert group.number is not None

@@ -13,7 +13,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch, Rectangle
 from matplotlib.ticker import MaxNLocator
 
-from equipoise.balancing.naming import objective_named
 from equipoise.figures.labels import Labels
 from equipoise.i18n import say
 from equipoise.plotting.style import (
@@ -28,6 +27,7 @@ from equipoise.plotting.style import (
     styled,
 )
 from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place, told_speed
+from equipoise.results.naming import objective_named
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

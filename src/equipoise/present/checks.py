@@ -18,7 +18,8 @@ from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
 from equipoise.studies.blocks import Unit, Units, in_unit, labelled
 from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.evaluate import Outcome, evaluator
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Outcome
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -26,9 +27,9 @@ if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
     from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
     from equipoise.handheld.shaft import Shaft
+    from equipoise.mechanism.force_elements import Motor
     from equipoise.mechanism.linkage import Linkage
     from equipoise.mechanism.model import Machine
-    from equipoise.mechanism.motor import Motor
     from equipoise.mechanism.support import Gauge, Mount
     from equipoise.studies.design_space import Spread
     from equipoise.studies.study import Study
@@ -53,7 +54,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield Text(f"the crank turns fully; the motion repeats after {turns}")
     for row in [*_springs(machine), *_drive_train(machine), *_support(machine)]:
         yield Text(row)
-    if notes := (*remarks(linkage), *idle_parts(machine), *_uncarried(machine)):
+    if notes := (*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)):
         yield Notes(notes)
     yield Text("ready to be analysed")
 

@@ -6,7 +6,7 @@ from typing import Literal
 
 from pydantic import ConfigDict, Field
 
-from equipoise.mechanism import motor
+from equipoise.mechanism import force_elements
 from equipoise.schema.fields import AngularSpeed, Inertia, Table, Torque
 from equipoise.schema.opening import Beside, table_at
 
@@ -51,6 +51,6 @@ class Motor(Table):
         json_schema_extra={"default": "held"},
     )
 
-    def to_motor(self, reader: Beside) -> motor.Motor:
+    def to_motor(self, reader: Beside) -> force_elements.Motor:
         table = table_at("drive.motor.table", self.table, reader.motor)
-        return motor.Motor(**{**dict(self), "table": table})
+        return force_elements.Motor(**{**dict(self), "table": table})

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pydantic import Field
 
-from equipoise.mechanism import spring
+from equipoise.mechanism import force_elements
 from equipoise.schema.fields import Length, Stiffness, Table
 
 
@@ -21,5 +21,5 @@ class Spring(Table):
         json_schema_extra={"default": "0 m"},
     )
 
-    def to_spring(self) -> spring.Spring:
-        return spring.Spring(**dict(self))
+    def to_spring(self) -> force_elements.Spring:
+        return force_elements.Spring(**dict(self))

@@ -17,7 +17,7 @@ from pydantic import (
 from equipoise.errors import ModelError
 from equipoise.mechanism import balance
 from equipoise.mechanism.balance import CUT, MATERIALS
-from equipoise.mechanism.balance_weights import HOLLOW
+from equipoise.mechanism.weights import HOLLOW
 from equipoise.quantities.problems import described
 from equipoise.schema.fields import (
     LIST,

@@ -8,8 +8,8 @@ from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism import balance
-from equipoise.mechanism.balance_outputs import quantity_of, wrong_limit
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import quantity_of, wrong_limit
 from equipoise.quantities import Dimension, parse, pattern
 from equipoise.quantities.problems import described
 from equipoise.schema.fields import LIST, AngularSpeed, Table, problem, sized

@@ -13,8 +13,8 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.motor import MotorTable
 from equipoise.schema.files import FileError, printable, write_text
 from equipoise.schema.opening import FileKind, bundled, content_of, kind_of, opened
 

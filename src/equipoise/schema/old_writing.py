@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from typing import Any
 
-from equipoise.mechanism.balance_checks import LISTS
+from equipoise.mechanism.balance import LISTS
 from equipoise.mechanism.field import Planting, Soil
 from equipoise.mechanism.model import (
     FRAME,

@@ -16,8 +16,8 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.handheld.model import PLANES
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.motor import MotorTable
 from equipoise.schema import SCHEMA_VERSION
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from equipoise import quantities
 from equipoise.handheld.model import Impedance
 from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.model import LoadTable
-from equipoise.mechanism.motor import MotorTable
 from equipoise.schema import csv_columns
 from equipoise.schema.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
 from equipoise.schema.points import from_polar

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
 from equipoise.mechanism.field import SoilTable
+from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.mechanism.motor import MotorTable
 from equipoise.schema.document import Document
 from equipoise.schema.document_tool import ToolDocument
 from equipoise.schema.files import printable

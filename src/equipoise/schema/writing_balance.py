@@ -19,9 +19,9 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.balance_outputs import quantity_of
-from equipoise.mechanism.balance_weights import material_of
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import quantity_of
+from equipoise.mechanism.weights import material_of
 from equipoise.quantities import Dimension, format_exact
 from equipoise.schema.numbers import format_share
 from equipoise.schema.plain import listed, quantities, tidy, unless

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from equipoise.mechanism.motor import Motor
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import UP, Direction, Gauge, Mount, Place, Row, Support
 from equipoise.quantities import Dimension, format_exact
 from equipoise.schema.plain import listed, quantities, tidy, unless

@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.naming import objective_named
 from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.selection import far_apart
 
 if TYPE_CHECKING:
+    from equipoise.studies.design_space import Make, Output
     from equipoise.studies.objective_map import Landscape
     from equipoise.studies.search import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.store import Store
-    from equipoise.studies.study import Make, Output
     from equipoise.studies.tolerances import Cause, Tolerances
     from equipoise.studies.variance import Estimate, Scatter
 

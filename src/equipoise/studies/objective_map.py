@@ -30,6 +30,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.results.result import Result
+from equipoise.signals import highest_at
 from equipoise.studies.design_space import Model
 
 Array = np.ndarray[Any, Any]
@@ -274,7 +275,8 @@ def landscape(
             progress(k + 1, len(points))
     if np.all(np.isnan(found)):
         raise UsageError(f"no linkage turns with {paths[0]} and {paths[1]} in these ranges")
-    best, least = _refined(value, points[int(np.nanargmin(found))], x, y)
+    lowest = int(highest_at(np.where(np.isnan(found), -np.inf, -found), smooth=False))
+    best, least = _refined(value, points[lowest], x, y)
     start, before = None, nan
     if not given and not any(COUNTERWEIGHT.fullmatch(path) for path in paths):
         start = float(model.number(paths[0])[0]), float(model.number(paths[1])[0])

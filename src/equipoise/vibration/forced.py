@@ -89,7 +89,7 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
 
 def left_out(machine: Machine) -> list[str]:
     """What the model file gives that does nothing in a steady vibration."""
-    found = list(idle_parts(machine))
+    found = list(idle_parts(machine.support))
     if machine.drive.acceleration:
         found.append("the drive's acceleration is left out: a steady vibration has a steady crank")
     return found

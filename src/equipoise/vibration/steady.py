@@ -11,10 +11,10 @@ import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Drive, Machine
 from equipoise.mechanism.motion import move
-from equipoise.mechanism.motor import Motor
 from equipoise.vibration.collocation import NOTHING, RULE, Conditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, Torque
 from equipoise.vibration.linear import Linear

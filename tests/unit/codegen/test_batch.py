@@ -14,7 +14,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.codegen.batch import Batch
-from equipoise.codegen.figures import GATHERED, PLACES, Figure, figure_of
+from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure_of
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Gear, Load, Machine, Slider
@@ -530,3 +530,25 @@ def test_names_of_figures() -> None:
         "shaking_force.RMS",
     ):
         assert figure_of(value) is None, value
+
+
+@pytest.mark.parametrize(("count", "kind"), [(120, "max_at"), (120, "peak_at"), (None, "max_at")])
+def test_of_equal_extremes_the_first_is_told(
+    count: int | None, kind: str, numpy_engine: None
+) -> None:
+    """A yoke shakes as much at either end, and rounding does not decide which end is told."""
+    yoke = eq.load("scotch-yoke")
+    batch = Batch(yoke, ["links.yoke.mass"], [Figure("shaking_force", kind)], angles=count)
+    force = eq.analyze(yoke, 120).summary["shaking_force"].max_at
+    figures, _ = batch(np.linspace(0.9, 1.3, 20)[:, None])
+    assert figures[:, 0] == pytest.approx(force, abs=1e-3)
+    assert np.all(figures[:, 0] < pi)
+
+
+def test_equal_extremes_of_two_sets_of_angles() -> None:
+    gathered = Gathered.of([Figure("s", "max_at")])
+    highest, at = (gathered.columns.index(("s", kind)) for kind in ("highest", "highest_at"))
+    one, other = np.zeros((2, 3, len(gathered.columns)))
+    one[:, highest], one[:, at] = (1.0, 1.0 - 1e-15, 1.0), 2.0
+    other[:, highest], other[:, at] = (1.0 - 1e-15, 1.0, 1.1), (3.0, 1.0, 3.0)
+    assert list(gathered.joined(one, other)[:, at]) == [2.0, 1.0, 3.0]

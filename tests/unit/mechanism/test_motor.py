@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError
-from equipoise.mechanism.motor import Motor, MotorTable
+from equipoise.mechanism.force_elements import Motor, MotorTable
 from unit.mechanism.build import crank_rocker
 
 FOUR = crank_rocker()

@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
+from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.model import Load, LoadTable, Machine
-from equipoise.mechanism.motor import Motor, MotorTable
 from equipoise.schema import dumps, json_schema, load, loads, save
 from equipoise.schema.models import files_of, tables_of
 from equipoise.schema.tables import format_motor, read_motor

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.model import Load
-from equipoise.mechanism.motor import Motor
 from equipoise.mechanism.reactions import Pass
 from equipoise.mechanism.support import Row
 from equipoise.vibration.exact import ExactSolution, solve_exact

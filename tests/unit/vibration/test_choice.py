@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
-from equipoise.mechanism.motor import Motor, MotorTable
+from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.support import UP
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, respond, usual_step

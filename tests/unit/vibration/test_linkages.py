@@ -9,8 +9,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.model import Load
-from equipoise.mechanism.motor import Motor
 from equipoise.mechanism.support import Row
 from equipoise.vibration.linkages import Sums, rows_of, spread, sums
 from support.machines import make

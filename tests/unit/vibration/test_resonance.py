@@ -10,7 +10,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.motor import Motor
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Row
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import AMPLIFIED, Resonance, resonances

@@ -10,7 +10,7 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.motor import Motor
+from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Row
 from equipoise.vibration.forced import respond
 from equipoise.vibration.transient import Transient

@@ -9,7 +9,6 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from equipoise.balancing.naming import CAUSES
 from equipoise.i18n import say
 from equipoise.plotting.analysis.looks import (
     ALL,
@@ -29,6 +28,7 @@ from equipoise.plotting.crank import draw, mark
 from equipoise.plotting.hodograph import nothing_there
 from equipoise.plotting.style import LINES, SMALL, short, shown, styled
 from equipoise.plotting.vibration.panels import legend, name_panel, name_y, stack
+from equipoise.results.naming import CAUSES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

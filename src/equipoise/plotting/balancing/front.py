@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from equipoise.balancing.naming import objective_named
 from equipoise.balancing.problem import Problem
 from equipoise.figures.additions import MM, grams
 from equipoise.figures.labels import Labels
 from equipoise.i18n import say
 from equipoise.plotting.style import INK, LINES, MAIN, blank, fit, heading, short, shown
 from equipoise.plotting.vibration.panels import BETWEEN, LEFT, RIGHT, WIDTH, place, told_speed
+from equipoise.results.naming import objective_named
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

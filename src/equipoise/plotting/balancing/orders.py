@@ -9,11 +9,10 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from equipoise.balancing.effects import SCALARS, VECTORS, Effects
+from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.naming import objective_named
 from equipoise.i18n import say
-from equipoise.mechanism.balance_outputs import JOINTS, OF_ROWS, output_of
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.plotting.balancing.looks import LOOKS, WHEN
 from equipoise.plotting.bars import Read, bars, last_order
 from equipoise.plotting.style import FAINT, LINES, MAIN
@@ -26,6 +25,7 @@ from equipoise.plotting.vibration.panels import (
     stack,
     told_speed,
 )
+from equipoise.results.naming import objective_named
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
@@ -57,7 +57,7 @@ def orders_figures(found: Balanced) -> Iterator[Figure]:
         read = {name: _read(found, drawn[name]) for name in names}
         last = max(last_order(one) for one in read.values())
         for axes, name in zip(panels, names, strict=True):
-            rotation = output_of(drawn[name].output, found.original).quantity == "torque"
+            rotation = output_of(drawn[name].output, found.original).dimension == "torque"
             name_panel(axes, _named(found, drawn[name]))
             bars(axes, read[name], COLORS, rotation, last)
         name_x(figure, say("order: events in one turn of the crank"))
@@ -82,8 +82,7 @@ def _is_drawn(found: Balanced, objective: Objective) -> bool:
     output = objective.output
     if output in OF_ROWS:
         return found.phasing is not None
-    name = output.removesuffix(".x").removesuffix(".y")
-    return name in (*VECTORS, *SCALARS) or name.startswith(JOINTS)
+    return not output.startswith(GAUGES)
 
 
 def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tuple[Array, Array]:

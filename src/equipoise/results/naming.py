@@ -6,19 +6,10 @@ from math import pi
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.outputs import declared
+from equipoise.results.outputs import unit_of
 
 RPM = 30 / pi
-OUTPUTS = {
-    "shaking_force": to_say("shaking force"),
-    "shaking_force.x": to_say("shaking force x"),
-    "shaking_force.y": to_say("shaking force y"),
-    "shaking_moment": to_say("shaking moment"),
-    "drive_torque": to_say("drive torque"),
-    "frame_force": to_say("force on the frame"),
-    "frame_moment": to_say("moment on the frame"),
-    "roll_moment": to_say("roll moment"),
-    "yaw_moment": to_say("yaw moment"),
-}
 MEASURES = {
     "rms": to_say("RMS"),
     "ripple": to_say("RMS about the mean"),
@@ -43,33 +34,16 @@ def output_named(name: str, rows: int = 1) -> str:
     rows : of the machine; where there are several, outputs are of one row if they do not say so.
     """
     first, _, rest = name.partition(".")
-    if first == "rows":
-        return say("all rows: {what}", what=output_named(rest))
-    if first == "gauges":
-        return say("gauge {name}", name=rest)
-    if first == "joints":
-        what = say("force in joint {name}", name=joint_named(rest))
-    elif first == "gears":
-        what = say("tooth force {name}", name=rest.replace(" to ", " → "))
-    else:
-        what = say(OUTPUTS[name]) if name in OUTPUTS else name
-    return say("one row: {what}", what=what) if rows > 1 else what
-
-
-def body_named(name: str) -> str:
-    """A link, or the frame."""
-    return say("frame") if name == "frame" else name
-
-
-def joint_named(name: str) -> str:
-    """A joint; a slider, such as ``ram on frame``, by its link and what it slides on."""
-    link, _, on = name.partition(" on ")
-    return say("{link} on {on}", link=link, on=body_named(on)) if on else name
+    found = declared(name)
+    if found is not None:
+        return found[0].say(found[1], rows > 1)
+    return say("all rows: {what}", what=output_named(rest)) if first == "rows" else name
 
 
 def objective_named(one: Objective, rows: int = 1) -> str:
     """What is to become small, in words."""
-    output = f"rows.{one.output}" if rows > 1 and one.output in OUTPUTS else one.output
+    of_joint = one.output.startswith(("joints.", "gauges."))
+    output = one.output if rows < 2 or of_joint else f"rows.{one.output}"
     words = [output_named(output), say(MEASURES[one.measure])]
     if one.about:
         words.append(say("about {point}", point=one.about))
@@ -81,12 +55,9 @@ def objective_named(one: Objective, rows: int = 1) -> str:
     return say(", ").join(words)
 
 
-def unit_of(output: str, measure: str) -> str:
+def unit_of_measure(output: str, measure: str) -> str:
     """SI unit of a figure that is told before and after."""
-    if measure == "area":
-        return "J"
-    forces = ("force", "joints", "gears")
-    return "N" if any(word in output for word in forces) else "N m"
+    return "J" if measure == "area" else unit_of(output)
 
 
 def scaled(unit: str) -> tuple[float, str]:

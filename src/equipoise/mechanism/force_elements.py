@@ -1,0 +1,253 @@
+"""What acts on links: loads from outside, springs, and the motor, as values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import pairwise
+from math import pi
+from typing import ClassVar, Literal, Protocol
+
+from equipoise.errors import ModelError
+from equipoise.keys import (
+    NO_INERTIA,
+    ROW,
+    Conditions,
+    File,
+    Frozen,
+    Listing,
+    Number,
+    Quantity,
+    Text,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
+
+MEAN_SPEEDS = ("held", "free")
+
+
+@declared
+class LoadTable(Frozen):
+    """A load over one turn, linear between its rows and from the last row to the first.
+
+    crank_angle : rad, rising, within one turn.
+    values : force_x and force_y (N) or torque (N m), each as long as `crank_angle`.
+    file : name of the CSV file that it came from.
+    """
+
+    crank_angle: tuple[float, ...] = inside(ROW)
+    values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
+    file: str = inside(Text(), default="", compare=False)
+
+
+@declared
+class Load(Frozen):
+    """A force at a point of a link, or a torque on a link, from outside the machine.
+
+    Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
+    """
+
+    file_order = ("link", "point", "force", "torque", "table", "from", "to")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
+        "dependentRequired": {"from": ["to"], "to": ["from"], "force": ["point"]},
+    }
+
+    link: str = key(Text(), "the loaded link", example="coupler")
+    point: str | None = key(Text(), "where a force acts; not for torques", default=None)
+    force: Vector | None = key(
+        Listing(Quantity("force"), (2,)), "along x and y of the frame", default=None
+    )
+    torque: float | None = key("torque", "positive counterclockwise", default=None)
+    start: float | None = key(
+        "angle",
+        "crank angle at which it begins to act; it may pass through 0",
+        name="from",
+        default=None,
+    )
+    stop: float | None = key("angle", "crank angle at which it ends", name="to", default=None)
+    table: LoadTable | None = key(
+        File("load"),
+        "CSV file beside this one: `crank_angle [deg],force_x [N],force_y [N]` or "
+        "`crank_angle [deg],torque [N m]`",
+        default=None,
+        example="force.csv",
+    )
+
+
+@declared
+class Spring(Frozen):
+    """A linear spring without mass: it pulls `point` of `link` towards the frame's point `to`."""
+
+    link: str = key(Text(), "the link that it pulls", example="rocker")
+    point: str = key(
+        Text(), "its point on the link, not one that is pinned to the frame", example="C"
+    )
+    to: str = key(Text(), "its point on the frame", example="S")
+    stiffness: float = key("stiffness", "more than 0", example="2 kN/m", above=0)
+    free_length: float = key(
+        "length",
+        "at which it exerts nothing; shorter it pushes",
+        default=0.0,
+        shown="0 m",
+        at_least=0,
+        why="a length cannot be negative, give 0 or more",
+    )
+
+
+@declared
+class MotorTable(Frozen):
+    """Torque of a motor against its speed: linear between its rows, and beyond them as between
+    the last two.
+
+    speed : rad/s, rising.  torque : N m, as long as `speed`.
+    file : name of the CSV file that it came from.
+    """
+
+    speed: tuple[float, ...] = inside(ROW)
+    torque: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
+
+
+@declared
+class Motor(Frozen):
+    """The motor or engine that turns the crank; its torque and speed are sizes.
+
+    Torque falls in a straight line from the one at standstill to zero at no load, or follows the
+    table.
+    """
+
+    file_order = ("no_load_speed", "stall_torque", "table", "ratio", "inertia", "mean_speed")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [
+            {"required": ["no_load_speed", "stall_torque"], "properties": {"table": False}},
+            {"required": ["table"], "properties": {"no_load_speed": False, "stall_torque": False}},
+        ]
+    }
+
+    no_load_speed: float | None = key(
+        "angular speed",
+        "of the motor, at which its torque is 0",
+        default=None,
+        example="3000 rpm",
+        above=0,
+    )
+    stall_torque: float | None = key(
+        "torque", "of the motor at standstill", default=None, example="2 N m", above=0
+    )
+    table: MotorTable | None = key(
+        File("motor"),
+        "CSV file beside this one, instead of these two: `speed [rpm],torque [N m]`",
+        default=None,
+        example="motor.csv",
+    )
+    ratio: float = key(
+        Number(), "turns of the motor in one turn of the driven link", default=1.0, above=0
+    )
+    inertia: float = key(
+        "inertia", "of its rotor about its own axis", default=0.0, at_least=0, why=NO_INERTIA
+    )
+    mean_speed: Literal["held", "free"] = key(
+        Text(MEAN_SPEEDS),
+        "`held`: the motor is so set that the mean speed is the drive's `speed`; `free`: its curve "
+        "holds as it is, and the speed follows from it",
+        default="held",
+    )
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a load on a link."""
+    if problem := [*unknown_link(f"{where}.link", load.link, bodies)]:
+        yield from problem
+        return
+    if load.point is not None:
+        yield from unknown_point(f"{where}.point", load.point, load.link, bodies)
+    given = [load.force is not None, load.torque is not None, load.table is not None]
+    if sum(given) != 1:
+        yield ModelError(where, "give exactly one of force, torque and table")
+        return
+    forces = load.force is not None or (load.table is not None and len(load.table.values) == 2)
+    if forces and load.point is None:
+        yield ModelError(f"{where}.point", "missing; a force acts at a point of the link")
+    if not forces and load.point is not None:
+        yield ModelError(f"{where}.point", "a torque acts on a link, not at a point; leave it out")
+    if (load.start is None) != (load.stop is None):
+        yield ModelError(where, "give both from and to, or neither")
+    elif load.start is not None and load.stop is not None and not _window(load.start, load.stop):
+        yield ModelError(
+            where, "from and to must differ, by one turn at most; leave both out for always"
+        )
+    if load.table is not None:
+        yield from _wrong_loads(f"{where}.table", load.table)
+
+
+def _window(start: float, stop: float) -> bool:
+    return 0 < abs(stop - start) <= 2 * pi * (1 + 1e-12)
+
+
+def _wrong_loads(where: str, table: LoadTable) -> Iterator[ModelError]:
+    angles = table.crank_angle
+    if not angles:
+        yield ModelError(where, "the table has no rows")
+        return
+    if any(b <= a for a, b in pairwise(angles)):
+        yield ModelError(where, "the crank angles must rise from row to row")
+    if angles[-1] - angles[0] > 2 * pi * (1 + 1e-12):
+        yield ModelError(where, "the crank angles cover more than one turn")
+    if any(len(column) != len(angles) for column in table.values):
+        yield ModelError(where, "the columns differ in length")
+
+
+class SpringEnds(Protocol):
+    """A spring, or one that may be set, by its ends."""
+
+    @property
+    def link(self) -> str: ...
+    @property
+    def point(self) -> str: ...
+    @property
+    def to(self) -> str: ...
+
+
+def wrong_ends(where: str, spring: SpringEnds, bodies: Bodies) -> Iterator[ModelError]:
+    """What is wrong with the two points of a spring, or of one that may be set."""
+    if problem := [*unknown_link(f"{where}.link", spring.link, bodies)]:
+        yield from problem
+        return
+    points, frame = bodies[spring.link], bodies[FRAME]
+    if spring.point not in points:
+        sentence = unknown(spring.point, points, f"point of {spring.link}")
+        yield ModelError(f"{where}.point", sentence)
+    elif spring.to not in frame:
+        yield ModelError(f"{where}.to", unknown(spring.to, frame, "point of the frame"))
+    elif spring.point in frame:
+        yield ModelError(
+            f"{where}.point",
+            f"{spring.point!r} is pinned to the frame, where a spring does nothing; give a point "
+            "that moves",
+        )
+
+
+def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
+    """Everything that is wrong with a motor."""
+    line = (motor.no_load_speed, motor.stall_torque)
+    if (motor.table is None) != (None not in line) or (
+        motor.table is not None and any(value is not None for value in line)
+    ):
+        yield ModelError(where, "give either no_load_speed and stall_torque, or table")
+        return
+    if motor.table is not None:
+        yield from _wrong_curve(f"{where}.table", motor.table)
+
+
+def _wrong_curve(where: str, table: MotorTable) -> Iterator[ModelError]:
+    if len(table.speed) != len(table.torque):
+        yield ModelError(where, "the columns differ in length")
+    elif len(table.speed) < 2:
+        yield ModelError(where, "the table has fewer than two rows; a curve needs two")
+    elif any(b <= a for a, b in pairwise(table.speed)):
+        yield ModelError(where, "the speeds must rise from row to row")

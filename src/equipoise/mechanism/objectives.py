@@ -1,0 +1,263 @@
+"""What is to become small, or must not become larger: measures of outputs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from math import pi
+from typing import ClassVar
+
+from equipoise.errors import ModelError
+from equipoise.keys import (
+    Anything,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Number,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import positive, unknown
+from equipoise.mechanism.declaring import Declared, Measure, matches
+from equipoise.mechanism.outputs import DECLARED
+from equipoise.mechanism.parts import Mechanism
+from equipoise.quantities import Dimension
+
+MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
+"""Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
+area under the absolute value over one turn of the crank."""
+OF_ROWS = ("roll_moment", "yaw_moment")
+"""About x and y, from linkages side by side."""
+JOINTS, GAUGES = "joints.", "gauges."
+OF_NUMBERS = ("ripple", "peak_to_peak", "area")
+"""Measures of outputs that are one number at each crank angle."""
+MOST_NUMBERS = 200
+
+
+@declared
+class Objective(Frozen):
+    """What is to become small: a measure of an output."""
+
+    output: str = key(
+        Text(),
+        "such as `shaking_force.y`, `shaking_force`, `shaking_moment`, `drive_torque`, "
+        "`frame_force`, `frame_moment`, `joints.NAME`, `gauges.NAME`, `roll_moment`, `yaw_moment`",
+        example="shaking_moment",
+    )
+    measure: Measure = key(
+        Text(MEASURES),
+        "`rms`: root of the mean square; `ripple`: the same about the mean; `peak`: largest size; "
+        "`peak_to_peak`: largest minus smallest value; `area`: under the size, over one turn of "
+        "the crank",
+        default="rms",
+    )
+    orders: tuple[float, ...] = key(
+        Listing(Number(), right="a list of numbers such as [1, 2]"),
+        "those that count: events in one turn of the crank, 0 for the mean; all if left out",
+        default=(),
+        example=[1, 2],
+    )
+    about: str | None = key(
+        Text(),
+        "point of the frame about which `shaking_moment` or `frame_moment` is taken; the drive's "
+        "pivot if left out",
+        default=None,
+    )
+    weight: float = key(
+        Number(),
+        "where there are several objectives, each of which counts over its value before",
+        default=1.0,
+        above=0,
+    )
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("angular speed"), right='a list such as ["150 rpm", "240 rpm"]'),
+        "of the crank, at which a gauge is read; the loudest counts; the drive's if left out",
+        default=(),
+        example=["150 rpm", "240 rpm"],
+    )
+
+    @property
+    def name(self) -> str:
+        """How it is called in results, such as ``rms of shaking_force.y``."""
+        words = "area under" if self.measure == "area" else f"{self.measure} of"
+        orders = f" (order {', '.join(f'{order:g}' for order in self.orders)})"
+        about = f" about {self.about}" if self.about else ""
+        if self.speeds:
+            about += f" at {', '.join(f'{speed * 30 / pi:.6g}' for speed in self.speeds)} rpm"
+        name = f"{words} {self.output}{about}{orders if self.orders else ''}"
+        return name.replace("_to_", " to ")
+
+
+@declared
+class Limit(Frozen):
+    """What must not become larger: a measure of an output, whose weight does not count.
+
+    at_most : in SI units.  ratio : over the value before, instead.
+    """
+
+    beside: ClassVar[Keys] = {
+        "at_most": Key(
+            "at_most",
+            Anything(
+                text='give number and unit in quotes, such as "120 N", or a share of the value '
+                'before, such as "80 %"',
+            ),
+            '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
+            example="120 N",
+        )
+    }
+
+    objective: Objective = key(Table(Objective, flat=True))
+    at_most: float | None = inside(Number(), default=None)
+    ratio: float | None = inside(Number(), default=None)
+
+    @property
+    def name(self) -> str:
+        return self.objective.name
+
+
+def output_of(name: str, machine: Mechanism) -> Declared:
+    """Look up an output of a machine by its name.
+
+    Raises
+    ------
+    ModelError : there is no such output, or it is not linear in the masses; says what there is.
+    """
+    found = [(one, item) for one, item in matches(name) if not name.startswith("rows.")]
+    for one, item in found:
+        if item in one.members(machine):
+            return _balanced(one, item, machine)
+    if not found:
+        raise ModelError("", unknown(name, balanced_names(machine), "output"))
+    one, item = found[0]
+    names, kind = list(one.members(machine)), one.group.removesuffix("s")
+    if kind == "gauge" and not names:
+        raise ModelError("", "there is no gauge; give a support with gauges")
+    if not names:
+        raise ModelError("", one.reason.format(what=name))
+    raise ModelError("", unknown(item, names, kind))
+
+
+def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
+    """An output that balancing can take, with the dimension that it has in this machine."""
+    name = one.named(item).removeprefix("rows.")
+    if one.needs == "rows" and not machine.rows:
+        raise ModelError("", f"{name} comes from linkages side by side; give [[rows]]")
+    if one.reason:
+        raise ModelError("", one.reason.format(what=name))
+    if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
+        return replace(one, dimension="angle")
+    return one
+
+
+def balanced_names(machine: Mechanism) -> list[str]:
+    """Names of everything that balancing can take of a machine."""
+    names = [
+        one.named(item).removeprefix("rows.")
+        for one in DECLARED.values()
+        if not one.reason
+        and (one.needs != "rows" or machine.rows)
+        and not (one.is_family and one.part in ("x", "y"))
+        for item in one.members(machine)
+    ]
+    return list(dict.fromkeys(names))
+
+
+def quantity_of(objective: Objective, machine: Mechanism) -> Dimension | None:
+    """What the measure of an output is; None where it has no name (the area under a force).
+
+    Raises
+    ------
+    ModelError : as for `output_of`.
+    """
+    quantity = output_of(objective.output, machine).dimension
+    if objective.measure != "area":
+        return quantity
+    return "energy" if quantity == "torque" else None
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with an output and its measure."""
+    try:
+        output = output_of(objective.output, machine)
+    except ModelError as error:
+        yield ModelError(f"{where}.output", error.what)
+        return
+    if objective.measure not in MEASURES:
+        yield ModelError(f"{where}.measure", unknown(objective.measure, MEASURES, "measure"))
+    elif output.is_vector and objective.measure in OF_NUMBERS:
+        yield ModelError(
+            f"{where}.output",
+            f"{objective.output} is a vector, which has no {objective.measure}; give .x or .y",
+        )
+    yield from _wrong_orders(where, objective.orders)
+    yield from _wrong_about(where, objective, machine)
+    yield from _wrong_speeds(where, objective)
+    if objective.weight <= 0:
+        yield ModelError(f"{where}.weight", f"got {objective.weight:g}; give more than 0")
+
+
+def _wrong_orders(where: str, orders: tuple[float, ...]) -> Iterator[ModelError]:
+    yield from _too_many(f"{where}.orders", orders)
+    for number, order in enumerate(orders, 1):
+        if order < 0:
+            yield ModelError(f"{where}.orders[{number}]", f"got {order:g}; give 0 or more")
+        elif order in orders[: number - 1]:
+            yield ModelError(f"{where}.orders[{number}]", f"{order:g} is given twice")
+
+
+def _wrong_about(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
+    about, key = objective.about, f"{where}.about"
+    if about is None:
+        return
+    if not output_of(objective.output, machine).about:
+        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
+        yield ModelError(key, f"goes with {' and '.join(names)}; leave it out")
+    elif about not in machine.frame:
+        yield ModelError(key, unknown(about, machine.frame, "point of the frame"))
+
+
+def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
+    yield from _too_many(f"{where}.speeds", objective.speeds)
+    if objective.speeds and not objective.output.startswith(GAUGES):
+        yield ModelError(
+            f"{where}.speeds",
+            "goes with gauges; other outputs are taken at the speed of the drive",
+        )
+    for number, speed in enumerate(objective.speeds, 1):
+        if speed == 0:
+            yield ModelError(
+                f"{where}.speeds[{number}]", "the crank stands still there; give another speed"
+            )
+        elif speed in objective.speeds[: number - 1]:
+            yield ModelError(f"{where}.speeds[{number}]", "the same speed is given twice")
+
+
+def _too_many(where: str, values: Iterable[float]) -> Iterator[ModelError]:
+    count = len([*values])
+    if count > MOST_NUMBERS:
+        yield ModelError(where, f"got {count}; at most {MOST_NUMBERS} are computed with")
+
+
+def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:
+    """Everything that is wrong with what must not become larger."""
+    yield from wrong_objective(where, limit.objective, machine)
+    if (limit.at_most is None) == (limit.ratio is None):
+        yield ModelError(where, "give either at_most or ratio, its share of the value before")
+    elif limit.at_most is not None and quantity_of(limit.objective, machine) is None:
+        yield ModelError(
+            f"{where}.at_most",
+            f"there is no unit for the area under {limit.objective.output}; give a share of the "
+            'value before, such as "80 %"',
+        )
+    yield from positive(f"{where}.at_most", limit.at_most, "in SI units")
+    if limit.ratio is not None and limit.ratio <= 0:
+        yield ModelError(f"{where}.at_most", f"got {100 * limit.ratio:g} %; give more than 0")

@@ -1,0 +1,305 @@
+"""Parts of a machine: links, joints, gears and the drive, as frozen values with their checks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from math import hypot, pi, radians
+from typing import Any, ClassVar, Literal, Protocol
+
+from equipoise.errors import ModelError
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Named,
+    Number,
+    Point,
+    Table,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+)
+from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
+from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.support import Row, Support
+
+MESHES = ("external", "internal")
+
+
+@declared
+class Link(Frozen):
+    """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
+
+    A point whose name another link or the frame also has is a pin.  Without a mass no forces are
+    computed.
+    """
+
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {
+            "mass": ["center_of_mass", "inertia"],
+            "center_of_mass": ["mass", "inertia"],
+            "inertia": ["mass", "center_of_mass"],
+        }
+    }
+
+    points: Mapping[str, Vector] = key(
+        Named(Point()),
+        "in the link's own axes; links that share a name are pinned together there",
+        example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
+    )
+    mass: float | None = key(
+        "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
+    )
+    center_of_mass: Vector | None = key(
+        Point(), "needed for forces; in the link's own axes", default=None
+    )
+    inertia: float | None = key(
+        "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
+    )
+
+    @property
+    def has_mass(self) -> bool:
+        return self.mass is not None
+
+
+@declared
+class Drive(Frozen):
+    """The link that is driven."""
+
+    link: str = key(
+        Text(),
+        "the driven link; it shares exactly one point with the frame, about which it turns",
+        example="crank",
+    )
+    speed: float = key("angular speed", "positive is counterclockwise", example="193 rpm")
+    acceleration: float = key(
+        "angular acceleration", "of the driven link, at every crank angle analysed", default=0.0
+    )
+    flywheel: float = key(
+        "inertia",
+        "of what turns with the driven link beside it",
+        default=0.0,
+        at_least=0,
+        why=NO_INERTIA,
+    )
+    motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
+
+
+@declared
+class Slider(Frozen):
+    """A sliding joint: `point` of `link` stays on a line of the body `on`, without turning."""
+
+    link: str = key(Text(), "the sliding link", example="piston")
+    point: str = key(Text(), "its point on the line", example="C")
+    on: str = key(Text(), 'the guiding link, or `"frame"`', example="frame")
+    through: str = key(Text(), "a point of the guide on the line", example="A")
+    direction: float = key("angle", "of the line, in the axes of the guide", example="0 deg")
+    angle: float = key("angle", "of the sliding link's x axis, from the line", default=0.0)
+
+    @property
+    def name(self) -> str:
+        return f"{self.link} on {self.on}"
+
+
+@declared
+class Gear(Frozen):
+    """A pair of gears, both pinned to the same carrier; either ratio or teeth."""
+
+    beside: ClassVar[Keys] = {
+        "between": Key(
+            "between",
+            Listing(Text(), (2,)),
+            "driver and driven link; the driver is the one that is moved already, and may be "
+            '`"frame"` where the carrier turns',
+            example=["crank", "wheel"],
+        ),
+        "mesh": Key(
+            "mesh",
+            Text(MESHES),
+            "goes with `teeth`",
+            default=None,
+            shown="external",
+        ),
+    }
+    file_order = ("between", "ratio", "teeth", "mesh")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": ["ratio"]}, {"required": ["teeth"]}],
+        "dependentRequired": {"mesh": ["teeth"]},
+    }
+
+    driver: str = inside(Text())
+    driven: str = inside(Text())
+    ratio: float | None = key(
+        Number(),
+        "speed of driven over driver, both relative to the carrier; negative for an external mesh",
+        default=None,
+        example=-2,
+    )
+    teeth: tuple[int, int] | None = key(
+        Listing(Whole(1), (2,)),
+        "of driver and driven, instead of `ratio`",
+        default=None,
+        example=[20, 40],
+    )
+    mesh: Literal["external", "internal"] = inside(Text(MESHES), default="external")
+    carrier: str = key(Text(), "link to which both are pinned", default=FRAME, example="frame")
+    start: float = key("angle", "of the driven link in the frame at crank angle 0", default=0.0)
+    pressure_angle: float = key(
+        "angle",
+        "of the teeth; it sets the radial part of the tooth force",
+        default=radians(20),
+        at_least=0,
+        below=pi / 2,
+        why="give an angle from 0 deg to less than 90 deg",
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Gear:
+        if "mesh" in given and "teeth" not in given:
+            raise ModelError(
+                "mesh",
+                f"got {given['mesh']!r} without teeth; leave it out, the sign of ratio tells: "
+                "negative for external",
+            )
+        return cls(*given.pop("between"), **given)
+
+    @classmethod
+    def to_table(cls, value: Gear) -> dict[str, Any]:
+        mesh = {} if value.teeth is None else {"mesh": value.mesh}
+        return {"between": (value.driver, value.driven), **mesh, **super().to_table(value)}
+
+    @property
+    def name(self) -> str:
+        return f"{self.driver} to {self.driven}"
+
+    @property
+    def speed_ratio(self) -> float:
+        """Speed of driven over driver relative to the carrier."""
+        if self.teeth is None:
+            assert self.ratio is not None
+            return self.ratio
+        ratio = self.teeth[0] / self.teeth[1]
+        return ratio if self.mesh == "internal" else -ratio
+
+    @property
+    def exact_ratio(self) -> Fraction | None:
+        """The speed ratio as a fraction, or None if it is no ratio of whole numbers."""
+        if self.teeth is not None:
+            ratio = Fraction(*self.teeth)
+            return ratio if self.mesh == "internal" else -ratio
+        near = Fraction(self.speed_ratio).limit_denominator(100_000)
+        return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
+
+
+def size_of(points: Mapping[str, Vector]) -> float:
+    """Diagonal of the rectangle around some points, m: how large a body is."""
+    xs, ys = zip(*points.values(), strict=True)
+    return hypot(max(xs) - min(xs), max(ys) - min(ys))
+
+
+class Mechanism(Protocol):
+    """What a machine is to those who only look at its parts."""
+
+    @property
+    def drive(self) -> Drive: ...
+    @property
+    def frame(self) -> Mapping[str, Vector]: ...
+    @property
+    def links(self) -> Mapping[str, Link]: ...
+    @property
+    def bodies(self) -> Bodies: ...
+    @property
+    def sliders(self) -> Sequence[Slider]: ...
+    @property
+    def gears(self) -> Sequence[Gear]: ...
+    @property
+    def rows(self) -> Sequence[Row]: ...
+    @property
+    def support(self) -> Support | None: ...
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
+    """Everything that is wrong with what has to have points, each with a name."""
+    if not points:
+        yield ModelError(f"{where}.points", "there is no point; give at least one")
+    for name in points:
+        if not name.strip():
+            yield ModelError(f"{where}.points", "a point has an empty name")
+
+
+def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
+    """Everything that is wrong with a link."""
+    if name == FRAME or not name.strip():
+        yield ModelError(where, f"a link cannot be called {name!r}; choose another name")
+    yield from wrong_points(where, link.points)
+    given = {
+        "mass": link.mass,
+        "center_of_mass": link.center_of_mass,
+        "inertia": link.inertia,
+    }
+    missing = [key for key, value in given.items() if value is None]
+    if 0 < len(missing) < 3:
+        yield ModelError(
+            where,
+            f"{' and '.join(missing)} missing; give mass, center_of_mass and inertia together, "
+            "or none of them",
+        )
+        return
+    if link.mass is None or link.inertia is None:
+        return
+    if link.mass == 0 and link.inertia > 0:
+        yield ModelError(
+            f"{where}.inertia",
+            f"got {link.inertia:g} kg m^2 for a mass of 0; no body can have that, give 0",
+        )
+
+
+def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a sliding joint."""
+    if problem := [*unknown_link(f"{where}.link", slider.link, bodies)]:
+        yield from problem
+        return
+    yield from _unknown_body(f"{where}.on", slider.on, bodies)
+    if slider.link == slider.on:
+        yield ModelError(f"{where}.on", f"{slider.link!r} cannot slide on itself")
+    if slider.on in bodies:
+        yield from unknown_point(f"{where}.through", slider.through, slider.on, bodies)
+    yield from unknown_point(f"{where}.point", slider.point, slider.link, bodies)
+
+
+def wrong_gear(where: str, gear: Gear, bodies: Bodies) -> Iterator[ModelError]:
+    """Everything that is wrong with a pair of gears."""
+    for between, name in (
+        ("between[1]", gear.driver),
+        ("between[2]", gear.driven),
+        ("carrier", gear.carrier),
+    ):
+        yield from _unknown_body(f"{where}.{between}", name, bodies)
+    if len({gear.driver, gear.driven, gear.carrier}) < 3 and not (
+        gear.driver != gear.driven and gear.carrier not in (gear.driver, gear.driven)
+    ):
+        yield ModelError(where, "driver, driven link and carrier must be three different bodies")
+    if (gear.ratio is None) == (gear.teeth is None):
+        yield ModelError(where, "give either ratio or teeth")
+        return
+    if gear.teeth is not None and min(gear.teeth) < 1:
+        yield ModelError(f"{where}.teeth", f"got {list(gear.teeth)}; give two positive numbers")
+    elif gear.speed_ratio in (0.0, 1.0):
+        yield ModelError(
+            where,
+            f"the ratio is {gear.speed_ratio:g}; no pair of gears has that, it would be rigid",
+        )
+
+
+def _unknown_body(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:
+    if name not in bodies:
+        yield ModelError(where, unknown(name, bodies, "link"))

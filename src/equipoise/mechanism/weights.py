@@ -1,0 +1,338 @@
+"""Mass that may be added or moved: its shape, its room, and what fits into it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import inf, isfinite, pi, sqrt
+from typing import Any, ClassVar, Literal
+
+from equipoise.errors import ModelError
+from equipoise.keys import (
+    Conditions,
+    Frozen,
+    Key,
+    Keys,
+    Listing,
+    Point,
+    Quantity,
+    Table,
+    Text,
+    declared,
+    key,
+)
+from equipoise.mechanism.checks import unknown, wrong_range
+from equipoise.mechanism.parts import Link
+
+Pair = tuple[float, float]
+Shape = Literal["any", "point", "disc", "ring", "sector"]
+SHAPES: tuple[Shape, ...] = ("any", "point", "disc", "ring", "sector")
+CUT = ("disc", "ring", "sector")
+"""Shapes cut from a plate, which need a thickness and a density."""
+HOLLOW = ("ring", "sector")
+"""Shapes with an inner radius."""
+RANGE = Listing(Quantity("length"), (2,))
+MATERIALS = {
+    "steel": 7850.0,
+    "cast iron": 7200.0,
+    "brass": 8500.0,
+    "lead": 11340.0,
+    "tungsten alloy": 17500.0,
+    "aluminium": 2700.0,
+}
+"""Densities, kg/m3."""
+LARGEST_ROOM = 1000.0
+"""m; far beyond any machine."""
+ROUNDING = 1 + 1e-9
+"""A mass that fills its room to this may have been computed from it."""
+
+
+def material_of(density: float) -> str:
+    """Name of the material of a density (kg/m3), or nothing where there is none."""
+    return next((name for name, value in MATERIALS.items() if value == density), "")
+
+
+def with_density(given: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """The values of a table with the density (kg/m3) of what it gives by name or by number."""
+    material = given.pop(f"{prefix}material", None)
+    if material is None:
+        return given
+    if f"{prefix}density" in given:
+        raise ModelError("", f"give either {prefix}material or {prefix}density")
+    if material not in MATERIALS:
+        shown = material if len(material) <= 60 else f"{material[:57]}..."
+        raise ModelError(
+            f"{prefix}material",
+            f"no material is called {shown!r}; there are {', '.join(map(repr, MATERIALS))}, or "
+            f"give {prefix}density",
+        )
+    return {**given, f"{prefix}density": MATERIALS[material]}
+
+
+def with_material(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A table with the name of a material instead of its density, where it has one."""
+    if name := material_of(table.get(f"{prefix}density", 0.0)):
+        del table[f"{prefix}density"]
+        table[f"{prefix}material"] = name
+    return table
+
+
+def material_key(prefix: str, text: str) -> dict[str, Key]:
+    """The key of a material beside that of a density."""
+    kind = Text(suggested=(*MATERIALS,))
+    name = f"{prefix}material"
+    return {name: Key(name, kind, text, default=None, example="steel")}
+
+
+def needs(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has all of these keys."""
+    return {"required": [*keys]}
+
+
+def lacks(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has none of these keys."""
+    return {"properties": dict.fromkeys(keys, False)}
+
+
+def any_of(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that has one of these keys."""
+    return {"anyOf": [needs(one) for one in keys]}
+
+
+def not_both(*keys: str) -> dict[str, Any]:
+    """JSON Schema of a table that lacks one of these keys."""
+    return {"not": needs(*keys)}
+
+
+def _of_shapes(*shapes: str) -> dict[str, Any]:
+    return {"properties": {"shape": {"enum": [*shapes]}}, **needs("shape")}
+
+
+WEIGHT = (
+    not_both("material", "density"),
+    not_both("mass", "at_most"),
+    any_of("radius", "mass"),
+    {
+        "if": _of_shapes(*CUT),
+        "then": {**needs("radius", "thickness"), **any_of("material", "density")},
+        "else": lacks("thickness", "material", "density"),
+    },
+    {"if": needs("inner_radius"), "then": _of_shapes(*HOLLOW)},
+)
+"""What the JSON Schema says of keys that go together."""
+
+
+@declared
+class Weight(Frozen):
+    """Mass that may be added about a centre, and the room that it has there.
+
+    shape : ``any`` distribution in the room (which comes back as one or two points); one ``point``;
+        a round ``disc`` anywhere in the room; a ``ring`` about the centre; a ``sector`` about the
+        centre, from the inner radius to the room's edge.
+    """
+
+    beside: ClassVar[Keys] = material_key("", "of that plate")
+    file_order = ("shape", "radius", "inner_radius", "thickness", "material", "density")
+
+    shape: Shape = key(
+        Text(SHAPES),
+        "`any`: however it is spread in its room; `point`: in one point; `disc`: a round plate "
+        "anywhere in the room; `ring` and `sector`: about the centre",
+        default="any",
+    )
+    radius: float = key(
+        "length",
+        "of the room about the centre; without limit if left out",
+        default=inf,
+        example="60 mm",
+        above=0,
+        endless=True,
+    )
+    inner_radius: float = key("length", "of ring and sector", default=0.0)
+    thickness: float | None = key(
+        "length",
+        "of the plate that disc, ring and sector are cut from",
+        default=None,
+        example="8 mm",
+        above=0,
+    )
+    density: float | None = key(
+        "density", "of that plate, instead of `material`", default=None, above=0
+    )
+    mass: float | None = key("mass", "where it is given", default=None, example="500 g", above=0)
+    at_most: float | None = key(
+        "mass",
+        "the most that it may be, instead of `mass`",
+        default=None,
+        example="800 g",
+        above=0,
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Weight:
+        return cls(**with_density(given))
+
+    @classmethod
+    def to_table(cls, value: Weight) -> dict[str, Any]:
+        return with_material(super().to_table(value))
+
+
+@declared
+class AddedMass(Frozen):
+    """Mass may be added to a link, about one of its points."""
+
+    conditions: ClassVar[Conditions] = {"allOf": [*WEIGHT]}
+
+    link: str = key(Text(), "name of the link", example="crank")
+    at: str = key(Text(), "point of the link, the centre of the room", example="A")
+    weight: Weight = key(Table(Weight, flat=True))
+
+
+@declared
+class CenterMove(Frozen):
+    """The centre of mass of a link may be moved, in a rectangle or in a circle; its mass, and its
+    inertia about it, are kept.
+    """
+
+    conditions: ClassVar[Conditions] = {
+        "dependentRequired": {"center": ["radius"], "radius": ["center"]},
+        "dependentSchemas": {"center": {"properties": {"x": False, "y": False}}},
+    }
+
+    link: str = key(Text(), "a link with a mass", example="coupler")
+    x: Pair | None = key(
+        RANGE,
+        "lowest and highest, in the link's axes; without limit if left out",
+        default=None,
+        example=["-60 mm", "20 mm"],
+    )
+    y: Pair | None = key(RANGE, "as `x`", default=None, example=["-30 mm", "30 mm"])
+    center: Pair | None = key(
+        Point(),
+        "of a circle that the centre of mass does not leave, instead of `x` and `y`",
+        default=None,
+    )
+    radius: float | None = key("length", "of that circle", default=None, example="40 mm", above=0)
+
+
+def plate_mass(weight: Weight, area: float) -> float:
+    """Mass (kg) of an area (m2) of the plate that a weight is cut from."""
+    assert weight.thickness is not None and weight.density is not None
+    return weight.thickness * weight.density * area
+
+
+def largest_mass(weight: Weight) -> float:
+    """The most mass (kg) that fits into the room of a weight."""
+    if weight.shape not in CUT:
+        return inf
+    inner = weight.inner_radius if weight.shape != "disc" else 0.0
+    return plate_mass(weight, pi * (weight.radius**2 - inner**2))
+
+
+# -- checks ----------------------------------------------------------------------------------------
+
+
+def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
+    """Everything that is wrong with the mass that may be added at a place."""
+    if isfinite(weight.radius) and weight.radius > LARGEST_ROOM:
+        yield ModelError(
+            f"{where}.radius",
+            f"got {weight.radius:g} m; give at most {LARGEST_ROOM:g} m, or none for no limit",
+        )
+    yield from _wrong_plate(where, weight)
+    yield from _wrong_inner_radius(where, weight)
+    yield from _wrong_mass(where, weight)
+
+
+def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
+    """Thickness and density, which what is cut from a plate has."""
+    shape = f"a {weight.shape}"
+    if weight.shape not in CUT:
+        for key in ("thickness", "density"):
+            if getattr(weight, key) is not None:
+                yield ModelError(f"{where}.{key}", "goes with a disc, ring or sector; leave it out")
+        return
+    if not isfinite(weight.radius):
+        yield ModelError(f"{where}.radius", f"missing; {shape} needs a room, give its radius")
+    if weight.thickness is None:
+        yield ModelError(
+            f"{where}.thickness", f"missing; {shape} is cut from a plate, give its thickness"
+        )
+    if weight.density is None:
+        yield ModelError(
+            f"{where}.material",
+            f'missing; {shape} is cut from a plate, give a material such as "steel", or a density',
+        )
+
+
+def _wrong_inner_radius(where: str, weight: Weight) -> Iterator[ModelError]:
+    inner, key = weight.inner_radius, f"{where}.inner_radius"
+    if inner and weight.shape not in HOLLOW:
+        yield ModelError(key, f"goes with a ring or sector, got shape {weight.shape!r}")
+    elif inner < 0:
+        yield ModelError(key, f"got {inner:g} m; give 0 or more")
+    elif inner >= weight.radius:
+        yield ModelError(
+            key,
+            f"got {_length(inner)} in a room of {_length(weight.radius)}; give less than that",
+        )
+
+
+def _wrong_mass(where: str, weight: Weight) -> Iterator[ModelError]:
+    if weight.mass is not None and weight.at_most is not None:
+        yield ModelError(where, "give either mass or at_most")
+    if weight.mass is None and not isfinite(weight.radius):
+        yield ModelError(
+            where,
+            "nothing limits it; give the radius of its room, or its mass",
+        )
+    cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
+    if cut and weight.mass is not None and weight.mass > largest_mass(weight) * ROUNDING:
+        yield ModelError(f"{where}.mass", _too_large(weight, weight.mass))
+
+
+def _too_large(weight: Weight, mass: float) -> str:
+    """Say how much room a mass (kg) cut from a plate would need."""
+    assert weight.thickness is not None and weight.density is not None
+    inner = weight.inner_radius if weight.shape in HOLLOW else 0.0
+    radius = sqrt(mass / (weight.thickness * weight.density * pi) + inner**2)
+    stuff = material_of(weight.density) or f"of {weight.density:.5g} kg/m^3"
+    goes = {
+        "disc": "has a radius of",
+        "ring": "has an outer radius of",
+        "sector": "needs, even as a full ring, a radius of",
+    }
+    return (
+        f"a {weight.shape} of {1e3 * mass:.5g} g and {_length(weight.thickness)} {stuff} "
+        f"{goes[weight.shape]} {_length(radius)} and does not fit into its room of "
+        f"{_length(weight.radius)}; make it thicker, or the room larger"
+    )
+
+
+def _length(value: float) -> str:
+    return f"{1e3 * value:.5g} mm"
+
+
+def wrong_move(where: str, move: CenterMove, links: Mapping[str, Link]) -> Iterator[ModelError]:
+    """Everything that is wrong with a centre of mass that may be moved."""
+    if move.link not in links:
+        yield ModelError(f"{where}.link", unknown(move.link, links, "link"))
+    elif not links[move.link].mass:
+        yield ModelError(
+            f"{where}.link",
+            f"{move.link!r} has no mass whose centre could be moved; give it one, or another link",
+        )
+    yield from wrong_range(f"{where}.x", move.x, 1e3, " mm")
+    yield from wrong_range(f"{where}.y", move.y, 1e3, " mm")
+    if (move.center is None) != (move.radius is None):
+        yield ModelError(where, "give both center and radius of a circle, or neither")
+    elif move.center is not None and (move.x is not None or move.y is not None):
+        yield ModelError(where, "give either x and y, or center and radius")
+
+
+def wrong_added(where: str, added: AddedMass, links: Mapping[str, Link]) -> Iterator[ModelError]:
+    """Everything that is wrong with mass that may be added to a link."""
+    if added.link not in links:
+        yield ModelError(f"{where}.link", unknown(added.link, links, "link"))
+    elif added.at not in (points := links[added.link].points):
+        yield ModelError(f"{where}.at", unknown(added.at, points, f"point of {added.link}"))
+    yield from wrong_weight(where, added.weight)
