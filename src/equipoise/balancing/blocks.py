@@ -142,7 +142,8 @@ def said(text: Note | str) -> str:
 
 def _within(found: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
-    return "".join(f" {said(part)}" for part in [found.scope] if str(part))
+    parts = say(" and ").join(map(said, found.scope))
+    return f" {parts}" if parts else ""
 
 
 def _proof(found: Balanced) -> str:

@@ -4,7 +4,4 @@ from __future__ import annotations
 
 from lazy_loader import attach_stub
 
-SCHEMA_VERSION = 1
-"""Version of the model file that is read and written."""
-
 __getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
