@@ -125,7 +125,7 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     outputs = outputs_of(store)
     ways = _ways(store, outputs, by)
     search = _Choice(store, outputs, ways, count)
-    for start, block in store.blocks():
+    for start, block in store.in_blocks():
         search.add(start, block)
     search.check()
     return search.result()
