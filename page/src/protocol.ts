@@ -49,20 +49,42 @@ export interface Field {
 export interface Body {
   name: string;
   points: string[];
-  outline: string[];
+}
+
+/** A line through corners, or a circle about the only one. */
+export type Shape = [
+  role: string,
+  closed: boolean,
+  /** Radius of a circle: m and pixels, one of them not 0. */
+  radius: number,
+  grown: number,
+  /** x, y (m) and offsets from there (pixels) of each corner; y upward. */
+  corners: number[],
+];
+
+/** A part of the drawing, in axes of its own; without a hold it stands still. */
+export interface Sign {
+  layer: string;
+  /** The link that it is, if any. */
+  link: string;
+  /** Its origin, and what its x axis is: that of a link, the way of a guide, or towards a point. */
+  hold: { point: string; link?: string; guide?: string; to?: string; length?: number } | null;
+  shapes: Shape[];
 }
 
 export interface Scene {
   frame: string[];
+  /** Points of the frame that hold something. */
+  standing: string[];
   bodies: Body[];
-  pins: string[];
-  wheels: { link: string; center: string; radius: number }[];
-  guides: { name: string; point: string }[];
-  springs: [string, string][];
   mass_centers: string[];
   box: [number, number, number, number];
   movable: string[];
   traced?: string[];
+  /** From the back to the front. */
+  signs: Sign[];
+  /** Role of a shape -> its style. */
+  looks: Record<string, string>;
 }
 
 export interface Figure {

@@ -1,11 +1,27 @@
 /** The linkage, drawn in SVG: still parts once, moving parts once a frame. */
 
 import { s, set } from "./dom";
-import { LAYERS, NOTHING, type Parts, partsOf } from "./parts";
-import type { Pair, State } from "./protocol";
-import { at, curve, foot, outline, outside, quarters, reach, zigzag } from "./shapes";
+import type { Pair, Scene, State } from "./protocol";
+import { at, curve, outside, quarters } from "./shapes";
 import { ruled } from "./sheet";
+import { build, Piece } from "./signs";
 import { View } from "./view";
+
+/** From below to above. */
+const LAYERS = ["far", "paths", "signs", "ghost", "grips", "labels"] as const;
+/** Pixels from a point to the middle of its name. */
+const AWAY = 20;
+
+interface Named {
+  name: string;
+  element: SVGElement;
+}
+
+/** A name, other points of the links that meet there, and whether a foot hangs below. */
+interface Label extends Named {
+  near: string[];
+  footed: boolean;
+}
 
 export type Kind = "point" | "mass";
 
@@ -26,8 +42,12 @@ export class Stage {
   /** All is shown, and nobody has moved the sheet since. */
   private fitted = true;
   private k = 0;
-  private shape = "";
-  private parts: Parts = NOTHING;
+  private names = "";
+  private signs = "";
+  private link: string | null = null;
+  private pieces: Piece[] = [];
+  private paths: Named[] = [];
+  private labels: Label[] = [];
 
   constructor(private readonly dress: (grip: Grip, element: SVGGElement) => void) {
     for (const name of LAYERS) {
@@ -40,27 +60,20 @@ export class Stage {
 
   /** Take a state; `other` where it is of another machine. Another build is drawn from scratch. */
   show(state: State, other: boolean): void {
-    const { scene } = state;
-    // Outlines may change while a point is dragged; what is held must stay the same element.
-    const bodies = scene.bodies.map(({ name, points }) => [name, points]);
-    const shape = JSON.stringify([
-      scene.frame,
-      bodies,
-      scene.guides,
-      scene.springs,
-      scene.movable,
-      scene.mass_centers,
-      scene.wheels.map((w) => [w.link, w.center]),
-    ]);
+    const { frame, bodies, movable, mass_centers } = state.scene;
+    // While a point is dragged signs may change their order, but what is held must stay the same.
+    const names = JSON.stringify([frame, bodies, movable, mass_centers]);
+    const signs = build(state.scene);
+    const built = names !== this.names;
     this.state = state;
     this.k = Math.min(this.k, state.angles - 1);
-    const built = shape !== this.shape;
-    if (built) this.build(shape);
-    this.parts.bodies.forEach((body, i) => (body.corners = scene.bodies[i]?.outline ?? []));
+    if (built) this.name(state.scene);
+    if (built || signs !== this.signs) this.build(state.scene);
+    [this.names, this.signs] = [names, signs];
     if (other) this.fit();
     else if (built) this.redraw();
     else {
-      this.trace();
+      this.draw();
       this.pose(this.k);
     }
   }
@@ -99,7 +112,7 @@ export class Stage {
   private redraw(): void {
     if (!this.state) return;
     this.lines.replaceChildren(...ruled(this.view));
-    this.trace();
+    this.draw();
     this.pose(this.k);
   }
 
@@ -111,9 +124,9 @@ export class Stage {
   }
 
   select(points: ReadonlySet<string>, link: string | null, grip: Grip | null): void {
-    for (const { name, element } of this.parts.bodies)
-      element.classList.toggle("chosen", name === link);
-    for (const { name, element } of this.parts.paths)
+    this.link = link;
+    this.mark();
+    for (const { name, element } of this.paths)
       element.classList.toggle("chosen", points.has(name));
     const key = grip && keyOf(grip);
     for (const [name, element] of this.grips) element.classList.toggle("chosen", name === key);
@@ -133,23 +146,9 @@ export class Stage {
   pose(k: number): void {
     this.k = k;
     if (!this.state || !this.view.width) return;
+    for (const piece of this.pieces) piece.pose(this.state.numbers, this.view, k);
     const spots = this.spots(k);
     const spot = (name: string): Pair => spots.get(name) ?? [0, 0];
-    for (const { element, corners } of this.parts.bodies) {
-      const d = outline(corners.map(spot));
-      for (const path of element.children) path.setAttribute("d", d);
-    }
-    for (const { name, element } of this.parts.feet) element.setAttribute("d", foot(spot(name)));
-    for (const { name, element } of this.parts.dots) move(element, spot(name));
-    for (const { element, ends } of this.parts.springs) {
-      element.setAttribute("d", zigzag(spot(ends[0]), spot(ends[1])));
-    }
-    for (const { name, element, from } of this.parts.arms) {
-      const place = this.place({ kind: "mass", name }, k);
-      if (place) element.setAttribute("d", `M${at(spot(from))}L${at(this.view.px(...place))}`);
-    }
-    this.poseWheels(k, spot);
-    this.poseBlocks(k, spot);
     this.poseGrips(k, spot);
     this.poseLabels(spot);
   }
@@ -161,31 +160,6 @@ export class Stage {
       spots.set(name.slice(6), this.view.px(row[2 * k] as number, row[2 * k + 1] as number));
     }
     return spots;
-  }
-
-  private poseWheels(k: number, spot: (name: string) => Pair): void {
-    for (const wheel of this.parts.wheels) {
-      const [x, y] = spot(wheel.center);
-      const r = wheel.radius * this.view.scale;
-      const turned = this.state?.numbers.get(`angle.${wheel.link}`)?.[k] ?? 0;
-      set(wheel.circle, { cx: x.toFixed(1), cy: y.toFixed(1), r: r.toFixed(1) });
-      const rim: Pair = [x + r * Math.cos(turned), y - r * Math.sin(turned)];
-      wheel.spoke.setAttribute("d", `M${at([x, y])}L${at(rim)}`);
-    }
-  }
-
-  private poseBlocks(k: number, spot: (name: string) => Pair): void {
-    for (const { name, point, block, line } of this.parts.blocks) {
-      const way = this.state?.numbers.get(`guide.${name}`);
-      const [ux, uy] = way ? [way[2 * k] as number, way[2 * k + 1] as number] : [1, 0];
-      const [x, y] = spot(point);
-      const turn = (Math.atan2(-uy, ux) * 180) / Math.PI;
-      block.setAttribute("transform", `translate(${at([x, y])}) rotate(${turn.toFixed(2)})`);
-      const places = this.state?.numbers.get(`place.${point}`);
-      const [back, on] = reach(way, places, k, 26 / this.view.scale);
-      const end = (t: number): Pair => [x + ux * t * this.view.scale, y - uy * t * this.view.scale];
-      line.setAttribute("d", `M${at(end(back))}L${at(end(on))}`);
-    }
   }
 
   private poseGrips(k: number, spot: (name: string) => Pair): void {
@@ -201,29 +175,51 @@ export class Stage {
 
   /** Names stand outside of the links that meet at the point. */
   private poseLabels(spot: (name: string) => Pair): void {
-    for (const { name, element, near } of this.parts.labels) {
+    for (const { name, element, near, footed } of this.labels) {
       const [x, y] = spot(name);
-      const footed = this.parts.feet.some((part) => part.name === name);
       const [dx, dy] = outside([x, y], near.map(spot), footed);
-      const away = 20;
-      move(element, [x + dx * away, y + dy * away + 4]);
+      move(element, [x + dx * AWAY, y + dy * AWAY + 4]);
     }
   }
 
-  private trace(): void {
+  /** Everything that does not change while the machine turns. */
+  private draw(): void {
     const { view, state } = this;
     if (!state || !view.width) return;
-    for (const { name, element } of this.parts.paths) {
+    this.pieces.forEach((piece, i) => {
+      const sign = state.scene.signs[i];
+      if (sign) piece.draw(sign, view.scale);
+    });
+    for (const { name, element } of this.paths) {
       const row = state.numbers.get(`place.${name}`);
       if (row) set(element, { d: curve(row, (x, y) => view.px(x, y), true) });
     }
   }
 
-  private build(shape: string): void {
-    this.shape = shape;
-    const { scene } = this.state as State;
+  private build(scene: Scene): void {
+    this.pieces = scene.signs.map((sign) => new Piece(sign, scene));
+    const far = this.pieces.filter((piece) => piece.far);
+    const near = this.pieces.filter((piece) => !piece.far);
+    this.layer.far?.replaceChildren(...far.map(({ element }) => element));
+    this.layer.signs?.replaceChildren(...near.map(({ element }) => element));
+    this.mark();
+  }
+
+  /** Show which link is chosen. */
+  private mark(): void {
+    for (const { link, element } of this.pieces)
+      element.classList.toggle("chosen", !!link && link === this.link);
+  }
+
+  /** What has the name of a point or link: paths, names, and what can be taken hold of. */
+  private name(scene: Scene): void {
     for (const layer of Object.values(this.layer)) layer.replaceChildren();
-    this.parts = partsOf(scene, (layer, element) => this.layer[layer]?.append(element));
+    const points = [...new Set(scene.bodies.flatMap((body) => body.points))];
+    const moving = points.filter((name) => !scene.frame.includes(name));
+    this.paths = moving.map((name) => ({ name, element: s("path", { class: "path" }) }));
+    this.layer.paths?.append(...this.paths.map(({ element }) => element));
+    this.labels = [...new Set([...scene.frame, ...points])].map((name) => labelOf(name, scene));
+    this.layer.labels?.append(...this.labels.map(({ element }) => element));
     this.buildGrips(scene.movable, scene.mass_centers);
   }
 
@@ -251,6 +247,13 @@ export class Stage {
 
 export function keyOf(grip: Grip): string {
   return `${grip.kind}:${grip.name}`;
+}
+
+function labelOf(name: string, scene: Scene): Label {
+  const met = scene.bodies.filter((body) => body.points.includes(name));
+  const near = met.flatMap((body) => body.points).filter((other) => other !== name);
+  const element = s("text", { "text-anchor": "middle" }, name);
+  return { name, element, near, footed: scene.standing.includes(name) };
 }
 
 function move(element: SVGElement, place: Pair): void {

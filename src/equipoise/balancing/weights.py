@@ -129,13 +129,16 @@ class AddedWeight(DesignVariables):
             found.append(Bound(self._radius_name, self.weight.radius, used, "m"))
         return found
 
-    def stopped(self, numbers: Array) -> str:
+    def stopped(self, numbers: Array) -> Note | None:
         given = self.weight.mass is not None or self.weight.at_most is not None
         if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
-            return ""
-        return (
-            f"the weight on {self.link} has come to ten times the mass of the links, where it "
-            "was stopped; more would do better still: give it at_most"
+            return None
+        return Note(
+            to_say(
+                "the weight on {link} has come to ten times the mass of the links, "
+                "where it was stopped; more would do better still: give it at_most"
+            ),
+            link=self.link,
         )
 
     @property

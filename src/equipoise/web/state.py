@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
@@ -18,6 +18,7 @@ from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.symbols.scene import Scene
 from equipoise.web.edits import Solved, extent_of, movable
+from equipoise.web.stage import stage_of
 
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
@@ -102,7 +103,7 @@ def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
         "speed": motion.speed,
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
-        "scene": _scene(scene, movable(machine), _traced(scene)),
+        "scene": stage_of(scene, movable(machine)),
         "figures": [*_figures(signals, old, _size_of(machine))],
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
@@ -250,34 +251,6 @@ def _plain(value: float, least: float) -> float | None:
     if not isfinite(value):
         return None
     return value if value > least else 0.0
-
-
-def _scene(scene: Scene, handles: Sequence[str], traced: Sequence[str]) -> Values:
-    low, high = scene.box
-    return {
-        "frame": list(scene.frame),
-        "bodies": [
-            {"name": body.name, "points": list(body.points), "outline": list(body.outline)}
-            for body in scene.bodies
-        ],
-        "pins": sorted(scene.pins),
-        "wheels": [
-            {"link": wheel.link, "center": wheel.center, "radius": wheel.radius}
-            for wheel in scene.wheels
-        ],
-        "guides": [{"name": guide.name, "point": guide.point} for guide in scene.guides],
-        "springs": [list(ends) for ends in scene.springs],
-        "mass_centers": list(scene.mass_centers),
-        "box": [low.real, low.imag, high.real, high.imag],
-        "movable": list(handles),
-        "traced": list(traced),
-    }
-
-
-def _traced(scene: Scene) -> list[str]:
-    """Points whose paths are shown first: those of links alone, else all that move on a curve."""
-    moving = [name for name in scene.places if name not in scene.frame]
-    return [name for name in moving if name not in scene.pins] or moving
 
 
 def _ground(found: Solved, scene: Scene, block: Block) -> Values:

@@ -1,0 +1,122 @@
+/** Signs of a machine: drawn once for a scale, then moved as rigid bodies. */
+
+import { s, set } from "./dom";
+import type { Numbers, Pair, Scene, Shape, Sign } from "./protocol";
+import type { View } from "./view";
+
+/** Shades of links, one after the other. */
+const TINTS = 5;
+/** Layers that paths are drawn on. */
+const FAR = ["field", "support"];
+
+export class Piece {
+  readonly element: SVGGElement;
+  private readonly parts: SVGElement[];
+
+  constructor(
+    private sign: Sign,
+    scene: Scene,
+  ) {
+    const number = scene.bodies.findIndex(({ name }) => name === sign.link);
+    const kind = sign.link ? ` body tint-${number % TINTS}` : "";
+    this.parts = runs(sign.shapes).map(([first]) => {
+      const [role, , radius, grown] = first as Shape;
+      const element = radius + grown ? s("circle") : s("path");
+      element.style.cssText = scene.looks[role] ?? "";
+      return element;
+    });
+    const link = sign.link || null;
+    this.element = s("g", { class: `piece${kind}`, "data-link": link }, ...this.parts);
+  }
+
+  get link(): string {
+    return this.sign.link;
+  }
+
+  get far(): boolean {
+    return FAR.includes(this.sign.layer);
+  }
+
+  /** Draw the shapes of a sign of the same build, with so many pixels a metre. */
+  draw(sign: Sign, scale: number): void {
+    this.sign = sign;
+    runs(sign.shapes).forEach((run, i) => {
+      const element = this.parts[i] as SVGElement;
+      const [, , radius, grown, corners] = run[0] as Shape;
+      if (!(radius + grown)) return element.setAttribute("d", run.map(path(scale)).join(""));
+      const [cx, cy] = corner(corners, 0, scale);
+      const r = (radius * scale + grown).toFixed(2);
+      set(element, { cx: cx.toFixed(2), cy: cy.toFixed(2), r });
+    });
+  }
+
+  /** Move it to where it is at sample k. */
+  pose(numbers: Numbers, view: View, k: number): void {
+    const { hold } = this.sign;
+    if (!hold) return this.place(view.px(0, 0), "");
+    const from = pairAt(numbers, `place.${hold.point}`, k);
+    if (hold.link) {
+      const angle = numbers.get(`angle.${hold.link}`)?.[k] ?? 0;
+      return this.place(view.px(...from), turned(angle));
+    }
+    if (hold.guide) {
+      const [x, y] = pairAt(numbers, `guide.${hold.guide}`, k);
+      return this.place(view.px(...from), turned(Math.atan2(y, x)));
+    }
+    const to = pairAt(numbers, `place.${hold.to}`, k);
+    const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+    const longer = Math.hypot(dx, dy) / (hold.length || 1);
+    this.place(view.px(...from), `${turned(Math.atan2(dy, dx))} scale(${longer.toFixed(4)} 1)`);
+  }
+
+  private place([x, y]: Pair, more: string): void {
+    this.element.setAttribute("transform", `translate(${x.toFixed(2)} ${y.toFixed(2)})${more}`);
+  }
+}
+
+/** What has to be the same for elements to be used again. */
+export function build(scene: Scene): string {
+  const drawn = scene.signs.map(({ link, hold, shapes }) => [
+    link,
+    hold && [hold.point, hold.link, hold.guide, hold.to],
+    runs(shapes).map(([first]) => first?.[0]),
+  ]);
+  return JSON.stringify(drawn);
+}
+
+/** Neighbours that are drawn alike: lines of a role together, circles each by itself. */
+function runs(shapes: Shape[]): Shape[][] {
+  const found: Shape[][] = [];
+  for (const shape of shapes) {
+    const last = found[found.length - 1];
+    const alike = last && last[0]?.[0] === shape[0] && !(shape[2] + shape[3]);
+    if (alike) last.push(shape);
+    else found.push([shape]);
+  }
+  return found;
+}
+
+function path(scale: number): (shape: Shape) => string {
+  return ([, closed, , , corners]) => {
+    let d = "";
+    for (let i = 0; i < corners.length; i += 4) {
+      const [x, y] = corner(corners, i, scale);
+      d += `${i ? "L" : "M"}${x.toFixed(2)} ${y.toFixed(2)}`;
+    }
+    return closed ? `${d}Z` : d;
+  };
+}
+
+function corner(corners: number[], i: number, scale: number): Pair {
+  const [x, y, dx, dy] = corners.slice(i, i + 4) as [number, number, number, number];
+  return [x * scale + dx, -y * scale - dy];
+}
+
+function pairAt(numbers: Numbers, name: string, k: number): Pair {
+  const row = numbers.get(name);
+  return row ? [row[2 * k] as number, row[2 * k + 1] as number] : [0, 0];
+}
+
+function turned(angle: number): string {
+  return `rotate(${((-angle * 180) / Math.PI).toFixed(3)})`;
+}
