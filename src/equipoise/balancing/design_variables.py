@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.program import Affine, Program, stacked
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector

@@ -22,6 +22,7 @@ import numpy as np
 from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
 from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.program import Affine, Block, Program, stacked
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
 
