@@ -48,6 +48,7 @@ def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any],
 
 
 def _report(found: Solved, file: str, language: str) -> str:
+    from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
     if language not in LANGUAGES:

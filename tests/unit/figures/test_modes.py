@@ -6,7 +6,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from equipoise.vibration.modes import Mode
 
 import equipoise as eq
 from equipoise.figures import Picture
@@ -14,6 +13,7 @@ from equipoise.figures.pictures import pictures_of
 from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
 from equipoise.symbols.scene import Scene
+from equipoise.vibration.mode_shapes import Mode
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (
     MACHINES,
