@@ -116,6 +116,11 @@ class Outputs:
         return self._found[name]
 
     @property
+    def names(self) -> list[str]:
+        """Of all of them."""
+        return list(self._found)
+
+    @property
     def arrays(self) -> list[Output]:
         """Those that stand among the arrays; the size of a vector is told by its components."""
         return [one for one in self if one.declared.array]
