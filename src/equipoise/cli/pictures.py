@@ -91,7 +91,7 @@ def plot(
     only
         Draw this picture, by its name, and no other.  May be repeated.
     output
-        Draw this output over crank angle, such as "points.P.vx", and nothing else.  May be repeated.
+        Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
     at
         Crank angles at which the linkage is drawn, such as "0 deg, 45 deg".
     speed
