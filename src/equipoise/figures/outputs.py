@@ -1,8 +1,9 @@
-"""Charts of whatever outputs are declared, over crank angle: motion of links, points and sliders."""
+"""Charts of whatever outputs are declared, over crank angle, and of all motion that there is."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from equipoise.figures.analysis import ALL, angle_axis, over, title
@@ -35,19 +36,13 @@ def outputs_chart(
     """
     ones = [analysis.outputs[one] for one in names]
     x = angle_axis(analysis)
-    panels = tuple(
-        compared(
-            x,
-            "",
-            one.dimension,
-            {ALL: over(analysis, one.values)},
-            angles=len(ones) < 4,
-            title=one.label(),
-        )
-        for one in ones
-    )
+    panels = []
+    for one in ones:
+        drawn = {ALL: over(analysis, one.values)}
+        panel = compared(x, "", one.dimension, drawn, angles=len(ones) < 4)
+        panels.append(replace(panel, title=replace(panel.y, label=one.label()).text))
     told = what or say(", ").join(one.label() for one in ones)
-    return Chart(name, analysis.machine.title, title(analysis, told), panels)
+    return Chart(name, analysis.machine.title, title(analysis, told), tuple(panels))
 
 
 def kinematics(analysis: Analysis) -> Iterator[Chart]:
