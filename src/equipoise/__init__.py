@@ -75,7 +75,7 @@ _HOMES = {
     "Row": "mechanism.support",
     "Sampling": "studies.design_space",
     "Searched": "studies.search",
-    "Section": "handheld.shaft",
+    "Section": "handheld.section",
     "Segment": "handheld.shaft",
     "Shaft": "handheld.shaft",
     "Slider": "mechanism.model",
@@ -99,7 +99,7 @@ _HOMES = {
     "ToolSweep": "handheld.sweep",
     "Transient": "vibration.transient",
     "Transmissions": "handheld.transmission",
-    "Tube": "handheld.shaft",
+    "Tube": "handheld.section",
     "Uniform": "studies.design_space",
     "Vary": "studies.design_space",
     "Weight": "mechanism.balance",
@@ -116,7 +116,6 @@ _HOMES = {
     "daily_exposure": "exposure.daily",
     "design_tool": "handheld.design",
     "dumps": "schema.models",
-    "dumps_tool": "schema.tools",
     "examples": "schema.models",
     "export": "studies.table_files",
     "expose_tool": "handheld.exposed",
@@ -132,9 +131,9 @@ _HOMES = {
     "least_moments": "balancing.least_norm",
     "load": "schema.models",
     "load_study": "schema.studies",
-    "load_tool": "schema.tools",
+    "load_tool": "schema.models",
     "loads": "schema.models",
-    "loads_tool": "schema.tools",
+    "loads_tool": "schema.models",
     "machine_of": "schema.study_units",
     "move": "mechanism.motion",
     "open_store": "studies.store",
@@ -147,7 +146,6 @@ _HOMES = {
     "resume": "schema.study_units",
     "run_study": "studies.run",
     "save": "schema.models",
-    "save_tool": "schema.tools",
     "search_designs": "studies.search",
     "sensitivities": "balancing.sensitivity",
     "simulate_decay": "measured.record",
@@ -212,10 +210,10 @@ if TYPE_CHECKING:
     from equipoise.handheld.modes import vibrate_tool as vibrate_tool
     from equipoise.handheld.response import ToolResponse as ToolResponse
     from equipoise.handheld.response import respond_tool as respond_tool
-    from equipoise.handheld.shaft import Section as Section
+    from equipoise.handheld.section import Section as Section
+    from equipoise.handheld.section import Tube as Tube
     from equipoise.handheld.shaft import Segment as Segment
     from equipoise.handheld.shaft import Shaft as Shaft
-    from equipoise.handheld.shaft import Tube as Tube
     from equipoise.handheld.studies import vary_tool as vary_tool
     from equipoise.handheld.sweep import ToolSweep as ToolSweep
     from equipoise.handheld.sweep import sweep_tool as sweep_tool
@@ -301,7 +299,9 @@ if TYPE_CHECKING:
     from equipoise.schema.models import examples as examples
     from equipoise.schema.models import json_schema as json_schema
     from equipoise.schema.models import load as load
+    from equipoise.schema.models import load_tool as load_tool
     from equipoise.schema.models import loads as loads
+    from equipoise.schema.models import loads_tool as loads_tool
     from equipoise.schema.models import save as save
     from equipoise.schema.records import read_accelerations as read_accelerations
     from equipoise.schema.records import read_record as read_record
@@ -309,10 +309,6 @@ if TYPE_CHECKING:
     from equipoise.schema.study_units import machine_of as machine_of
     from equipoise.schema.study_units import resume as resume
     from equipoise.schema.template import Template as Template
-    from equipoise.schema.tools import dumps_tool as dumps_tool
-    from equipoise.schema.tools import load_tool as load_tool
-    from equipoise.schema.tools import loads_tool as loads_tool
-    from equipoise.schema.tools import save_tool as save_tool
     from equipoise.signals import Figures as Figures
     from equipoise.signals import Periodic as Periodic
     from equipoise.signals import harmonics as harmonics

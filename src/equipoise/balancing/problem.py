@@ -221,7 +221,7 @@ class Problem:
             return
         masses, units = self.added_masses(places)
         if len(masses):
-            slope = Affine.of([], np.zeros((1, 0)), 1.0)
+            slope = Affine.fixed(1.0)
             program.nonnegative(Affine.of(masses, -units, self.plan.added_mass), ADDED, slope)
 
     def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
@@ -244,7 +244,7 @@ class Problem:
     def _limit(self, program: Program, numbers: Array, limit: Limit) -> None:
         scale = self.scale(limit.objective)
         at_most = limit.ratio if limit.at_most is None else limit.at_most / scale
-        bound = Affine.of([], np.zeros((1, 0)), at_most)
+        bound = Affine.fixed(at_most)
         for signal in self.signals[limit.name]:
             bound_measure(program, numbers, signal, limit.objective.measure, bound, limit.name)
 

@@ -26,10 +26,9 @@ from equipoise.cli.progress import counted
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
+    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
 
 app = App(name="balance")
@@ -89,16 +88,16 @@ def balance(
 
 
 def _machine(file: str, speed: float | None) -> Machine:
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     return machine if speed is None else machine.with_drive(speed=speed)
 
 
-def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
-    from equipoise.plotting.balancing import drawings
+def _drawings(found: Balanced | Front) -> Mapping[str, Picture]:
+    from equipoise.figures.pictures import balance_pictures
 
-    return drawings(found)
+    return balance_pictures(found)
 
 
 def _save(found: Balanced, out: str) -> None:

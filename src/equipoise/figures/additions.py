@@ -11,9 +11,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.motion import Motion, move
-from equipoise.plotting.style import short, shown
+from equipoise.results.charts import shown
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 

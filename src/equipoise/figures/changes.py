@@ -24,8 +24,20 @@ from equipoise.figures.drawing import (
 from equipoise.figures.labels import Labels
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
-from equipoise.plotting.style import INK, LINES, MAIN, STRESS, blank, heading, short, shown
-from equipoise.plotting.vibration.panels import LEFT, RIGHT, legend, place
+from equipoise.plotting.style import (
+    INK,
+    LEFT,
+    LINES,
+    MAIN,
+    RIGHT,
+    STRESS,
+    blank,
+    heading,
+    legend,
+    place,
+    short,
+    shown,
+)
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import coils, zigzag
 

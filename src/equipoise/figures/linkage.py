@@ -28,17 +28,21 @@ from equipoise.i18n import say
 from equipoise.mechanism.motion import move
 from equipoise.plotting.style import (
     INK,
+    LEFT,
     LINES,
     MAIN,
     NORMAL,
+    RIGHT,
     SMALL,
+    WIDTH,
     blank,
     heading,
+    legend,
+    place,
     short,
     shown,
     styled,
 )
-from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, legend, place
 from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import LIGHT
 from equipoise.symbols.scene import Scene

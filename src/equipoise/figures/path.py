@@ -10,11 +10,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from equipoise.figures.crank import angle_step
 from equipoise.figures.drawing import UNIT, Drawn, arrow, draw_machine, draw_still, keep_clear
 from equipoise.figures.labels import Labels
 from equipoise.figures.paths import BOTTOM, CM, GAP, LEFT, RIGHT, TOP, Mark, Paths, panels
 from equipoise.i18n import say
-from equipoise.plotting.crank import angle_step
 from equipoise.plotting.style import (
     FAINT,
     INK,

@@ -58,6 +58,7 @@ LOOKS: dict[str, Look] = {
     "ink": Look(INK),
     "lines": Look(LINES, 0.9),
     "strong": Look(INK, 1.8),
+    "dashed ink": Look(INK, 1.2, (4.0, 2.0)),
     "stress": Look(STRESS, 1.6, order=3.4),
     "faint": Look(FAINT, 0.9, order=2),
     "thin": Look(MAIN, 1.0),
@@ -152,7 +153,10 @@ LOOKS |= {
 
 
 def look_of(role: str, dashed: bool = False) -> Look:
-    """The look of a role; dashed ones have no signs."""
+    """The look of a role, ``meeting 5.5`` of so many points; dashed ones have no signs."""
+    name, _, size = role.rpartition(" ")
+    if name == "meeting":
+        return replace(LOOKS[name], size=float(size))
     look = LOOKS[role]
     return replace(look, dashes=MEDIUM, sign="") if dashed else look
 

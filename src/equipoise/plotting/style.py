@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from functools import cache
 from io import BytesIO
@@ -13,6 +13,7 @@ from typing import Any, Literal
 import matplotlib
 import numpy as np
 from matplotlib import font_manager
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
@@ -224,3 +225,31 @@ def free_name(name: str, taken: Iterable[str]) -> str:
     while (f"{name}-{number}" if number > 1 else name).lower() in map(str.lower, taken):
         number += 1
     return f"{name}-{number}" if number > 1 else name
+
+
+WIDTH, LEFT, RIGHT = 7.2, 0.86, 0.2
+"""Inches: width of a picture, and its margins."""
+
+
+def place(figure: Figure, left: float, bottom: float, width: float, height: float) -> Axes:
+    """Axes at a place of the picture, all in inches."""
+    across, up = figure.get_size_inches()
+    axes = figure.add_axes((left / across, bottom / up, width / across, height / up))
+    # At the left stand the titles.
+    axes.yaxis.set_offset_position("right")
+    return axes
+
+
+def legend(figure: Figure, handles: Sequence[Any]) -> None:
+    """What the lines are, below the heading at the left."""
+    if not handles:
+        return
+    width, height = figure.get_size_inches()
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(LEFT / width, 1 - 0.49 / height),
+        ncols=len(handles),
+        borderaxespad=0,
+        borderpad=0,
+    )

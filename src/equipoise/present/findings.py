@@ -241,16 +241,15 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.schema.models import loads
+    from equipoise.schema.models import loads_linkage, loads_tool
     from equipoise.schema.opening import kind_of_text, opened
-    from equipoise.schema.tools import loads_tool
 
     file = opened(path_or_name)
     name = os.path.basename(os.fspath(path_or_name))
     if kind_of_text(file.text) == "tool":
         tool = loads_tool(file.text, file.source, file.folder)
         return ToolFindings(_at_speed(tool, speed), file.text, name)
-    machine = loads(file.text, file.source, file.folder)
+    machine = loads_linkage(file.text, file.source, file.folder)
     if speed is not None:
         machine = machine.with_drive(speed=speed)
     return Findings(machine, file.text, name, angles)

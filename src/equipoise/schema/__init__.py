@@ -7,11 +7,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from equipoise.keys import SCHEMA_VERSION
+
 if TYPE_CHECKING:
     from equipoise.schema.models import dumps, examples, json_schema, load, loads, save
-
-SCHEMA_VERSION = 1
-"""Version of the model file that is read and written."""
 
 
 __all__ = ["SCHEMA_VERSION", "dumps", "examples", "json_schema", "load", "loads", "save"]

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from equipoise.i18n import say
+from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.naming import objective_named
@@ -168,7 +168,7 @@ def searched_blocks(
     yield from _limits(found.study.outputs, units)
     yield _front(found, units, own)
     if not found.stood_still:
-        yield Notes((say("it may get better yet; give more generations"),))
+        yield Notes((Note(to_say("it may get better yet; give more generations")),))
 
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
@@ -226,7 +226,7 @@ class Summary:
     @property
     def limited(self) -> bool:
         """Whether there are limits to keep."""
-        return any((one.at_least, one.at_most) != (None, None) for one in self.outputs)
+        return any(one.limited for one in self.outputs)
 
 
 def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") -> Iterator[Block]:
@@ -449,14 +449,14 @@ def advice(found: Tolerances) -> str:
     )
 
 
-def _outside(found: Tolerances) -> Iterator[str]:
+def _outside(found: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
     for name, one in found.scatters.items():
         if _beyond(one):
-            yield say(
-                "the model itself does not keep the limits of {name}; change its numbers first",
-                name=name,
+            template = to_say(
+                "the model itself does not keep the limits of {name}; change its numbers first"
             )
+            yield Note(template, name=name)
 
 
 def _beyond(one: Scatter) -> bool:

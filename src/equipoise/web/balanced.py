@@ -206,7 +206,7 @@ def _proof(found: Balanced, replaced: bool) -> str:
     if found.gap is None:
         return f"Found among {found.method}; that nothing better exists is not proved of phases."
     gap = max(found.gap, EXACT)
-    proved = f"proved {found.scope}".strip()
+    proved = f"proved {' and '.join(map(str, found.scope))}".strip()
     of = "without the counterweights that were taken off" if replaced else "before"
     return (
         f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "

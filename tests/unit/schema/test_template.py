@@ -19,10 +19,10 @@ from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
 from equipoise.mechanism.model import Machine
 from equipoise.quantities.units import KINDS
+from equipoise.schema.finding import is_whole
 from equipoise.schema.models import examples
 from equipoise.schema.numbers import OF_UNIT
-from equipoise.schema.points import from_polar
-from equipoise.schema.schema_keys import is_whole
+from equipoise.schema.reading import from_polar
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL

@@ -11,9 +11,8 @@ from matplotlib.figure import Figure
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import AXES
-from equipoise.plotting.style import NORMAL, blank, fit, heading, shown
+from equipoise.plotting.style import LEFT, NORMAL, RIGHT, WIDTH, blank, fit, heading, place, shown
 from equipoise.plotting.vibration.body import Shape, View
-from equipoise.plotting.vibration.panels import LEFT, RIGHT, WIDTH, place
 from equipoise.plotting.vibration.view import draw_view, keys_of, settle, write_keys
 
 if TYPE_CHECKING:
