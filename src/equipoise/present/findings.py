@@ -112,9 +112,9 @@ class Findings(_Found):
         """Free vibration on the support."""
         if self.machine.support is None:
             return None
-        from equipoise.vibration.free import vibrate_freely
+        from equipoise.vibration.free import modes
 
-        return self._tried("natural frequencies", lambda: vibrate_freely(self.machine))
+        return self._tried("natural frequencies", lambda: modes(self.machine))
 
     @cached_property
     def plan(self) -> Balance | None:

@@ -46,12 +46,12 @@ def planted(name: str, soil: Soil, **more: Any) -> eq.Machine:
     return eq.load(name).with_planting(soil=soil, **more)
 
 
-def below(motion: eq.Motion) -> Any:
+def below(motion: eq.mechanism.Motion) -> Any:
     """Depth of the tip, m."""
     return surface_of(motion.machine) - motion.points["P"].y
 
 
-def over_ground(motion: eq.Motion) -> Any:
+def over_ground(motion: eq.mechanism.Motion) -> Any:
     planting = motion.machine.planting
     assert planting is not None
     return motion.points["P"].velocity + planting.forward(motion.speed)
@@ -236,10 +236,10 @@ def test_at_most_200() -> None:
 
 def test_springs_leave_the_motion_as_it_is() -> None:
     """Nothing is solved again, and the frame's point is in use."""
-    linkage = eq.assemble(FOUR)
-    assert eq.assemble(sprung()).groups is linkage.groups
+    linkage = eq.mechanism.assemble(FOUR)
+    assert eq.mechanism.assemble(sprung()).groups is linkage.groups
     assert list(remarks(linkage)) == ["frame.points.S is not used by any joint or spring"]
-    assert not list(remarks(eq.assemble(sprung())))
+    assert not list(remarks(eq.mechanism.assemble(sprung())))
 
 
 # -- force -----------------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ def test_every_number_of_a_file(name: str) -> None:
     """Put back as it is it changes nothing; everything goes to another machine and back."""
     template = example(name)
     base = template.base()
-    assert base == (eq.load_tool if template.kind == "tool" else eq.load)(name)
+    assert base == (eq.schema.load_tool if template.kind == "tool" else eq.load)(name)
     numbers = template.numbers()
     assert len(numbers) > 30
     for path, number in numbers.items():
@@ -368,7 +368,7 @@ def test_tables_go_along(tmp_path: Path) -> None:
 
 def test_tables_of_python_need_no_names() -> None:
     """Two of the same name, and one without, stay what they are."""
-    tables = [eq.LoadTable((0.0, 1.0), ((0.1, n), (0.0, 0.0)), name)
+    tables = [eq.mechanism.LoadTable((0.0, 1.0), ((0.1, n), (0.0, 0.0)), name)
               for n, name in enumerate(("a.csv", "a.csv", ""))]  # fmt: skip
     loads = tuple(eq.Load("coupler", "C", table=table) for table in tables)
     machine = eq.loads(FOUR_BAR)
@@ -387,7 +387,7 @@ def test_tools_with_all_that_they_name(tmp_path: Path) -> None:
     (tmp_path / "hand.csv").write_text(impedance, encoding="utf-8")
     (tmp_path / "tool.toml").write_text(text, encoding="utf-8")
     template = Template.load(tmp_path / "tool.toml")
-    base = eq.load_tool(tmp_path / "tool.toml")
+    base = eq.schema.load_tool(tmp_path / "tool.toml")
     texts = template.texts()
     for name in ("engine.toml", "hand.csv", "tool.toml"):
         os.remove(tmp_path / name)
