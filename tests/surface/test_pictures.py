@@ -33,6 +33,5 @@ def test_the_linkage_moves_as_it_would_now() -> None:
 
 
 def test_screenshots_are_of_what_there_is() -> None:
-    assert json.loads((PICTURES / "sources.json").read_text(encoding="utf-8")) == MAKE["sources"](), (
-        STALE
-    )
+    kept = json.loads((PICTURES / "sources.json").read_text(encoding="utf-8"))
+    assert kept == MAKE["sources"](), STALE
