@@ -7,11 +7,10 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from json import dumps as quoted
-from math import atan2, cos, hypot, isfinite, pi, sin
+from math import isfinite
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
@@ -38,30 +37,14 @@ from equipoise.keys import (
     Whole,
     all_keys,
     choice,
-    declared,
-    key,
     keys_of,
 )
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, described, format_exact, parse, rounded
+from equipoise.quantities import KINDS, described, parse
+from equipoise.schema.places import Place, Polar, written_place
 
-Place = tuple[str | int, ...]
-"""Keys, and numbers in lists from 0."""
 WRONG = object()
 """Instead of a value that could not be read."""
-LONGEST_KEY = 60
-
-
-def written_key(name: str) -> str:
-    """Return a key as it stands in TOML, cut where it is endless."""
-    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
-
-
-def written_place(place: Iterable[str | int]) -> str:
-    """Dotted path with numbers from 1, as the machine's own checks write it."""
-    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
-    return text.removeprefix(".")
 
 
 @dataclass
@@ -300,18 +283,6 @@ _PLACE = '["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]'
 _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
 
 
-@declared
-class Polar(Frozen):
-    """A point by its distance and direction from the origin."""
-
-    distance: float = key("length", "from the origin", example="88 mm")
-    direction: float = key("angle", "from the x axis, positive counterclockwise", example="-83 deg")
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> tuple[float, float]:
-        return from_polar(given["distance"], given["direction"])
-
-
 def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, dict):
         count = len(context.problems)
@@ -326,36 +297,6 @@ def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
         return _listing(_PAIR, given, place, context)
     values = _listing(Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values
-
-
-def from_polar(distance: float, direction: float) -> tuple[float, float]:
-    """Return x and y (m) of a point by its distance (m) and direction (rad) from the origin."""
-    return distance * _clean(cos(direction)), distance * _clean(sin(direction))
-
-
-def _clean(ratio: float) -> float:
-    # The cosine of 90 degrees is 6e-17 in floats; in a file it means 0.
-    return 0.0 if abs(ratio) < 4e-16 else ratio
-
-
-def written_point(point: tuple[float, float]) -> list[str] | dict[str, str]:
-    """Write a point such that reading it gives exactly the same floats, in the shorter form."""
-    components = [format_exact(component, "length") for component in point]
-    if max(map(len, components)) < 20:
-        return components
-    distance = rounded(hypot(*point), "mm", 9)
-    for turn in (0.0, 2 * pi):
-        direction = rounded(atan2(point[1], point[0]) + turn, "deg", 9)
-        if _reads_as(point, distance, direction):
-            return {"distance": distance, "direction": direction}
-    return components
-
-
-def _reads_as(point: tuple[float, float], distance: str, direction: str) -> bool:
-    try:
-        return from_polar(parse(distance, "length"), parse(direction, "angle")) == point
-    except UsageError:  # such as 1e-40 deg, where one component is tiny beside the other
-        return False
 
 
 _VECTOR = 'an angle such as "90 deg", or three plain numbers such as [0, 1, 0]'

@@ -26,7 +26,7 @@ from equipoise.schema.given_units import unit_in
 from equipoise.schema.models import machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
-from equipoise.schema.reading import Place
+from equipoise.schema.places import Place
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
