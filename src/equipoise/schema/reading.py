@@ -8,7 +8,6 @@ the inside out, with what lies in files beside; what does not go together is tol
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from json import dumps as quoted
 from math import isfinite
 from typing import Any
@@ -40,34 +39,9 @@ from equipoise.keys import (
     keys_of,
 )
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, described, parse
+from equipoise.quantities import KINDS, parse
+from equipoise.schema.objects import WRONG, Context, NamedFile, Values, made
 from equipoise.schema.places import Place, Polar, written_place
-
-WRONG = object()
-"""Instead of a value that could not be read."""
-
-
-@dataclass
-class Context:
-    """What reading needs besides the content.
-
-    beside : reads what lies in a file of its own, by its sort and the file's name.
-    makers : make the objects of some classes otherwise than by `Frozen.from_table`.
-    problems : what has been found wrong, with its place.
-    """
-
-    beside: Callable[[str, str], Any] | None = None
-    makers: Mapping[type[Frozen], Callable[[dict[str, Any]], Any]] = field(default_factory=dict)
-    problems: list[tuple[Place, str]] = field(default_factory=list)
-
-    def wrong(self, place: Place, given: Any, right: str) -> Any:
-        """Note that a value is none that can be read."""
-        self.problems.append((place, f"got {described(given)}; {right}"))
-        return WRONG
-
-    def say(self, place: Place, sentence: str) -> Any:
-        self.problems.append((place, sentence))
-        return WRONG
 
 
 def read_table(
@@ -87,64 +61,6 @@ def read_table(
     return made(found, context)
 
 
-# -- second step: objects --------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Object:
-    """Values of a table, of which an object is to be made."""
-
-    of: type[Frozen]
-    place: Place
-    given: dict[str, Any]
-
-
-@dataclass(frozen=True)
-class _Beside:
-    """What lies in a file that is named at a place."""
-
-    sort: str
-    place: Place
-    file: str
-
-
-def made(value: Any, context: Context) -> Any:
-    """The objects of what has been read."""
-    if isinstance(value, _Object):
-        return _object(value, context)
-    if isinstance(value, _Beside):
-        return _read_beside(value, context)
-    if isinstance(value, dict):
-        return {name: made(item, context) for name, item in value.items()}
-    if isinstance(value, tuple) and value and isinstance(value[0], _Object | _Beside):
-        return tuple(made(item, context) for item in value)
-    return value
-
-
-def _object(found: _Object, context: Context) -> Any:
-    given = {name: made(value, context) for name, value in found.given.items()}
-    for name, one in keys_of(found.of).items():
-        if isinstance(one.kind, File) and one.kind.named and name in given:
-            given[one.kind.named] = found.given[name].file
-    try:
-        return context.makers.get(found.of, found.of.from_table)(given)
-    except ModelError as error:
-        within = written_place(found.place)
-        inner = "." if within and error.where and error.where[0] != "[" else ""
-        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
-
-
-def _read_beside(named: _Beside, context: Context) -> Any:
-    assert context.beside is not None
-    try:
-        return context.beside(named.sort, named.file)
-    except ModelError as error:
-        raise ModelError(written_place(named.place), error.what) from error
-
-
-# -- first step: tables ----------------------------------------------------------------------------
-
-
 def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, "give a table")
@@ -156,7 +72,7 @@ def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
     for name, one in known.items():
         if one.required and name not in given:
             return context.say((*place, name), f"missing; add {_example(one)}")
-    return _Object(of, place, _values(of, given, place, context))
+    return Values(of, place, _values(of, given, place, context))
 
 
 def _values(
@@ -167,7 +83,7 @@ def _values(
     for name, one in keys_of(of).items():
         kind, at = one.kind, one.field or name
         if isinstance(kind, Table) and kind.flat:
-            values[at] = _Object(kind.type, place, _values(kind.type, given, place, context))
+            values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
             values[at] = READERS[type(kind)](kind, given[name], (*place, name), context)
     return values
@@ -255,7 +171,7 @@ def _told(kind: Told, given: Any, place: Place, context: Context) -> Any:
 def _file(kind: File, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, str):
         return context.wrong(place, given, "give text in quotes")
-    return _Beside(kind.sort, place, given)
+    return NamedFile(kind.sort, place, given)
 
 
 # -- several values --------------------------------------------------------------------------------

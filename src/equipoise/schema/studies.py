@@ -12,8 +12,9 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.problems import described
 from equipoise.schema.files import printable
+from equipoise.schema.objects import Context
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.reading import read_table
 from equipoise.schema.study_keys import (
     SPREADS,
     AccuracyTable,

@@ -21,8 +21,15 @@ from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema.files import printable
-from equipoise.schema.finding import Found, all_numbers, find, replaced, with_changes, written_place
-from equipoise.schema.given_units import unit_in
+from equipoise.schema.finding import (
+    Found,
+    all_numbers,
+    find,
+    replaced,
+    unit_in,
+    with_changes,
+    written_place,
+)
 from equipoise.schema.models import machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
