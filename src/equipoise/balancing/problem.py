@@ -16,7 +16,8 @@ from equipoise.balancing.design_variables import (
     Square,
     with_parameters,
 )
-from equipoise.balancing.effects import Effects, Near, supports_more
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.gauges import Near, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
 from equipoise.balancing.multi_row import signals_of
 from equipoise.balancing.program import Affine, Program

@@ -148,7 +148,7 @@ def print_tool(tool: Tool, units: Units, *answers: Iterable[Any]) -> None:
 
     show_blocks(tool.title, summary_blocks(tool), units=units)
     for blocks in answers:
-        show_blocks("", blocks, units=units)
+        show_blocks(None, blocks, units=units)
 
 
 def pictures_of(found: Any) -> Mapping[str, Picture]:
