@@ -20,7 +20,7 @@ def text(time: Any, values: Any, header: str = "time [s],displacement [mm]") -> 
 
 
 TIME = np.linspace(0.0, 2.6, 800)
-RECORD = eq.simulate_decay(
+RECORD = eq.measured.simulate_decay(
     TIME,
     natural_frequency=12.4,
     damping_ratio=0.03,
@@ -62,19 +62,23 @@ def test_tables() -> None:
     values = [float(cell) for cell in row.groups()]
     assert values[1] < values[0] < values[2]
     assert values[4] < 0.03 < values[5]
-    assert re.search(r"^Coulomb friction over stiffness mm +0\.\d+", shown, re.M)
+    assert re.search(r"^Coulomb friction over stiffness, mm +0\.\d+", shown, re.M)
     for absent in ("mass", "nan", "inertia"):
         assert absent not in shown
 
 
 def test_tables_with_a_stiffness() -> None:
     shown = succeeded(equipoise("decay", "decay.csv", "--stiffness", "2 N/mm"))
-    for name in ("mass kg", "viscous damping N s/m", "Coulomb friction N"):
+    for name in ("mass, kg", "viscous damping, N s/m", "Coulomb friction, N"):
         assert re.search(rf"^{name} +\S+ +\S+ to \S+", shown, re.M)
     shown = succeeded(equipoise("decay", "angle.csv", "--stiffness", "2 N m/rad"))
-    for name in ("moment of inertia kg m^2", "viscous damping N m s/rad", "Coulomb friction N m"):
+    for name in (
+        "moment of inertia, kg m^2",
+        "viscous damping, N m s/rad",
+        "Coulomb friction, N m",
+    ):
         assert re.search(rf"^{re.escape(name)} +\S+ +\S+ to \S+", shown, re.M)
-    assert "over stiffness deg" in shown
+    assert "over stiffness, deg" in shown
 
 
 def test_json() -> None:
@@ -134,7 +138,9 @@ def test_three_half_swings_have_no_interval_by_the_line() -> None:
 
 def test_notes_are_printed() -> None:
     time = np.linspace(0.0, 9.0, 3000)
-    record = eq.simulate_decay(time, natural_frequency=12.4, damping_ratio=0.04, noise=0.01)
+    record = eq.measured.simulate_decay(
+        time, natural_frequency=12.4, damping_ratio=0.04, noise=0.01
+    )
     Path("long.csv").write_text(text(time, record.displacement), encoding="utf-8")
     shown = succeeded(equipoise("decay", "long.csv"))
     assert "\nnote: Coulomb friction cannot be told from noise" in shown

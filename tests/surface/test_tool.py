@@ -63,13 +63,13 @@ def test_the_paper_as_json() -> None:
 
 
 def test_json_is_what_python_has() -> None:
-    tool = eq.load_tool("brush-cutter")
+    tool = eq.schema.load_tool("brush-cutter")
     found = read("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
     speeds = np.array(found["speed"])
-    exposure = eq.expose_tool(tool, speeds)
+    exposure = eq.handheld.expose_tool(tool, speeds)
     assert found["a_hv"] == pytest.approx(exposure.a_hv.tolist())
     assert found["a8"] == pytest.approx(exposure.a8)
-    swept = eq.sweep_tool(tool, speeds)
+    swept = eq.handheld.sweep_tool(tool, speeds)
     handle = found["stations"]["front-handle"]
     forces = swept.force("front-handle")["hand"]
     assert handle["forces"]["hand"] == pytest.approx(forces.tolist())
@@ -94,7 +94,7 @@ def test_two_planes_are_told_apart() -> None:
 def test_other_places_and_units() -> None:
     words = ("tool", "nagamine-irie", "--respond", "6000 rpm:8000 rpm", "--speeds", "20")
     shown = succeeded(equipoise(*words, "--at", "300 mm, 1.2 m", "--units", "um, rad/s"))
-    header = re.search(r"^ +at um +rad/s +um.*$", shown, re.MULTILINE)
+    header = re.search(r"^ +um +rad/s +um.*$", shown, re.MULTILINE)
     assert header
     places = re.findall(r"^ +(300000|1\.200e\+06) ", shown, re.MULTILINE)
     assert places == ["300000", "1.200e+06"]
@@ -124,13 +124,13 @@ def test_variation() -> None:
     assert first == pytest.approx((1.650, 3.105, 4.326, 6.169, 9.359), abs=5e-4)
     assert last == pytest.approx((1.497, 2.631, 4.364, 6.221, 9.387), abs=5e-4)
     shown = succeeded(equipoise("tool", *words))
-    assert "Natural frequencies against harness position; N in 1/min" in shown
+    assert "Natural frequencies against position of harness" in shown and "1/min" in shown
 
 
 def test_sensitivities_are_those_of_python() -> None:
     found = read("sensitivities", "pole-saw", "--speeds", "5000 rpm : 6000 rpm")
     speeds = np.linspace(5000 * RPM, 6000 * RPM, 201)
-    slopes = eq.tool_sensitivities(eq.load_tool("pole-saw"), speeds)
+    slopes = eq.handheld.tool_sensitivities(eq.schema.load_tool("pole-saw"), speeds)
     told = {(s, k): v for s, part in found["sensitivities"].items() for k, v in part.items()}
     assert told.keys() == slopes.keys()
     assert list(told.values()) == pytest.approx(list(slopes.values()))
@@ -170,12 +170,12 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     assert result.err == "wrote better.toml; next: equipoise tool better.toml\n"
     assert {path.name for path in folder.iterdir()} == {"tool.toml", "better.toml"}
     place = found["variables"]["harness position"]
-    better = eq.load_tool("better.toml")
+    better = eq.schema.load_tool("better.toml")
     assert better.station("harness").position == pytest.approx(place["after"], rel=1e-12)
     measure = found["figures"]["a_hv of the worst hand, RMS over the band"]
     assert measure["after"] < measure["before"]
     speeds = np.array(found["speed"])
-    a_hv = eq.expose_tool(better, speeds).a_hv
+    a_hv = eq.handheld.expose_tool(better, speeds).a_hv
     assert a_hv.tolist() == pytest.approx(found["a_hv_after"])
     weights = np.ones(len(speeds))
     weights[[0, -1]] = 0.5
@@ -190,11 +190,11 @@ def test_design_before_and_after() -> None:
     shown = succeeded(equipoise("tool", written(text + SMALL.replace('"harness"', '"belt"'))))
     assert "What to change" not in shown
     shown = succeeded(equipoise("tool", "design", "tool.toml"))
-    row = re.search(r"^belt position +mm +600\.0 +(\S+) +(\S+ %)(.*)$", shown, re.MULTILINE)
+    row = re.search(r"^position of belt, mm +600\.0 +(\S+) +(\S+ %)(.*)$", shown, re.MULTILINE)
     assert row
     assert 200 <= float(row[1]) <= 300
-    assert ("that it may be" in row[3]) == (row[1] in {"200.0", "300.0"})
-    assert "a_hv of the worst hand, RMS over the band  m/s^2" in shown
+    assert ("as it may be" in row[3]) == (row[1] in {"200.0", "300.0"})
+    assert "a_hv of the worst hand, RMS over the band, m/s^2" in shown
     assert re.search(r"^[1-8] of 8 searches from places", shown, re.MULTILINE)
 
 
@@ -222,7 +222,7 @@ def test_start_is_quick_and_alone() -> None:
     assert done.status == 0
     code = (
         "import sys; from equipoise.cli import run; run(['tool', 'nagamine-irie']); "
-        "print(*[m for m in ('matplotlib', 'scipy', 'rich') if m in sys.modules], file=sys.stderr)"
+        "print(*[m for m in ('matplotlib', 'scipy') if m in sys.modules], file=sys.stderr)"
     )
     alone = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert alone.stderr == "\n"

@@ -12,7 +12,7 @@ from typing import Any
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.schema.files import LARGEST, printable
-from equipoise.schema.models import examples, load, loads
+from equipoise.schema.models import examples, load_linkage, loads_linkage
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design
@@ -46,6 +46,7 @@ class Session:
     preview : what it is while something is dragged; each one starts from `found`.
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
+    wanted : outputs that the page draws besides those that it always does.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -55,6 +56,7 @@ class Session:
     before: Solved | None = None
     scale: Scale | None = None
     more_told: Solved | None = None
+    wanted: tuple[str, ...] = ()
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -115,6 +117,13 @@ class Session:
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
         self.before = solved(first) if message.flag("on", False) else None
+        yield from self._shown(message.seq)
+
+    def _outputs(self, message: Message) -> Iterator[Reply]:
+        names = message.names()
+        for name in names:
+            _ = self._current().analysis.outputs[name]
+        self.wanted = names
         yield from self._shown(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
@@ -209,7 +218,7 @@ class Session:
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         found, history = self.shown, self._past
-        content, data = state_of(found, self.before)
+        content, data = state_of(found, self.before, self.wanted)
         fields = [self.scale.told(one) for one in fields_of(found.design).values()]
         told = {"undo": history.undo, "redo": history.redo, "fields": fields}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)
@@ -245,7 +254,7 @@ def opened_example(name: str) -> Design:
     """A bundled machine."""
     if name not in titles():
         raise UsageError(f"there is no example of the name {printable(name)!r}")
-    return Design(name, load(name))
+    return Design(name, load_linkage(name))
 
 
 def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
@@ -253,7 +262,7 @@ def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
     file = opened(path_or_name)
     if kind_of_text(file.text) == "tool":
         raise ModelError("", TOOLS, file.source)
-    machine = loads(file.text, file.source, file.folder)
+    machine = loads_linkage(file.text, file.source, file.folder)
     return Design(printable(os.path.basename(path_or_name)), machine)
 
 
@@ -262,4 +271,4 @@ def opened_text(name: str, text: str) -> Design:
     shown = printable(name)
     if kind_of_text(text) == "tool":
         raise ModelError("", TOOLS, shown)
-    return Design(shown, loads(text.removeprefix("\ufeff"), shown))
+    return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))

@@ -13,8 +13,7 @@ from equipoise.figures.pictures import pictures_of
 from equipoise.plotting.vibration.body import SHOWN_SIZE, Shape
 from equipoise.plotting.vibration.modes import told
 from equipoise.symbols.scene import Scene
-from equipoise.vibration.free import vibrate_freely
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (
     MACHINES,
@@ -28,22 +27,22 @@ from unit.figures.vibration_samples import (
 
 @cache
 def modes_of(kind: str) -> dict[str, Picture]:
-    return pictures_of(vibrate_freely(MACHINES[kind]()))
+    return pictures_of(eq.modes(MACHINES[kind]()))
 
 
 def test_modes_are_told() -> None:
-    mode = vibrate_freely(rig()).modes[0]
+    mode = eq.modes(rig()).modes[0]
     shown = words(modes_of("rig")["mode-1"])
     assert f"{mode.cycles_per_second:.4g} Hz, {mode.natural_frequency:.4g} rad/s" in shown
     assert f"damping ratio {mode.damping_ratio:.4g}" in shown and "pitch 1 rad" in shown
-    kinds = [told(mode) for mode in vibrate_freely(falling()).modes]
+    kinds = [told(mode) for mode in eq.modes(falling()).modes]
     assert kinds[0] == "free, without a spring"
     assert "falls over" in kinds[2] and "overdamped" in kinds[3]
     assert told(Mode(complex(1e-15, 20.0), np.array([1 + 0j]))).endswith("damping ratio 0")
 
 
 def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
-    free = vibrate_freely(rig())
+    free = eq.modes(rig())
     shape = Shape(free, free.modes[0])
     pivot = np.array([[-1.34, 0.0, 0.0]])
     np.testing.assert_array_equal(shape.displaced(pivot, 1), pivot)
@@ -57,7 +56,7 @@ def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
 
 
 def test_gauges_swing_as_the_shape_says() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     for number, mode in enumerate(free.modes):
         shape = Shape(free, mode)
         scale = abs(shape.motion[1] / mode.shape[0])
@@ -87,7 +86,7 @@ def test_three_views_to_one_scale() -> None:
 
 
 def test_what_lies_to_the_right_is_below_from_above() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     shape = Shape(free, free.modes[0])
     rest = shape.outline("top")
     assert np.min(rest.imag) < -300 < 300 < np.max(rest.imag)
@@ -97,7 +96,7 @@ def test_what_lies_to_the_right_is_below_from_above() -> None:
 
 def test_each_of_six_ways() -> None:
     freedoms = ("surge", "heave", "sway", "roll", "yaw", "pitch")
-    free = vibrate_freely(eq.load("riding-transplanter"))
+    free = eq.modes(eq.load("riding-transplanter"))
     assert free.coordinates == freedoms and len(pictures_of(free)) == 6
 
 
@@ -108,5 +107,5 @@ def linkage_on_springs() -> eq.Machine:
 def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
     machine = eq.load("exudyn-slider-crank")
     low, high = Scene.of(eq.move(machine, 72)).box
-    axes = pictures_of(vibrate_freely(machine))["mode-1"].axes[0]
+    axes = pictures_of(eq.modes(machine))["mode-1"].axes[0]
     assert 0.1 < np.ptp(axes.get_xlim()) / 1e3 / abs(high - low) < 1

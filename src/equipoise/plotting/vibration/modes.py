@@ -17,7 +17,7 @@ from equipoise.plotting.vibration.view import draw_view, keys_of, settle, write_
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.modes import Mode
+    from equipoise.vibration.mode_shapes import Mode
 
 VIEWS: dict[View, str] = {
     "side": to_say("from the side"),
