@@ -21,7 +21,7 @@ from equipoise.handheld.studies import changed, determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel
-from equipoise.schema.tools import load_tool
+from equipoise.schema.models import load_tool
 from unit.figures.samples import words
 from unit.figures.test_pictures import check
 from unit.figures.tool_samples import SPEEDS, machine, pictures

@@ -17,7 +17,7 @@ from equipoise.results.charts import Chart, Curve
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import Resonance
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from equipoise.vibration.transient import from_rest
+from equipoise.vibration.transient import simulate
 from unit.figures.samples import words
 from unit.figures.vibration_samples import (
     RPM,
@@ -48,7 +48,7 @@ def test_names() -> None:
     assert {"spectrum-2", "mounts-2"} <= pictures("crowded").keys()
     machine = replace(eq.load("walking-transplanter"), support=None)
     assert list(response_charts(respond(machine, drive=True))) == ["drive"]
-    assert list(transient_charts(from_rest(machine, 0.3, drive=True, samples=40))) == ["speed"]
+    assert list(transient_charts(simulate(machine, 0.3, drive=True, samples=40))) == ["speed"]
     with pytest.raises(eq.EquipoiseError, match="no pictures of int"):
         pictures_of(3)
 
@@ -121,7 +121,7 @@ def test_drive_torque_and_crank_speed() -> None:
 
 def test_from_rest_against_time() -> None:
     machine = eq.load("walking-transplanter")
-    transient = from_rest(machine, 0.5, drive=True, samples=300)
+    transient = simulate(machine, 0.5, drive=True, samples=300)
     drawn = pictures("walking-transplanter")
     panels = drawn["rest gauges"].panels
     for panel, (name, read) in zip(panels, transient.gauges.items(), strict=True):
@@ -132,7 +132,7 @@ def test_from_rest_against_time() -> None:
     speed = drawn["rest speed"].panels[0].curves[0].y
     np.testing.assert_allclose(speed, transient.crank_speed)
     assert "rest speed" not in pictures("plane")
-    bare = from_rest(plane(linkage(), gauges={}), 0.2, samples=30)
+    bare = simulate(plane(linkage(), gauges={}), 0.2, samples=30)
     labels = [panel.y.label for panel in transient_charts(bare)["gauges"].panels]
     assert labels == ["moved", "moved", "turned"]
 
