@@ -121,7 +121,11 @@ def _paint(axes: Axes, item: Item, order: int) -> None:
         artist.set(markersize=wide, markeredgecolor=item.edge, markerfacecolor=item.face)
         artist.set(markeredgewidth=0 if item.shape == "." else item.width)
     else:
-        look: Any = {"zorder": order, "joinstyle": "round", "capstyle": "butt"}
+        look: Any = {
+            "zorder": order,
+            "joinstyle": "round",
+            "capstyle": "round" if item.round else "butt",
+        }
         look |= {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
         look |= {"linewidth": item.width if item.color else 0.0}
         if item.dashes:
