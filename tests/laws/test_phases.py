@@ -154,7 +154,7 @@ def test_the_result_is_its_own_result() -> None:
     again = choose_phases(found.machine, wishes)
     assert again.phases == found.phases
     assert again.machine is found.machine
-    assert "no phases were found that are better" in again.notes[0]
+    assert "no phases were found that are better" in str(again.notes[0])
 
 
 def test_equal_rows_are_laid_out_with_the_least_twist() -> None:

@@ -16,6 +16,7 @@ from equipoise.balancing.measures import unit_of
 from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
@@ -68,12 +69,12 @@ class Balanced(Result):
     objectives: Mapping[str, tuple[float, float]]
     cost: float
     bound: float | None
-    method: str
+    method: Note
     prices: Mapping[str, Price]
     looked_at: int
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note | str, ...] = ()
     phasing: Phasing | None = None
-    scope: str = ""
+    scope: tuple[Note, ...] = ()
 
     @property
     def gap(self) -> float | None:
@@ -103,14 +104,14 @@ class Balanced(Result):
     def sensitivities(self) -> dict[str, Any]:
         """Effect of each parameter of the original on what was made small; see `sensitivities`.
 
-        For components of the shaking force, shaking moment and drive torque.
+        For what `known_outputs` has, and for the components of vectors among them.
         """
-        from equipoise.balancing.sensitivity import OUTPUTS, sensitivities
+        from equipoise.balancing.sensitivity import known_outputs, sensitivities
 
         asked = dict.fromkeys(one.output for one in self.plan.objectives)
-        if "shaking_force" in asked:
-            asked |= {"shaking_force.x": None, "shaking_force.y": None}
-        found = {name: sensitivities(self.original, name) for name in asked if name in OUTPUTS}
+        asked |= {f"{name}.{axis}": None for name in asked for axis in "xy"}
+        known = known_outputs()
+        found = {name: sensitivities(self.original, name) for name in asked if name in known}
         return {name: one.to_dict(signals=False) for name, one in found.items()}
 
     @property
@@ -146,11 +147,11 @@ class Balanced(Result):
                 name: {"before": before, "after": after}
                 for name, (before, after) in self.objectives.items()
             },
-            "method": self.method,
+            "method": str(self.method),
             "cost": self.cost,
             "bound": self.bound,
             "gap": self.gap,
-            "scope": self.scope,
+            "scope": " and ".join(map(str, self.scope)),
             "changes": [change.to_dict() for change in self.changes],
             "prices": {name: asdict(price) for name, price in self.prices.items()},
             "added_mass": self.added_mass,
@@ -160,7 +161,7 @@ class Balanced(Result):
             "planting_kept": self.planting_kept,
             **({"sensitivities": self.sensitivities} if asked else {}),
             **({} if self.phasing is None else {"rows": self.phasing.to_dict()}),
-            "notes": list(self.notes),
+            "notes": list(map(str, self.notes)),
         }
 
 
@@ -189,19 +190,19 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
     )
 
 
-def _scope(found: Solution) -> str:
+def _scope(found: Solution) -> tuple[Note, ...]:
     """Of what the bound is proved, where that is not all that the plan allows."""
     problem, told = found.problem, []
     pairs = zip(problem.parts, found.numbers, strict=True)
     if problem.reads_gauges and problem.supports_more:
-        told.append("for small changes about it")
+        told.append(Note(to_say("for small changes about it")))
     if any(part.stopped(own) for part, own in pairs):
-        told.append("within where it was stopped")
+        told.append(Note(to_say("within where it was stopped")))
     if problem.flips:
-        told.append("for the flanks of gears in contact here")
+        told.append(Note(to_say("for the flanks of gears in contact here")))
     if any(geared_range(geared) for geared in problem.plan.geared):
-        told.append("for each of the gears tried")
-    return " and ".join(told)
+        told.append(Note(to_say("for each of the gears tried")))
+    return tuple(told)
 
 
 def _prices(found: Solution) -> dict[str, Price]:
@@ -244,27 +245,42 @@ def _rounded(price: float, scale: float) -> float:
     return price if price > 1e-7 * scale else 0.0
 
 
-def _notes(found: Solution) -> Iterator[str]:
+def _notes(found: Solution) -> Iterator[Note]:
     """What a reader has to know."""
     problem, rows = found.problem, len(found.problem.machine.rows)
     if problem.machine.drive.acceleration:
-        yield "the drive's acceleration is left out: the crank is taken as turning steadily"
+        yield Note(
+            to_say("the drive's acceleration is left out: the crank is taken as turning steadily")
+        )
     if problem.reads_gauges and problem.supports_more:
         yield (
-            "added mass makes the support heavier, which bends what is linear otherwise: the bound "
-            "is that of small changes about this result"
+            Note(
+                to_say(
+                    "added mass makes the support heavier, which bends what is linear "
+                    "otherwise: the bound is that of small changes about this result"
+                )
+            )
         )
     pairs = zip(problem.parts, found.numbers, strict=True)
     yield from filter(None, (part.stopped(own) for part, own in pairs))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
-        yield f"masses are those of one row; the machine has {rows}"
+        yield Note(to_say("masses are those of one row; the machine has {rows}"), rows=rows)
     if found.ties > 1:
         yield (
-            f"{found.ties} of the ratios tried are as good, and the lightest was taken; drive and "
-            "joints may tell them apart: give them a limit"
+            Note(
+                to_say(
+                    "{count} of the ratios tried are as good, and the lightest was taken;"
+                    " drive and joints may tell them apart: give them a limit"
+                ),
+                count=found.ties,
+            )
         )
     if found.best.nodes >= 1 and found.best.value - found.best.bound > 1e-7:
         yield (
-            "the search ended before it had proved that nothing better exists; the gap tells how "
-            "far it came"
+            Note(
+                to_say(
+                    "the search ended before it had proved that nothing better exists; "
+                    "the gap tells how far it came"
+                )
+            )
         )

@@ -10,7 +10,6 @@ import numpy as np
 
 from equipoise.balancing.measures import unit_of as si_unit
 from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.naming import MEASURES, objective_named, output_named, unit_of
 from equipoise.balancing.patterns import Pattern, arranged, patterns_for
 from equipoise.balancing.phase_cost import Term
 from equipoise.balancing.workshop import sentences
@@ -18,6 +17,7 @@ from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.quantities import SI, Dimension, angle, in_unit, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
+from equipoise.results.naming import MEASURES, objective_named, output_named, unit_of_measure
 from equipoise.results.tables import driven, rows_table
 
 if TYPE_CHECKING:
@@ -132,7 +132,7 @@ def figure_unit(found: Balanced, name: str) -> str:
     output, _, measure = name.rpartition(".")
     if output.startswith("gauges"):
         return si_unit(Objective(output), found.original)
-    return unit_of(output, measure)
+    return unit_of_measure(output, measure)
 
 
 def said(text: Note | str) -> str:
@@ -142,7 +142,8 @@ def said(text: Note | str) -> str:
 
 def _within(found: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
-    return "".join(f" {said(part)}" for part in [found.scope] if str(part))
+    parts = say(" and ").join(map(said, found.scope))
+    return f" {parts}" if parts else ""
 
 
 def _proof(found: Balanced) -> str:
@@ -395,7 +396,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
         places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
         rows.append((one.name, Value(size * one.rms), unit, Value(one.percent), places))
-    kind = OF_UNIT[unit_of(found.output, "rms")]
+    kind = OF_UNIT[unit_of_measure(found.output, "rms")]
     columns = (
         Column(""),
         Column(say("RMS"), kind),

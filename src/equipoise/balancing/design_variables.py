@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.program import Affine, Program
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
@@ -156,9 +157,9 @@ class DesignVariables(ABC):
         """Limits that have a price."""
         return []
 
-    def stopped(self, numbers: Array) -> str:
+    def stopped(self, numbers: Array) -> Note | None:
         """What to tell where a number has come to an end that nobody asked for; else nothing."""
-        return ""
+        return None
 
     @abstractmethod
     def changes(self, numbers: Array) -> list[Change]:
@@ -295,13 +296,16 @@ class FreeSpring(DesignVariables):
         most = self.choice.stiffness
         return [Bound(self._name, most, float(numbers[0]) * most, "N/m")]
 
-    def stopped(self, numbers: Array) -> str:
+    def stopped(self, numbers: Array) -> Note | None:
         longest = LONGEST * float(numbers[0])
         if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
-            return ""
-        return (
-            f"the spring on {self.link} has come to twice the largest distance of points, "
-            "where its free length was stopped; give it free_length"
+            return None
+        return Note(
+            to_say(
+                "the spring on {link} has come to twice the largest distance of "
+                "points, where its free length was stopped; give it free_length"
+            ),
+            link=self.link,
         )
 
     def columns(self, motion: Motion, output: str) -> Array:

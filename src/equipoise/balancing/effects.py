@@ -7,8 +7,8 @@ taken from a machine near the solution, with the derivative by each number there
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -28,8 +28,10 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, place_of
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.objectives import balanced_names
+from equipoise.mechanism.outputs import Declared, matches
 from equipoise.mechanism.parameters import parameter_values
-from equipoise.mechanism.reactions import Pass, reactions
+from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, Step, gauges_of
@@ -39,8 +41,6 @@ Array = np.ndarray[Any, Any]
 
 ANGLES = 720
 """Crank angles in a turn at which balancing looks."""
-VECTORS = ("shaking_force", "frame_force")
-SCALARS = ("shaking_moment", "frame_moment", "drive_torque")
 
 
 class Effects:
@@ -73,40 +73,21 @@ class Effects:
         ------
         UsageError : there is no such output.
         """
-        name, _, axis = output.rpartition(".")
-        if axis in {"x", "y"} and name:
-            whole = self.signal(name, about)
-            if np.iscomplexobj(whole.start):
-                part = np.real if axis == "x" else np.imag
-                return Signal(part(whole.start), part(whole.columns), whole.turns)
-        start, columns = self._whole(output, about)
-        return Signal(start, columns, self.motion.turns)
+        one, item = self._declared(output)
+        pole = self._pole(about)
+        start = one.component(one.vector(Present(self, pole), item))
+        columns = one.component(one.vector(Unit(self, pole), item))
+        return Signal(start, self._full(columns), self.motion.turns)
 
-    def _whole(self, output: str, about: str | None) -> tuple[Array, Array]:
-        if output == "shaking_force":
-            return self._start.shaking_force.value, self._full(-self._inertia[0])
-        if output == "shaking_moment":
-            pole = self._pole(about)
-            return self._start.shaking_moment_about(pole), self._moment(self._inertia, pole)
-        if output == "frame_force":
-            return self._start.frame_force.value, self._full(-self._inertia[0] - self._weight[0])
-        if output == "frame_moment":
-            pole = self._pole(about)
-            force = self._start.frame_force.value
-            start = self._start.frame_moment + kernels.cross(self._start.about - pole, force)
-            return start, self._moment(self._inertia, pole) + self._moment(self._weight, pole)
-        if output == "drive_torque":
-            return self._start.drive_torque, self._in_all(self._solved.drive_torque, output)
+    def _declared(self, output: str) -> tuple[Declared, str]:
+        joints = self._start.joints
+        found = [(one, item) for one, item in matches(output) if one.needs == "masses"]
+        for one, item in found:
+            if not one.reason and (not item or item in joints):
+                return one, item
         if output.startswith("joints."):
-            return self._joint(output.removeprefix("joints."))
-        joints = [f"joints.{name}" for name in self._start.joints]
-        raise UsageError(unknown(output, [*VECTORS, *SCALARS, *joints], "output"))
-
-    def _joint(self, name: str) -> tuple[Array, Array]:
-        if name not in self._start.joints:
-            raise UsageError(unknown(name, self._start.joints, "joint"))
-        columns = self._in_all(self._solved.joints[name].value, f"joints.{name}")
-        return self._start.solved_like(self._flanks).joints[name].value, columns
+            raise UsageError(unknown(output.removeprefix("joints."), joints, "joint"))
+        raise UsageError(unknown(output, balanced_names(self.machine), "output"))
 
     def weight_moment(self, about: complex) -> Signal:
         """Moment of the weight about a point."""
@@ -207,6 +188,98 @@ class Effects:
                 at = self.motion.state[f"p({self._start.anchor(part.link)})"]
                 total[rows] -= kernels.cross(at - about, demands[0][rows])
         return total
+
+
+@dataclass(frozen=True)
+class Present:
+    """The forces of the machine from which the numbers count, as outputs are read of them.
+
+    about : point about which moments are taken, m.
+    """
+
+    effects: Effects
+    about: complex
+
+    @property
+    def machine(self) -> Machine:
+        return self.effects.machine
+
+    @property
+    def motion(self) -> Motion:
+        return self.effects.motion
+
+    @property
+    def forces(self) -> Present:
+        return self
+
+    @property
+    def shaking_force(self) -> VectorSignal:
+        return self.effects._start.shaking_force
+
+    @property
+    def shaking_moment(self) -> Array:
+        return self.effects._start.shaking_moment_about(self.about)
+
+    @property
+    def frame_force(self) -> VectorSignal:
+        return self.effects._start.frame_force
+
+    @property
+    def frame_moment(self) -> Array:
+        start = self.effects._start
+        shift = kernels.cross(start.about - self.about, start.frame_force.value)
+        return np.asarray(start.frame_moment + shift)
+
+    @property
+    def drive_torque(self) -> Array:
+        return self.effects._start.drive_torque
+
+    @property
+    def joints(self) -> Mapping[str, JointForce]:
+        return self.effects._start.solved_like(self.effects._flanks).joints
+
+
+@dataclass(frozen=True)
+class Unit(Present):
+    """The same of a unit of each number; arrays (K, N)."""
+
+    @property
+    def shaking_force(self) -> VectorSignal:
+        return VectorSignal(-self.effects._inertia[0])
+
+    @property
+    def shaking_moment(self) -> Array:
+        return self.effects._moment(self.effects._inertia, self.about)
+
+    @property
+    def frame_force(self) -> VectorSignal:
+        return VectorSignal(-self.effects._inertia[0] - self.effects._weight[0])
+
+    @property
+    def frame_moment(self) -> Array:
+        effects = self.effects
+        both = (effects._moment(one, self.about) for one in (effects._inertia, effects._weight))
+        return sum(both, np.zeros(1))
+
+    @property
+    def drive_torque(self) -> Array:
+        return self.effects._in_all(self.effects._solved.drive_torque, "drive_torque")
+
+    @property
+    def joints(self) -> Mapping[str, JointForce]:
+        return _JointsOfUnit(self.effects)
+
+
+class _JointsOfUnit(dict[str, JointForce]):
+    """Joint forces (K, N) of a unit of each number, each made when it is asked for."""
+
+    def __init__(self, effects: Effects) -> None:
+        super().__init__()
+        self.effects = effects
+
+    def __missing__(self, name: str) -> JointForce:
+        joint = self.effects._solved.joints[name]
+        return replace(joint, value=self.effects._in_all(joint.value, f"joints.{name}"))
 
 
 SAMPLES = 1440

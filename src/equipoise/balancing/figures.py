@@ -9,19 +9,18 @@ import numpy as np
 
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.measures import measured
-from equipoise.mechanism.balance import Measure, Objective
-from equipoise.mechanism.dynamics import Forces, forces
+from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.outputs import DECLARED
+from equipoise.results.analysis import Analysis
+from equipoise.results.outputs import Outputs
 
 Array = np.ndarray[Any, Any]
 
 GONE = 1e-9
 """Share of a figure before below which it is rounding."""
-
-OF_FORCE: tuple[Measure, ...] = ("rms", "peak")
-OF_MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
-OF_TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
 
 
 def figures_of(machine: Machine) -> dict[str, float]:
@@ -30,26 +29,12 @@ def figures_of(machine: Machine) -> dict[str, float]:
     Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
     Gauges are read by the model that is usual for the support.
     """
-    found = forces(move(machine, ANGLES, acceleration=0.0))
+    motion = move(machine, ANGLES, acceleration=0.0)
     figures = {"mass": machine.mass}
-    for name, values, measures in _signals(found):
-        for measure in measures:
-            figures[f"{name}.{measure}"] = measured(values, measure)
+    for one in Outputs.of(Analysis(motion, forces(motion))):
+        for measure in one.declared.compared if one.declared.needs == "masses" else ():
+            figures[f"{one.name}.{measure}"] = measured(one.component, measure)
     return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
-
-
-def _signals(found: Forces) -> list[tuple[str, Array, tuple[Measure, ...]]]:
-    force = found.shaking_force
-    signals: list[tuple[str, Array, tuple[Measure, ...]]] = [
-        ("shaking_force", force.value, OF_FORCE),
-        ("shaking_force.x", force.x, OF_FORCE),
-        ("shaking_force.y", force.y, OF_FORCE),
-        ("shaking_moment", found.shaking_moment, OF_MOMENT),
-        ("drive_torque", found.drive_torque, OF_TORQUE),
-    ]
-    joints = [(f"joints.{name}", joint.value, OF_FORCE) for name, joint in found.joints.items()]
-    gears = [(f"gears.{name}", mesh.value, OF_FORCE) for name, mesh in found.gears.items()]
-    return signals + joints + gears
 
 
 def signal_columns(before: Machine, after: Machine) -> list[tuple[str, str, Array]]:
@@ -61,12 +46,11 @@ def signal_columns(before: Machine, after: Machine) -> list[tuple[str, str, Arra
     angles = np.arange(ANGLES * max(turns)) * (2 * np.pi / ANGLES)
     columns = [("crank_angle", "rad", angles)]
     for name, machine in (("before", before), ("after", after)):
-        found = forces(move(machine, angles, acceleration=0.0))
+        motion = move(machine, angles, acceleration=0.0)
         columns += [
-            (f"shaking_force.x.{name}", "N", found.shaking_force.x),
-            (f"shaking_force.y.{name}", "N", found.shaking_force.y),
-            (f"shaking_moment.{name}", "N m", found.shaking_moment),
-            (f"drive_torque.{name}", "N m", found.drive_torque),
+            (f"{one.name}.{name}", one.unit, one.values)
+            for one in Outputs.of(Analysis(motion, forces(motion))).ordered
+            if one.declared.compared
         ]
     return columns
 
@@ -80,11 +64,11 @@ def _of_rows(machine: Machine) -> dict[str, float]:
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}
-    for output in ("shaking_force", "shaking_moment", "roll_moment", "yaw_moment"):
-        for measure in OF_FORCE:
-            objective = Objective(output, measure)
+    for one in [one for one in DECLARED.values() if one.needs == "rows"]:
+        for measure in one.compared:
+            objective = Objective(one.name.removeprefix("rows."), measure)
             value = Term(objective, rows.signals(objective)).told(phases)
-            figures[f"rows.{output}.{measure}"] = value
+            figures[f"{one.name}.{measure}"] = value
     return figures
 
 

@@ -23,8 +23,9 @@ from equipoise.mechanism.dynamics import forces, place_of
 from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, wrong_objective
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, wrong_objective
 from equipoise.mechanism.support import Row
+from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
 from equipoise.vibration.linear import ANGLES, Linear, gauges_of
@@ -32,8 +33,8 @@ from equipoise.vibration.linkages import rows_of
 
 Array = np.ndarray[Any, Any]
 
-SHAKING, FRAME, TORQUE = 0, 3, 6
-"""Among signals of one row: force x, y and moment about the drive's pivot, twice; drive torque."""
+SHAKING, FRAME = 0, 3
+"""Among signals of one row: force x, y and moment about the drive's pivot, twice."""
 UNIT = np.array([1.0, 1j, 0.0]), np.array([0.0, 0.0, 1.0])
 """Force and moment of which force x, y and moment are 1 in turn."""
 
@@ -109,18 +110,18 @@ class Rows:
         if output.startswith(GAUGES):
             found = self._gauge(output.removeprefix(GAUGES), objective.speeds)
         else:
-            rows = rows_of(self.machine)
-            levers = np.array([self._lever(output, row, objective.about) for row in rows])
-            found = RowSignals((levers @ self._one.amplitudes)[None], self._one.turns)
+            rows, one = rows_of(self.machine), self._alike(output) or self._one
+            levers = np.ones((len(rows), 1, 1))
+            if one is self._one:
+                levers = np.array([self._lever(output, row, objective.about) for row in rows])
+            found = RowSignals((levers @ one.amplitudes)[None], one.turns)
         return found.kept(objective.orders)
 
     def _lever(self, output: str, row: Row, about: str | None) -> Array:
-        """Rows (C, 7) by which an output reads the signals of one row."""
-        if output == "drive_torque":
-            return np.eye(7)[TORQUE:]
+        """Rows (C, 6) by which an output reads the signals of one row."""
         first = FRAME if output.startswith("frame") else SHAKING
         kind = output.removeprefix("frame_").removeprefix("shaking_")
-        whole = np.eye(7)[first : first + 3]
+        whole = np.eye(6)[first : first + 3]
         if output.endswith("_moment"):
             arm = arm_of(self.machine, self._motion, row, about)
             return moment_of_row(output, row, arm, *UNIT)[None] @ whole
@@ -134,16 +135,20 @@ class Rows:
 
     @cached_property
     def _one(self) -> Periodic:
-        """Signals of one row (7, K + 1), each cut off where its own rounding begins."""
+        """Signals of one row (6, K + 1), each cut off where its own rounding begins."""
         found = forces(self._motion)
         shaking, frame = found.shaking_force, found.frame_force
-        signals = (shaking.x, shaking.y, found.shaking_moment, frame.x, frame.y)
+        signals = (shaking.x, shaking.y, found.shaking_moment, frame.x, frame.y, found.frame_moment)
         turns = self._motion.turns
-        each = [
-            Periodic.of(signal, turns).amplitudes
-            for signal in (*signals, found.frame_moment, found.drive_torque)
-        ]
-        return Periodic(_padded(each), turns)
+        return Periodic(_padded([Periodic.of(one, turns).amplitudes for one in signals]), turns)
+
+    def _alike(self, output: str) -> Periodic | None:
+        """A signal (1, K + 1) that is the same wherever its row is, such as the drive torque."""
+        one = output_of(output, self.machine)
+        if one.needs == "rows" or one.about or one.dimension == "force":
+            return None
+        values = one.values(Analysis(self._motion, forces(self._motion)))
+        return Periodic.of(values[None], self._motion.turns)
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support

@@ -24,6 +24,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import MassError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
@@ -224,7 +225,8 @@ def _scan(
             _follow(gearing, meshes[k], at)
     best = _lightest_choice(found, least, lambda mesh: solved(mesh, inf))
     count = sum(one.best.nodes for _, one in found)
-    method = f"{best.method}, for each of {len(found)} choices of gears"
+    template = to_say("{method}, for each of {count} choices of gears")
+    method = Note(template, method=best.method, count=len(found))
     return replace(best, method=method, best=replace(best.best, nodes=count))
 
 
@@ -261,9 +263,11 @@ def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> Non
     minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
 
 
-ROWS_AFTER_LINKAGE = (
-    "the linkage was balanced first and its rows were turned after it; both together might do "
-    "better"
+ROWS_AFTER_LINKAGE = Note(
+    to_say(
+        "the linkage was balanced first and its rows were turned after it; both together "
+        "might do better"
+    )
 )
 
 
@@ -300,9 +304,13 @@ def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Ph
         objectives={name: (before[name], after[name]) for name in after},
         cost=float(search.cost.of([after[name] for name in before])),
         bound=None,
-        method=(
-            f"{phasing.combinations} arrangements of the rows on a grid of "
-            f"{np.degrees(phasing.step):.4g} deg, the best of them polished"
+        method=Note(
+            to_say(
+                "{count} arrangements of the rows on a grid of {step} deg, the best of them "
+                "polished"
+            ),
+            count=phasing.combinations,
+            step=f"{np.degrees(phasing.step):.4g}",
         ),
         prices={} if found is None else found.prices,
         looked_at=phasing.combinations,

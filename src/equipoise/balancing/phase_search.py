@@ -29,6 +29,7 @@ from equipoise.balancing.phase_grid import (
 )
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import OF_ROWS
@@ -222,7 +223,7 @@ class Phasing(Result):
     lateral: Mapping[str, tuple[float, float]]
     combinations: int
     step: float
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, in SI units and rad."""
@@ -241,7 +242,7 @@ class Phasing(Result):
             },
             "combinations": self.combinations,
             "step": self.step,
-            "notes": list(self.notes),
+            "notes": list(map(str, self.notes)),
         }
 
 
@@ -313,24 +314,38 @@ def _remaining(search: PhaseSearch, phases: Array) -> tuple[float, ...]:
     return tuple(float(order) for order in force.orders[1:][loud])
 
 
-def _notes(search: PhaseSearch, found: Array) -> Iterator[str]:
+def _notes(search: PhaseSearch, found: Array) -> Iterator[Note]:
     if np.all(found == search.present):
-        yield "no phases were found that are better than the present ones"
+        yield Note(to_say("no phases were found that are better than the present ones"))
     grid = search.grid
     if grid is None:
         yield (
-            "there are too many rows for a grid: random arrangements were polished instead, and "
-            "better ones may exist"
+            Note(
+                to_say(
+                    "there are too many rows for a grid: random arrangements were "
+                    "polished instead, and better ones may exist"
+                )
+            )
         )
     elif grid.levels < search.levels:
         yield (
-            f"a grid of {np.degrees(search.step):.4g} deg has too many arrangements: one of "
-            f"{np.degrees(grid.step):.4g} deg was looked at as a whole, and the fine one about its "
-            "best arrangements"
+            Note(
+                to_say(
+                    "a grid of {step} deg has too many arrangements: one of {coarse} deg "
+                    "was looked at as a whole, and the fine one about its best "
+                    "arrangements"
+                ),
+                step=f"{np.degrees(search.step):.4g}",
+                coarse=f"{np.degrees(grid.step):.4g}",
+            )
         )
     for term in search.cost.terms:
         if search.vanishes(term):
             yield (
-                f"{term.objective.name} is 0 before, so it counts over the sum of what each row "
-                "does alone"
+                Note(
+                    to_say(
+                        "{name} is 0 before, so it counts over the sum of what each row does alone"
+                    ),
+                    name=term.objective.name,
+                )
             )

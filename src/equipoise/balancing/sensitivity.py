@@ -18,12 +18,12 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.instants import roots
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
+from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 
-OUTPUTS = ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque")
 CHANGES = ("mass", "center_x", "center_y", "inertia")
 """Mass at a fixed centre of mass, kg; that centre at a fixed mass, m; inertia about it, kg m2."""
 NOTHING = 1e-10
@@ -102,6 +102,15 @@ class Sensitivities(Result):
         return {"output": self.output, **angles, "sensitivities": rows}
 
 
+def known_outputs() -> list[str]:
+    """Names of outputs that are one number, and linear in the masses, on the whole machine."""
+    return [
+        one.name
+        for one in DECLARED.values()
+        if one.needs == "masses" and not (one.reason or one.is_family or one.is_vector)
+    ]
+
+
 def sensitivities(
     machine: Machine, output: str = "shaking_force.y", angles: int = 720
 ) -> Sensitivities:
@@ -109,7 +118,7 @@ def sensitivities(
 
     Parameters
     ----------
-    output : one of `OUTPUTS`; the shaking moment is about the drive pivot, the drive torque with
+    output : one of `known_outputs`; moments are about the drive pivot, the drive torque is with
         weight.  The crank's speed is constant, that of the machine.
     angles : crank angles in each turn of the cycle.
 
@@ -119,8 +128,8 @@ def sensitivities(
     MotionError : the linkage cannot turn fully.
     UsageError : there is no such output, or too few crank angles.
     """
-    if output not in OUTPUTS:
-        raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
+    if output not in known_outputs():
+        raise UsageError(unknown(output, known_outputs(), "output of this kind"))
     motion = move(machine, _count(angles), acceleration=0.0)
     values = _derivatives(motion, output)
     values[_absent(machine, values)] = 0.0
@@ -135,10 +144,8 @@ def sensitivities(
 
 def _derivatives(motion: Motion, output: str) -> Array:
     """Derivatives of an output by `CHANGES` of each link (4 L, N)."""
-    name, _, part = output.partition(".")
-    columns = getattr(regressor(motion), name)
-    columns = {"": columns, "x": columns.real, "y": columns.imag}[part]
-    links = motion.machine.links
+    one, links = DECLARED[output], motion.machine.links
+    columns = one.component(one.vector(Found(motion, regressor(motion))))
     of_links = columns.reshape(len(links), len(QUANTITIES), -1)
     return np.concatenate(list(map(_by_change, links.values(), of_links)))
 

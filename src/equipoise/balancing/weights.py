@@ -22,6 +22,7 @@ import numpy as np
 from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
 from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.program import Affine, Block, Program
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
 
@@ -129,13 +130,16 @@ class AddedWeight(DesignVariables):
             found.append(Bound(self._radius_name, self.weight.radius, used, "m"))
         return found
 
-    def stopped(self, numbers: Array) -> str:
+    def stopped(self, numbers: Array) -> Note | None:
         given = self.weight.mass is not None or self.weight.at_most is not None
         if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
-            return ""
-        return (
-            f"the weight on {self.link} has come to ten times the mass of the links, where it "
-            "was stopped; more would do better still: give it at_most"
+            return None
+        return Note(
+            to_say(
+                "the weight on {link} has come to ten times the mass of the links, "
+                "where it was stopped; more would do better still: give it at_most"
+            ),
+            link=self.link,
         )
 
     @property

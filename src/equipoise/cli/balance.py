@@ -26,10 +26,9 @@ from equipoise.cli.progress import counted
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
+    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
 
 app = App(name="balance")
@@ -95,10 +94,10 @@ def _machine(file: str, speed: float | None) -> Machine:
     return machine if speed is None else machine.with_drive(speed=speed)
 
 
-def _drawings(found: Balanced | Front) -> Mapping[str, Figure]:
-    from equipoise.plotting.balancing import drawings
+def _drawings(found: Balanced | Front) -> Mapping[str, Picture]:
+    from equipoise.figures.pictures import balance_pictures
 
-    return drawings(found)
+    return balance_pictures(found)
 
 
 def _save(found: Balanced, out: str) -> None:

@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
+    from equipoise.figures import Picture
 
 Arm = Annotated[float | None, size("length", "give more than 0")]
 
@@ -80,10 +80,10 @@ def decay(
 
         show_blocks(printable(os.path.basename(csv)), found.blocks())
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import decay as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import decay as pictures
 
-        return pictures.drawings(found, printable(os.path.basename(csv)))
+        return pictures.charts(found, printable(os.path.basename(csv)))
 
     outputs.give(drawings, found.to_dict, show)
 

@@ -24,8 +24,8 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
+    from equipoise.figures import Picture
     from equipoise.schema.study_units import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
@@ -76,10 +76,10 @@ def best(
     model = None if chosen.out is None else machine_of(opened, first)
     title, units = title_of(opened), units_in(opened)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.studies import best_drawings
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures.studies import best_charts
 
-        return best_drawings(found, title, units)
+        return best_charts(found, title, units)
 
     def show() -> None:
         from equipoise.present import show_blocks
@@ -167,10 +167,10 @@ def search(
         chosen.check(0, len(found.values) - 1)
         own = _own(found.study) if outputs.plot is not None or not outputs.json else None
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting.studies import searched_drawings
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures.studies import searched_charts
 
-            return searched_drawings(found, units, own)
+            return searched_charts(found, units, own)
 
         def show() -> None:
             from equipoise.present import show_blocks

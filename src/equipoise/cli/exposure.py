@@ -16,10 +16,9 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
     from equipoise.exposure.daily import Exposure, Task
     from equipoise.exposure.weighting import Weighted
+    from equipoise.figures import Picture
     from equipoise.schema.records import Accelerations
 
 DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
@@ -113,10 +112,10 @@ def _give(told: list[Told], outputs: Drawn) -> None:
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import exposure as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import exposure as pictures
 
-        return pictures.drawings(measured, tools, day)
+        return pictures.charts(measured, tools, day)
 
     def show() -> None:
         from equipoise.exposure.blocks import told_blocks

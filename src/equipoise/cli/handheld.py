@@ -28,8 +28,8 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
+    from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.present.cells import Units
@@ -125,8 +125,8 @@ def tool(
         if part.columns is not None:
             outputs.write(part.columns)
 
-    def drawings() -> Mapping[str, Figure]:
-        drawn: dict[str, Figure] = {}
+    def drawings() -> Mapping[str, Picture]:
+        drawn: dict[str, Picture] = {}
         for part in parts:
             drawn |= part.drawings()
         return drawn
@@ -151,7 +151,7 @@ class Part:
 
     values: Callable[[], Mapping[str, Any]]
     show: Callable[[], None]
-    drawings: Callable[[], Mapping[str, Figure]]
+    drawings: Callable[[], Mapping[str, Picture]]
     columns: Any = None
 
 
@@ -206,14 +206,14 @@ class Asked:
 
             show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
             from equipoise.handheld.studies import determinant_chart
-            from equipoise.plotting import tool as pictures
 
             chart = determinant_chart(self.tool, 1.1 * float(found.planes[0].parameter[-1]))
             return {
-                **pictures.mode_drawings(found),
-                **pictures.determinant_drawings(chart, found),
+                **pictures.mode_charts(found),
+                **pictures.determinant_charts(chart, found),
             }
 
         return Part(found.to_dict, show, drawings)
@@ -235,14 +235,14 @@ class Asked:
 
             show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting import tool as pictures
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
 
-            drawn: dict[str, Figure] = {}
+            drawn: dict[str, Picture] = {}
             if found.transmissions is not None:
-                drawn |= pictures.transmission_drawings(found.transmissions, self.modes)
+                drawn |= pictures.transmission_charts(found.transmissions, self.modes)
             if found.response is not None:
-                drawn |= pictures.response_drawings(found.response)
+                drawn |= pictures.response_charts(found.response)
             return drawn
 
         return Part(found.to_dict, show, drawings, found.columns)
@@ -258,10 +258,10 @@ class Asked:
 
             show_blocks("", found.blocks(), units=self.units)
 
-        def drawings() -> Mapping[str, Figure]:
-            from equipoise.plotting import tool as pictures
+        def drawings() -> Mapping[str, Picture]:
+            from equipoise.figures import handheld as pictures
 
-            return pictures.exposure_drawings(found)
+            return pictures.exposure_charts(found)
 
         return Part(found.to_dict, show, drawings)
 
@@ -339,10 +339,10 @@ def vary(
         _print_head(loaded, shown_in)
         show_blocks("", found.blocks(), units=shown_in)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import tool as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import handheld as pictures
 
-        return pictures.variation_drawings(found)
+        return pictures.variation_charts(found)
 
     told = {"title": loaded.title, "variation": found.to_dict()}
     outputs.give(drawings, lambda: told, show)
@@ -427,10 +427,10 @@ def design(
         _print_head(loaded, shown_in)
         show_blocks("", found.blocks(), units=shown_in)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import tool as pictures
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures import handheld as pictures
 
-        return pictures.design_drawings(found)
+        return pictures.design_charts(found)
 
     told = {"title": loaded.title, "design": found.to_dict()}
     outputs.give(drawings, lambda: told, show)

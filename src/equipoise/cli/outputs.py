@@ -21,8 +21,8 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
+    from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
 
@@ -68,14 +68,14 @@ class Drawn(Printed):
         if self.plot is not None:
             check_folder("--plot", self.plot)
 
-    def draw(self, drawings: Callable[[], Mapping[str, Figure]]) -> None:
+    def draw(self, drawings: Callable[[], Mapping[str, Picture]]) -> None:
         """Write pictures into the folder if there is to be one, and say so."""
         if self.plot is not None:
             write_pictures(drawings(), self.plot, self.format or "svg")
 
     def give(
         self,
-        drawings: Callable[[], Mapping[str, Figure]],
+        drawings: Callable[[], Mapping[str, Picture]],
         values: Callable[[], Mapping[str, Any]],
         show: Callable[[], None],
     ) -> None:
@@ -135,9 +135,9 @@ def write_text(path: str, text: str) -> None:
     print(f"wrote {printable(path)}", file=sys.stderr)
 
 
-def write_pictures(figures: Mapping[str, Figure], folder: str, kind: Kind) -> None:
+def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
-    from equipoise.plotting.style import render
+    from equipoise.figures import render
     from equipoise.schema.output import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})

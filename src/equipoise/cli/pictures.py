@@ -93,7 +93,7 @@ def plot(
     speed
         Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
     """
-    from equipoise.plotting.style import render
+    from equipoise.figures import render
     from equipoise.present.findings import ToolFindings, find
     from equipoise.present.pictures import each
     from equipoise.schema.output import write_all
@@ -167,7 +167,7 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.plotting.landscape import drawings, told
+    from equipoise.figures.studies import landscape_charts, told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
@@ -185,12 +185,12 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    pictures = drawings(found)
+    pictures = landscape_charts(found)
     write_pictures(pictures, folder, format)
     for name in pictures:
         print(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    print(told(found) + "".join(edge))
+    print(told_best(found) + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

@@ -26,8 +26,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from matplotlib.figure import Figure
-
+    from equipoise.figures import Picture
     from equipoise.planting.summary import PlantingFigures
 
 app = App(name="plant")
@@ -79,10 +78,10 @@ def plant(
     outputs.give(lambda: _drawings(figures), figures.to_dict, show)
 
 
-def _drawings(figures: PlantingFigures) -> Mapping[str, Figure]:
-    from equipoise.plotting.planting import drawings
+def _drawings(figures: PlantingFigures) -> Mapping[str, Picture]:
+    from equipoise.figures.pictures import planting_pictures
 
-    return drawings(figures)
+    return planting_pictures(figures)
 
 
 @app.command

@@ -17,8 +17,7 @@ from equipoise.cli.progress import Watched, rate_told, swept, time_told
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from equipoise.figures import Picture
     from equipoise.schema.study_units import Unit
     from equipoise.studies.blocks import Summary
     from equipoise.studies.outcomes import Progress
@@ -229,10 +228,10 @@ def tolerance(
             watched = Watched(asked, told)
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting.studies import tolerance_drawings
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures.studies import tolerance_charts
 
-        return tolerance_drawings(found, units)
+        return tolerance_charts(found, units)
 
     def show() -> None:
         from equipoise.present import show_blocks

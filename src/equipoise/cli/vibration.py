@@ -22,21 +22,19 @@ from equipoise.cli.progress import counted
 from equipoise.errors import EquipoiseError, UsageError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
     from equipoise.present.cells import Units
     from equipoise.vibration.response import Response
 
 
-def _pictures(kind: str, found: Any) -> Callable[[], Mapping[str, Figure]]:
+def _pictures(found: Any) -> Callable[[], Mapping[str, Picture]]:
     """What draws a result; Matplotlib is imported when the first is drawn, not before."""
 
-    def drawings() -> Mapping[str, Figure]:
-        from equipoise.plotting import vibration
+    def drawings() -> Mapping[str, Picture]:
+        from equipoise.figures.pictures import pictures_of
 
-        drawn: Mapping[str, Figure] = getattr(vibration, f"{kind}_drawings")(found)
-        return drawn
+        return pictures_of(found)
 
     return drawings
 
@@ -63,7 +61,7 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
 
         shown(found)
 
-    outputs.give(_pictures("mode", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 def _speeds(option: str, text: str) -> list[float]:
@@ -160,7 +158,7 @@ def simulate(
         shown(found, units=shown_in)
 
     outputs.write(found.columns)
-    outputs.give(_pictures("transient", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
@@ -192,7 +190,7 @@ def _answer(
         shown(found, units=units, others=None if drive else _others(machine, found))
 
     outputs.write(found.columns)
-    outputs.give(_pictures("response", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)
 
 
 QUICK = 40
@@ -239,4 +237,4 @@ def _sweep(
         shown(found, units=units)
 
     outputs.write(found.columns)
-    outputs.give(_pictures("sweep", found), found.to_dict, show)
+    outputs.give(_pictures(found), found.to_dict, show)

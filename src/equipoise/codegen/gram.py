@@ -17,13 +17,13 @@ import numpy as np
 
 from equipoise.codegen.figures import MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
-from equipoise.mechanism.dynamics import Forces, SliderForce, forces
+from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.family import massive_link, with_columns, wrong
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.outputs import Found, declared
 from equipoise.mechanism.parameters import (
-    Regressor,
     parameter_names,
     parameter_values,
     parameters_of,
@@ -44,9 +44,6 @@ NOTHING = 1e-9
 EXACT = 1e-10
 """To which Gram matrices stand still where a user allows less; smooth ones do so at once."""
 
-VECTORS = ("shaking_force", "frame_force")
-SCALARS = ("shaking_moment", "frame_moment", "drive_torque")
-
 
 def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) -> bool:
     """Whether designs differ in masses alone and means and mean squares are all that is wanted."""
@@ -56,13 +53,13 @@ def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) ->
 
 def _can_have(machine: Machine, figure: Figure) -> bool:
     """Lengths have no linear mean; with gears, masses decide which flank of the teeth pushes."""
-    signal = figure.signal
-    joint = signal.startswith("joints.")
-    if joint and machine.gears:
+    one, _ = declared(figure.signal) or (None, "")
+    if one is None or one.needs != "masses" or not one.loop or one.group == "gears":
         return False
-    scalar = signal in SCALARS or signal.endswith((".x", ".y", ".moment", ".force_x", ".force_y"))
-    known = signal.removesuffix(".x").removesuffix(".y") in (*VECTORS, *SCALARS) or joint
-    return known and (figure.name == "rms" or (figure.name == "mean" and scalar))
+    if one.group == "joints" and machine.gears:
+        return False
+    linear = not one.reason or one.group == "joints"
+    return linear and (figure.name == "rms" or (figure.name == "mean" and not one.is_vector))
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,9 +184,10 @@ class MassBatch:
         """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest."""
         motion = move(self.base.machine, count)
         unit, whole = regressor(motion), forces(motion)
-        return [np.column_stack([*self._parts(f.signal, unit, whole)]) for f in self.wanted]
+        both = Found(motion, unit), Found(motion, whole)
+        return [np.column_stack([*self._parts(f.signal, *both)]) for f in self.wanted]
 
-    def _parts(self, signal: str, unit: Regressor, whole: Forces) -> Iterator[Array]:
+    def _parts(self, signal: str, unit: Found, whole: Found) -> Iterator[Array]:
         """Columns of a signal over the cycle, one below the other where it has two components."""
         rows = np.stack([*_components(signal, unit)])
         own = np.stack([*_components(signal, whole)])
@@ -206,7 +204,7 @@ class MassBatch:
         if figure.name == "mean":
             row = np.mean(samples, axis=0)[None]
             return Square(row[:, :-1], row[:, -1:], True)
-        if _two(figure.signal):
+        if _is_vector(figure.signal):
             count //= 2
         _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)
         kept = singular > RANK * singular[0]
@@ -221,46 +219,21 @@ def _scales(machine: Machine, links: int) -> Array:
     return np.tile([mass, mass * size, mass * size, mass * size**2], links)
 
 
-def _two(signal: str) -> bool:
+def _is_vector(signal: str) -> bool:
     """Whether a signal is the length of a vector."""
-    return signal in VECTORS or (
-        signal.startswith("joints.") and not signal.endswith((".moment", ".force_x", ".force_y"))
-    )
+    found = declared(signal)
+    return found is not None and found[0].is_vector
 
 
-def _components(signal: str, found: Regressor | Forces) -> Iterator[Array]:
+def _components(signal: str, found: Found) -> Iterator[Array]:
     """One or two components of a signal, (..., N)."""
-    name, _, part = signal.rpartition(".")
-    if signal in SCALARS:
-        yield np.asarray(getattr(found, signal))
-    elif signal in VECTORS or name in VECTORS:
-        value = getattr(found, signal if signal in VECTORS else name)
-        value = np.asarray(getattr(value, "value", value))
-        yield from _chosen(value, part if name in VECTORS else "")
-    else:
-        yield from _of_joint(signal.removeprefix("joints."), found)
-
-
-def _chosen(value: Array, part: str) -> Iterator[Array]:
-    if part != "y":
-        yield value.real
-    if part != "x":
-        yield value.imag
-
-
-def _of_joint(name: str, found: Regressor | Forces) -> Iterator[Array]:
-    joints = found.joints
-    if name in joints:
-        yield from _chosen(joints[name].value, "")
-        return
-    joint, _, part = name.rpartition(".")
-    force = joints[joint]
-    if part == "moment" and isinstance(force, SliderForce):
-        yield force.moment
-    elif part in ("force_x", "force_y"):
-        yield from _chosen(force.value, part[-1])
-    else:
-        raise UsageError(f"got {name!r}; {joint!r} has no such signal")
+    one, item = declared(signal) or (None, "")
+    if one is None or item not in one.items_of(found):
+        raise UsageError(f"got {signal!r}; the machine has no such signal")
+    whole = one.component(one.vector(found, item))
+    yield whole.real
+    if one.is_vector:
+        yield whole.imag
 
 
 def _alike(one: Array, other: Array, tolerance: float) -> bool:

@@ -80,7 +80,7 @@ class Writer:
         """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
         dyad that it tells of, by its place in the order in which they are solved.
         """
-        own = [g.number for g in self.linkage.groups if g.number is not None]
+        own = [g.margin for g in self.linkage.groups if g.margin is not None]
         found = {self.name(number): k for k, number in enumerate(own)}
         return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
 

@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Kind = Literal["svg", "png", "pdf"]
+Picture = Chart
+"""What can be drawn."""
 
-__all__ = ["Kind", "plot", "render"]
+__all__ = ["Kind", "Picture", "figure", "plot", "render"]
 
 
-def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:
+def render(picture: Chart, kind: Kind = "svg") -> bytes:
     """The picture as a file; the same bytes for the same picture."""
-    if not isinstance(picture, Chart):
-        from equipoise.plotting.style import render as drawn
-
-        return drawn(picture, kind)
     from equipoise.figures.layout import lay_out
 
     sheet = lay_out(picture)
@@ -32,9 +31,28 @@ def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:
     return painted(sheet, kind)
 
 
-def plot(chart: Chart) -> Figure:
+def figure(picture: Chart) -> Figure:
     """The picture as a figure of Matplotlib."""
     from equipoise.figures.layout import lay_out
     from equipoise.figures.paint import figure_of
 
-    return figure_of(lay_out(chart))
+    return figure_of(lay_out(picture))
+
+
+def plot(result: Any, *names: str) -> Figure | dict[str, Figure]:
+    """Pictures of a result by name: the one that is named, or all by their names.
+
+    Raises
+    ------
+    UsageError : there is no such picture.
+    """
+    from equipoise.figures.pictures import pictures_of
+    from equipoise.mechanism.checks import unknown
+
+    found = pictures_of(result)
+    for name in names:
+        if name not in found:
+            raise UsageError(unknown(name, found, "picture"))
+    if len(names) == 1:
+        return figure(found[names[0]])
+    return {name: figure(found[name]) for name in names or found}

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.naming import CAUSES
 from equipoise.figures.crank import (
     ROOM,
     angle_step,
@@ -37,6 +36,7 @@ from equipoise.results.charts import (
     Panel,
     shown,
 )
+from equipoise.results.naming import CAUSES
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:

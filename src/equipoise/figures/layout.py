@@ -323,9 +323,9 @@ def _settle(cell: Cell, width: float, small: bool) -> None:
         point = max(np.ptp(x), np.ptp(y), cell.least_span) / (width - 2 * room) or 1.0
         cell.height = width
     else:
-        high = fixed or MOST
-        point = max(np.ptp(x) / (width - 2 * ROOM), np.ptp(y) / (high - 2 * ROOM)) or 1.0
-        cell.height = fixed or min(max(np.ptp(y) / point + 2 * ROOM, LEAST), MOST)
+        high, room = fixed or MOST, 0.0 if cell.panel.bare else ROOM
+        point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
+        cell.height = fixed or min(max(np.ptp(y) / point + 2 * room, LEAST), MOST)
     middle_x, middle_y = float(np.mean(x)), float(np.mean(y))
     half_x, half_y = point * width / 2, point * cell.height / 2
     cell.x_ends = (middle_x - half_x, middle_x + half_x)

@@ -76,6 +76,10 @@ def draw_shapes(
         )  # fmt: skip
 
 
+def _kind(shape: Shape) -> tuple[str, bool, bool]:
+    return shape.role, shape.radius > 0, shape.closed
+
+
 def _corners(shape: Shape, at: Placing, size: float) -> Array:
     offsets = UNIT * size * shape.offsets
     return np.asarray(at(shape.places) + np.column_stack([offsets.real, -offsets.imag]))

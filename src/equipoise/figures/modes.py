@@ -39,6 +39,8 @@ NOTHING = 1e-4
 """Part of a shape, over its largest, that counts as none."""
 MOST_NAMES = 16
 """Mounts and gauges that are named in a view."""
+SMALLER = 0.8
+"""Size of signs in one of three views."""
 TOGETHER = 0.02
 """Over the size of the support: what is nearer to each other shares a name."""
 
@@ -128,6 +130,7 @@ def _panel(shape: ModeShape, view: View, views: list[str]) -> Panel:
         equal=True,
         zero=False,
         held=(low, high),
+        sign_size=1.0 if alone else SMALLER,
         ground=(shapes.line("rest", *shape.outline(view)[:-1], closed=True),),
         signs=tuple(_signs(shape, view)),
     )

@@ -235,6 +235,7 @@ def thinned(places: Array) -> Array:
 def _spaced(places: Array, number: int) -> Array:
     """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
     x = places[:, 0]
+    x = np.where(np.isfinite(x), x, -1e9)
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS
     nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
     return np.asarray(nearest[np.isfinite(places[nearest, 1])])

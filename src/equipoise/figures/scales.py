@@ -19,10 +19,12 @@ Ticks = list[tuple[float, str]]
 
 TURN = (15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600)
 """Degrees between crank angles that are numbered."""
-UP, BESIDE = 22.0, 12.0
-"""Points between numbers above each other; free between those side by side."""
-FEWEST = 3
+UP, BESIDE, NARROW = 22.0, 12.0, 4.0
+"""Points between numbers above each other; free between those side by side, and at least."""
+FEWEST, MOST = 3, 40
 """Numbers on an axis."""
+ROUND, ROUNDISH = (1, 2, 2.5, 5), (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+"""First digits of the distances of numbers; and where these leave fewer than three."""
 MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 6, 8))
 """First digits of the numbers on a log axis, from the fewest."""
 DECADES = 6.0
@@ -80,7 +82,7 @@ def ends_of(axis: Axis, values: Iterable[Any]) -> tuple[float, float]:
         room = axis.room * (most - least)
         low = least - room if low is None else low
         high = most + room if high is None else high
-    return (low, high) if high > low else (low - 1, low + 1)
+    return (low, high) if high != low else (low - 1, low + 1)
 
 
 def _log_ends(values: Array, low: float | None, high: float | None) -> tuple[float, float]:
@@ -104,8 +106,8 @@ def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
 
 
 def _between(value: float, low: float, high: float) -> bool:
-    slack = 1e-6 * (high - low)
-    return low - slack <= value <= high + slack
+    slack = 1e-6 * abs(high - low)
+    return min(low, high) - slack <= value <= max(low, high) + slack
 
 
 def _apart(scale: Scale, ticks: Ticks) -> Ticks:
@@ -121,44 +123,42 @@ def _apart(scale: Scale, ticks: Ticks) -> Ticks:
     return kept
 
 
-def steps_of(scale: Scale) -> Iterator[float]:
+def steps_of(scale: Scale, digits: tuple[float, ...]) -> Iterator[float]:
     """Round distances of numbers, from small to large."""
-    if scale.axis.scale == "crank":
-        span = scale.high - scale.low
-        if span >= 90:
-            yield from (step for step in TURN if step <= span)
-            return
-    power = floor(log10((scale.high - scale.low) / 20))
-    while True:
-        yield from (digit * 10.0**power for digit in (1, 2, 2.5, 5))
-        power += 1
+    span = scale.high - scale.low
+    if scale.axis.scale == "crank" and span >= 90:
+        yield from (step for step in TURN if step <= span)
+        return
+    power = 10.0 ** floor(log10(span / 20))
+    while power < 10 * span:
+        yield from (digit * power for digit in digits)
+        power *= 10
 
 
 def _round_ticks(scale: Scale, upright: bool) -> Ticks:
     """Numbers as near to each other as they have room, but not fewer than three."""
-    best: Ticks = []
-    for step in steps_of(scale):
-        first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
-        if last - first > 40:
-            continue
-        found = [
-            (number * step, _written(number * step, step)) for number in range(first, last + 1)
-        ]
-        if best and len(found) < FEWEST:
-            return best
-        best = found
-        if _fits(scale, found, upright):
-            return found
-    return best
+    fewer: Ticks = []
+    for digits, free in ((ROUND, BESIDE), (ROUNDISH, NARROW)):
+        for step in steps_of(scale, digits):
+            first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
+            if last - first > MOST:
+                continue
+            found = [(k * step, _written(k * step, step)) for k in range(first, last + 1)]
+            if _fits(scale, found, upright, free):
+                if len(found) >= FEWEST:
+                    return found
+                fewer = max(fewer, found, key=len)
+                break
+    return fewer
 
 
-def _fits(scale: Scale, ticks: Ticks, upright: bool) -> bool:
+def _fits(scale: Scale, ticks: Ticks, upright: bool, free: float) -> bool:
     if len(ticks) < 2:
         return True
     gap = abs(float(scale.of(ticks[1][0]) - scale.of(ticks[0][0])))
     if upright:
-        return gap >= UP
-    return gap >= max(width_of(text, SMALL) for _, text in ticks) + BESIDE
+        return gap >= (UP if free == BESIDE else SMALL + NARROW)
+    return gap >= max(width_of(text, SMALL) for _, text in ticks) + free
 
 
 def _written(value: float, step: float) -> str:
@@ -176,7 +176,8 @@ def _log_ticks(scale: Scale, upright: bool) -> Ticks:
     found: Ticks = []
     for digits in MANTISSAS:
         places = sorted(digit * 10.0**power for power in powers for digit in digits)
-        ticks = [(p, typeset(f"{p:.4g}")) for p in places if _between(p, scale.low, scale.high)]
+        inside = [p for p in places if 0.999 * scale.low <= p <= 1.001 * scale.high]
+        ticks = [(p, typeset(f"{p:.4g}")) for p in inside]
         if found and len(found) >= FEWEST and not _log_fits(scale, ticks, upright):
             return found
         found = ticks

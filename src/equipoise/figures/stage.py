@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.plotting.style import shown
+from equipoise.results.charts import shown
 from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT

@@ -58,6 +58,7 @@ LOOKS: dict[str, Look] = {
     "ink": Look(INK),
     "lines": Look(LINES, 0.9),
     "strong": Look(INK, 1.8),
+    "dashed ink": Look(INK, 1.2, (4.0, 2.0)),
     "stress": Look(STRESS, 1.6, order=3.4),
     "faint": Look(FAINT, 0.9, order=2),
     "thin": Look(MAIN, 1.0),
@@ -136,6 +137,11 @@ LOOKS: dict[str, Look] = {
     "point": Look(MAIN, 1.0, sign="o", size=2.6),
     "pivot": Look(LINES, 1.0, sign="o", size=3),
     "point path": Look("#6b9fc9", 0.8, order=1.2),
+    "path in soil": Look(STRESS, 2.8, order=3.1),
+    "other unit": Look(FAINT, 0.9, MEDIUM, order=2),
+    "tick": Look(MAIN, 0.8, order=3),
+    "dimension": Look(INK, 0.7, order=4),
+    "crossing": Look(INK, 1.2, sign="x", size=5, order=4),
     "room": Look(LINES, 0.9, (5.5, 3.3), order=2.3),
     "gear": Look(STRESS, 0.9, (9.0, 2.2, 1.7, 2.2), order=2.3),
     "added mass": Look(MAIN, 1.0, fill=MAIN, opacity=0.45, order=3.1),
@@ -154,6 +160,12 @@ LOOKS |= {
         zip(KINDS, (3.9, 3.8, 3.7, 3.6, 3.5, 3.4), strict=True)
     )
 }
+LOOKS |= {
+    f"instant {name}": Look(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
+    for name, sign in zip(
+        ("pick-up", "entry", "lowest", "release", "exit"), ("D", "v", "o", "s", "^"), strict=True
+    )
+}
 LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
 LOOKS |= {
     f"quiet speed {number}": replace(LOOKS["quiet speed"], color=color)
@@ -162,7 +174,10 @@ LOOKS |= {
 
 
 def look_of(role: str, dashed: bool = False) -> Look:
-    """The look of a role; dashed ones have no signs."""
+    """The look of a role, ``meeting 5.5`` of so many points; dashed ones have no signs."""
+    name, _, size = role.rpartition(" ")
+    if name == "meeting":
+        return replace(LOOKS[name], size=float(size))
     look = LOOKS[role]
     return replace(look, dashes=MEDIUM, sign="") if dashed else look
 

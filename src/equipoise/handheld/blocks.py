@@ -12,7 +12,7 @@ from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.studies import number_of
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.blocks import (
     Block,
@@ -161,11 +161,11 @@ def unbounded(tool: Tool) -> Iterator[Block]:
     """What to know of peaks where nothing takes power."""
     measured = any(one.hand is not None and one.hand.impedance for one in tool.stations)
     if not (tool.damped or measured):
-        told = say(
+        template = to_say(
             "nothing takes power from this tool, so at its resonances there is no bound; peaks "
             "are only those at the speeds that are computed"
         )
-        yield Notes((told,))
+        yield Notes((Note(template),))
 
 
 # -- free vibration --------------------------------------------------------------------------------

@@ -20,6 +20,7 @@ from equipoise.handheld.frequencies import (
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import PLANES, Tool
 from equipoise.handheld.shapes import scaled, shapes_beside, still_shapes, zeros_of
+from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
@@ -90,7 +91,7 @@ class ToolModes(Result):
     tool: Tool
     places: Array
     planes: tuple[PlaneModes, PlaneModes]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
     @property
     def alike(self) -> bool:
@@ -107,7 +108,7 @@ class ToolModes(Result):
             "planes": {
                 name: _plane_dict(plane) for name, plane in zip(PLANES, self.planes, strict=True)
             },
-            "notes": list(self.notes),
+            "notes": list(map(str, self.notes)),
         }
 
 
@@ -211,15 +212,22 @@ def rigid_names(free: Array) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _notes(tool: Tool, lacking: Sequence[int]) -> list[str]:
+def _notes(tool: Tool, lacking: Sequence[int]) -> list[Note]:
     notes = [
-        f"the hand at {one.name} is known by its impedance at real frequencies only; the modes are "
-        "those of the tool without it"
+        Note(
+            to_say(
+                "the hand at {name} is known by its impedance at real frequencies only; "
+                "the modes are those of the tool without it"
+            ),
+            name=one.name,
+        )
         for one in tool.stations
         if one.hand is not None and one.hand.impedance
     ]
     for name, count in zip(PLANES, lacking, strict=True):
         if count > 0:
-            many = "1 eigenvalue" if count == 1 else f"{count} eigenvalues"
-            notes.append(f"{many} with damping of the {name} plane could not be found")
+            one, many = to_say("1 eigenvalue"), to_say("{count} eigenvalues")
+            told = Note(one) if count == 1 else Note(many, count=count)
+            template = to_say("{many} with damping of the {name} plane could not be found")
+            notes.append(Note(template, many=told, name=name))
     return notes

@@ -27,11 +27,11 @@ from equipoise.mechanism.counterweights import (
     wrong_geared,
     wrong_shafts,
 )
+from equipoise.mechanism.declaring import Measure
 from equipoise.mechanism.force_elements import wrong_ends
 from equipoise.mechanism.objectives import (
     MEASURES,
     Limit,
-    Measure,
     Objective,
     wrong_limit,
     wrong_objective,

@@ -2,7 +2,7 @@
 
 The steps are run once on a fine grid of crank angles, each group in turn.  That run tells the
 running angle of every link, from which any other crank angle is placed in its turn, and the
-smallest value of each dyad's own number, which must stay above zero.
+smallest value of each dyad's margin, which must stay above zero.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ MOST_TURNS = 1000
 MOST_LOOP_TURNS = 6
 """Turns of the crank in which a motion has to close; for groups of loops, in rounds of the rest."""
 MOST_DIPS = 6
-"""Lowest dips of a dyad's number that are looked at between the points of the grid."""
+"""Lowest dips of a dyad's margin that are looked at between the points of the grid."""
 ROCKING_MARGIN = 0.1
 """rad: how far from half a turn an angle stays that is never counted on."""
 CHANGE_POINT = 1e-10
@@ -126,7 +126,7 @@ class _Grid:
         with np.errstate(all="ignore"):
             run(group.motion, self.state)
         self.done.append(group)
-        if group.number is not None:
+        if group.margin is not None:
             self.check_range(group)
         self.record_windings(group)
 
@@ -190,14 +190,14 @@ class _Grid:
     # -- range ---------------------------------------------------------------------------------
 
     def check_range(self, group: Group) -> None:
-        """Raise an error unless the group's own number stays above zero."""
-        assert group.number is not None
-        number = np.broadcast_to(self.state[group.number], self.theta.shape)
-        number = np.where(np.isfinite(number), number, -np.inf)
-        smallest, at = self.smallest(group, number)
+        """Raise an error unless the group's margin stays above zero."""
+        assert group.margin is not None
+        margin = np.broadcast_to(self.state[group.margin], self.theta.shape)
+        margin = np.where(np.isfinite(margin), margin, -np.inf)
+        smallest, at = self.smallest(group, margin)
         names = " and ".join(repr(link) for link in group.links)
         if smallest < -CHANGE_POINT:
-            raise self.range_error(group, number, at, names)
+            raise self.range_error(group, margin, at, names)
         if smallest < CHANGE_POINT:
             raise ChangePointError(
                 f"change point at crank angle {_in_degrees(at)}: {group.dead} there, and "
@@ -206,31 +206,31 @@ class _Grid:
             )
         self.weakest[group.joint] = (smallest, at)
 
-    def smallest(self, group: Group, number: Array) -> tuple[float, float]:
-        """Smallest value of a dyad's number between the points of the grid, and its angle."""
-        inner = number[1:-1]
-        dips = 1 + np.flatnonzero((inner <= number[:-2]) & (inner <= number[2:]))
-        ends = [0] if number[0] <= number[1] else []
-        least = float(np.min(number))
-        lowest = sorted([*ends, *dips], key=lambda k: max(number[k], least + EQUAL))[:MOST_DIPS]
+    def smallest(self, group: Group, margin: Array) -> tuple[float, float]:
+        """Smallest value of a dyad's margin between the points of the grid, and its angle."""
+        inner = margin[1:-1]
+        dips = 1 + np.flatnonzero((inner <= margin[:-2]) & (inner <= margin[2:]))
+        ends = [0] if margin[0] <= margin[1] else []
+        least = float(np.min(margin))
+        lowest = sorted([*ends, *dips], key=lambda k: max(margin[k], least + EQUAL))[:MOST_DIPS]
         found = [self.zoom(group, float(self.theta[k]), self.theta[1]) for k in lowest]
-        found.append((least, float(self.theta[highest_at(-number)])))
+        found.append((least, float(self.theta[highest_at(-margin)])))
         angles, values = np.array(sorted((angle, value) for value, angle in found)).T
         k = highest_at(-values, smooth=False)
         return float(np.min(values)), float(angles[k])
 
     def zoom(self, group: Group, angle: float, width: float) -> tuple[float, float]:
-        """Close in on a dip of a dyad's number."""
+        """Close in on a dip of a dyad's margin."""
         value = np.inf
         for _ in range(4):
             near = angle + np.linspace(-width, width, 41)
-            values = self.number(group, near)
+            values = self.margin(group, near)
             k = int(np.argmin(values))
             angle, value, width = float(near[k]), float(values[k]), width / 18
         return value, angle
 
-    def number(self, group: Group, theta: Array) -> Array:
-        """A dyad's own number at any crank angles."""
+    def margin(self, group: Group, theta: Array) -> Array:
+        """A dyad's margin at any crank angles."""
         state = initial_state(self.machine, theta)
         so_far = Cycle(self.turns, {}, self.tables, {})
         for earlier in self.done:
@@ -239,19 +239,19 @@ class _Grid:
         with np.errstate(all="ignore"):
             for earlier in self.done:
                 run(earlier.motion, state)
-        assert group.number is not None
-        return np.broadcast_to(state[group.number], theta.shape)
+        assert group.margin is not None
+        return np.broadcast_to(state[group.margin], theta.shape)
 
-    def range_error(self, group: Group, number: Array, dip: float, names: str) -> RangeError:
+    def range_error(self, group: Group, margin: Array, dip: float, names: str) -> RangeError:
         """Tell between which crank angles a dyad can be closed; not at the angle `dip`."""
-        if not np.any(number > 0):
+        if not np.any(margin > 0):
             return RangeError(
                 f"{names} cannot be joined at any crank angle; check their lengths and where "
                 "their pins are"
             )
         period = 2 * pi * self.turns
         theta, where = np.unique([*self.theta[:-1], dip % period], return_index=True)
-        good = np.append(number[:-1] > 0, False)[where]
+        good = np.append(margin[:-1] > 0, False)[where]
         before = np.roll(theta, 1)
         before[0] -= period
         rising = np.flatnonzero(good & ~np.roll(good, 1))
@@ -269,10 +269,10 @@ class _Grid:
         )
 
     def crossing(self, group: Group, low: float, high: float) -> float:
-        """Crank angle between two others at which a dyad's number passes zero."""
+        """Crank angle between two others at which a dyad's margin passes zero."""
         for _ in range(5):
             near = np.linspace(low, high, 41)
-            sign = self.number(group, near) > 0
+            sign = self.margin(group, near) > 0
             k = int(np.argmax(sign != sign[0]))
             if k == 0:
                 break

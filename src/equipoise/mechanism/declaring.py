@@ -22,6 +22,8 @@ from equipoise.quantities import SI, Dimension
 
 Array = np.ndarray[Any, Any]
 Needs = Literal["motion", "masses", "rows", "support"]
+Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
+"""What is told of an output as one number; see `mechanism.objectives`."""
 Part = Literal["", "x", "y", "size"]
 Read = Callable[..., Any]
 """From an analysis, and the name of the member for families, to values (N,), complex of vectors."""
@@ -54,7 +56,8 @@ class Declared:
     name : by which it is found.
     dimension : of its values, which are in SI units.
     label : in English, for `say`; ``{name}`` stands for the member of a family.
-    read : has it from an analysis; None where it is told of a response instead (gauges).
+    read : has it from an analysis, as values or with values as its `value`; None where it is told
+        of a response instead (gauges).
     part : of the vector that `read` gives, where that is one; its size goes by the vector's name.
     needs : what a machine must have.
     members : from a machine to the members that it may have; ``""`` where it is no family.
@@ -83,7 +86,7 @@ class Declared:
     array: bool = True
     summed: bool = True
     ordered: bool = False
-    compared: tuple[str, ...] = ()
+    compared: tuple[Measure, ...] = ()
 
     @property
     def unit(self) -> str:
@@ -105,6 +108,14 @@ class Declared:
     def is_vector(self) -> bool:
         """Whether its name stands for a vector, of which it is the size."""
         return self.part == "size"
+
+    @property
+    def is_split(self) -> bool:
+        """Whether it can be told by cause and by link: it is linear, and a force of one row.
+
+        Gears are too, on the flank that the whole load decides.
+        """
+        return self.needs == "masses" and (not self.reason or self.name == "gears.{}")
 
     def named(self, item: str) -> str:
         """The name of a member."""
@@ -146,16 +157,36 @@ class Declared:
 
     def values(self, found: Any, item: str = "") -> Array:
         """Values (N,) of an analysis; the component, or the size, of what is a vector."""
-        whole = self.vector(found, item)
-        if self.part == "size":
-            return np.abs(whole)
-        return whole if not self.part else whole.real if self.part == "x" else whole.imag
+        whole = self.component(self.vector(found, item))
+        return np.abs(whole) if self.is_vector else whole
+
+    def component(self, whole: Array) -> Array:
+        """That component of a vector which this is; all of it where it is its size."""
+        return {"x": np.real, "y": np.imag}.get(self.part, np.asarray)(whole)  # type: ignore[operator]
 
     def vector(self, found: Any, item: str = "") -> Array:
-        """The same, complex (N,) of a vector, whichever of its parts this is."""
+        """The same, complex of a vector, whichever of its parts this is.
+
+        found : whatever has the motion and the forces; (..., N) where the forces have more axes.
+        """
         assert self.read is not None
-        whole: Array = self.read(found, item) if self.is_family else self.read(found)
-        return whole
+        whole = self.read(found, item) if self.is_family else self.read(found)
+        return np.asarray(getattr(whole, "value", whole))
+
+
+@dataclass(frozen=True)
+class Found:
+    """What outputs are read of where it is no analysis: a motion, and forces that belong to it.
+
+    forces : such as a `Regressor` or `Split`, whose arrays have more axes before the last.
+    """
+
+    motion: Any
+    forces: Any
+
+    @property
+    def machine(self) -> Any:
+        return self.motion.machine
 
 
 DECLARED: dict[str, Declared] = {}
@@ -192,8 +223,9 @@ def output(
         if parts is None:
             DECLARED[name] = replace(one, summed=of_size)
             return read
-        DECLARED[parts[0]] = replace(one, name=parts[0], part="x", summed=of_parts)
-        DECLARED[parts[1]] = replace(one, name=parts[1], part="y", summed=of_parts)
+        one_part = replace(one, summed=of_parts, compared=one.compared if of_parts else ())
+        DECLARED[parts[0]] = replace(one_part, name=parts[0], part="x")
+        DECLARED[parts[1]] = replace(one_part, name=parts[1], part="y")
         if sized:
             DECLARED[name] = replace(one, part="size", array=False, summed=of_size, ordered=False)
         return read
@@ -212,21 +244,25 @@ def declaring() -> Iterator[None]:
         DECLARED.update(before)
 
 
-def declared(name: str) -> tuple[Declared, str] | None:
-    """The declaration of an output, and its member, by the name of the output; None if unknown.
+def matches(name: str) -> Iterator[tuple[Declared, str]]:
+    """Declarations that a name may mean, each with the member, the likeliest first.
 
     Balancing calls ``joints.B.x`` what is a component of a vector, and ``roll_moment`` what only
     all rows together have.
     """
     found = [(one, item) for one in DECLARED.values() for item in [one.item_of(name)]]
     known = [(one, item) for one, item in found if item is not None]
-    if known:  # joints.B.moment is the moment in B, and no force in a joint B.moment
-        return max(known, key=lambda pair: len(pair[0].name))
+    # joints.B.moment is the moment in B, and no force in a joint B.moment
+    yield from sorted(known, key=lambda pair: -len(pair[0].name))
     if f"rows.{name}" in DECLARED:
-        return DECLARED[f"rows.{name}"], ""
+        yield DECLARED[f"rows.{name}"], ""
     whole, _, axis = name.rpartition(".")
-    vector = declared(whole) if whole and axis in ("x", "y") else None
-    if vector is None or not vector[0].is_vector:
-        return None
-    one, item = vector
-    return replace(one, name=f"{one.name}.{axis}", part="x" if axis == "x" else "y"), item
+    for one, item in matches(whole) if whole and axis in ("x", "y") else ():
+        if one.is_vector:
+            part: Part = "x" if axis == "x" else "y"
+            yield replace(one, name=f"{one.name}.{axis}", part=part), item
+
+
+def declared(name: str) -> tuple[Declared, str] | None:
+    """The declaration of an output, and its member, by the name of the output; None if unknown."""
+    return next(matches(name), None)

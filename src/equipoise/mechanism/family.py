@@ -80,9 +80,9 @@ class Family:
         _, first, second = (np.broadcast_to(state[name], shape) for name in u(link))
         return first, second
 
-    def numbers(self, state: State) -> Array:
-        """Smallest own number of any dyad at each crank angle, (P, K); below 0 it is open."""
-        names = [group.number for group in self.first.groups if group.number is not None]
+    def margins(self, state: State) -> Array:
+        """Smallest assembly margin of any dyad at each crank angle, (P, K); below 0 it is open."""
+        names = [group.margin for group in self.first.groups if group.margin is not None]
         values = [np.broadcast_to(state[name], np.shape(state["theta"])) for name in names]
         smallest: Array = np.min([np.ones(np.shape(state["theta"])), *values], axis=0)
         return smallest

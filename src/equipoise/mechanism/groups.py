@@ -45,7 +45,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.arm(link, first.point, pin),
         builder.arm(other, second.point, pin),
     )
-    number = f"s({pin})"
+    margin = f"s({pin})"
     motion = (
         *builder.reach(first.body, first.point),
         *builder.reach(second.body, second.point),
@@ -53,7 +53,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
             kernels.rrr,
             (*p(first.point), *p(second.point)),
             (*arms, side),
-            (*u(link), *u(other), *p(pin), number),
+            (*u(link), *u(other), *p(pin), margin),
         ),
     )
     builder.add({link: first.point, other: second.point}, [pin])
@@ -72,7 +72,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, first.point, ground.force),
         builder.hand_over(second.body, second.point, far.force),
     )
-    return Group("dyad", (link, other), motion, forces, (ground, far, inner), number, pin, in_line)
+    return Group("dyad", (link, other), motion, forces, (ground, far, inner), margin, pin, in_line)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
@@ -82,7 +82,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
     side = builder.side(pin, AHEAD, meaning)
     arm = builder.arm(link, pinned.point, pin)
     shift = guide.turn * builder.arm(other, guide.point, pin)
-    number = f"s({pin})"
+    margin = f"s({pin})"
     motion = (
         *builder.reach(pinned.body, pinned.point),
         *builder.reach(sliding.body, guide.base),
@@ -90,7 +90,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
             kernels.rrp,
             (*p(pinned.point), *p(guide.base), *u(sliding.body)),
             (arm, guide.along, shift, guide.turn, side),
-            (*u(link), *u(other), *p(pin), number),
+            (*u(link), *u(other), *p(pin), margin),
         ),
     )
     builder.add({link: pinned.point, other: pin}, [pin])
@@ -110,7 +110,7 @@ def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
         builder.hand_over(pinned.body, pinned.point, ground.force),
         builder.hand_over(sliding.body, pin, rail.force, rail.couple),
     )
-    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), number, pin, square)
+    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), margin, pin, square)
 
 
 def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
@@ -122,7 +122,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     from_pivot = builder.arm(on, other.point, inner_guide.base) / inner_guide.along
     from_point = builder.arm(link, inner_guide.point, block.point) * inner_guide.turn
     offset = (from_pivot + from_point).imag
-    number = f"s({slider.name})"
+    margin = f"s({slider.name})"
     back = inner_guide.along.conjugate()
     motion = (
         *builder.reach(block.body, block.point),
@@ -131,7 +131,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
             kernels.rpr,
             (*p(block.point), *p(other.point)),
             (offset, inner_guide.turn, back, (NEAR * builder.size()) ** 2, side),
-            (*u(link), *u(on), number),
+            (*u(link), *u(on), margin),
         ),
     )
     builder.add({link: block.point, on: other.point})
@@ -152,7 +152,7 @@ def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
         builder.hand_over(other.body, other.point, far.force),
     )
     return Group(
-        "dyad", (link, on), motion, forces, (ground, far, inner), number, slider.point, stuck
+        "dyad", (link, on), motion, forces, (ground, far, inner), margin, slider.point, stuck
     )
 
 
@@ -164,7 +164,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     for outer, guide in zip((first, second), guides, strict=True):
         shift = guide.turn * builder.arm(outer.link, guide.point, pin)
         shapes += (guide.along, shift, guide.turn)
-    number = f"s({pin})"
+    margin = f"s({pin})"
     bases = tuple(
         (*p(guide.base), *u(outer.body))
         for outer, guide in zip((first, second), guides, strict=True)
@@ -176,7 +176,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
             kernels.prp,
             (*bases[0], *bases[1]),
             tuple(shapes),
-            (*u(link), *u(other), *p(pin), number),
+            (*u(link), *u(other), *p(pin), margin),
         ),
     )
     builder.add({link: pin, other: pin}, [pin])
@@ -196,7 +196,7 @@ def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
         builder.hand_over(first.body, pin, near.force, near.couple),
         builder.hand_over(second.body, pin, far.force, far.couple),
     )
-    return Group("dyad", (link, other), motion, forces, (near, far, inner), number, pin, parallel)
+    return Group("dyad", (link, other), motion, forces, (near, far, inner), margin, pin, parallel)
 
 
 def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:
@@ -214,7 +214,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
     shift = turn * builder.arm(link, pinned.point, inner_guide.point) - guide.turn * builder.arm(
         other, guide.point, inner_guide.base
     )
-    number = f"s({slider.name})"
+    margin = f"s({slider.name})"
     motion = (
         *builder.reach(pinned.body, pinned.point),
         *builder.reach(sliding.body, guide.base),
@@ -222,7 +222,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
             kernels.rpp,
             (*p(pinned.point), *p(guide.base), *u(sliding.body)),
             (guide.along, guide.turn, line, turn, shift),
-            (*u(link), *u(other), *p(guide.point), number),
+            (*u(link), *u(other), *p(guide.point), margin),
         ),
     )
     builder.add({link: pinned.point, other: guide.point}, [guide.point])
@@ -241,7 +241,7 @@ def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Grou
         builder.hand_over(pinned.body, pinned.point, ground.force),
         builder.hand_over(sliding.body, guide.point, rail.force, rail.couple),
     )
-    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), number, slider.point)
+    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), margin, slider.point)
 
 
 def _guide(outer: Outer) -> Guide:

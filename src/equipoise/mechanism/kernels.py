@@ -13,9 +13,9 @@ with respect to the crank angle (kinematic coefficients): ``p, p1, p2`` for a po
 speed W and crank acceleration E a point has velocity ``p1 W`` and acceleration
 ``p2 W**2 + p1 E``.
 
-The last value that a dyad returns is its own number: the squared sine of its transmission angle,
-negative where the dyad cannot be closed.  It decides nothing here: the root is taken of its
-positive part, and the caller looks at the number.
+The last value that a dyad returns is its assembly margin: the squared sine of its transmission
+angle, negative where the dyad cannot be closed.  It decides nothing here: the root is taken of its
+positive part, and the caller looks at the margin.
 
 Sources: circle intersection and its implicit derivatives, derived in ``docs/theory.md``; for the
 four-bar they are equations (10) to (13) of Yamashita, Ichikawa and Mori.

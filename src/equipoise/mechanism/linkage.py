@@ -334,10 +334,10 @@ def _check(
 ) -> None:
     """Raise the error again, with the crank angle, where a dyad cannot be closed."""
     for group in linkage.groups:
-        if group.number is None:
+        if group.margin is None:
             continue
-        number = np.broadcast_to(state[group.number], theta.shape)
-        bad = ~(number > CHANGE_POINT)
+        margin = np.broadcast_to(state[group.margin], theta.shape)
+        bad = ~(margin > CHANGE_POINT)
         if np.any(bad):
             angle = degrees(theta[int(np.argmax(bad))])
             told = f"{error} ({doing} {angle:.4g} deg)"

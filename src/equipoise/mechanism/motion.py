@@ -13,125 +13,18 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.kinematics import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
 from equipoise.mechanism.model import Machine, Slider, unknown
 from equipoise.mechanism.steps import Group, State, p, plain_angle, running_angle, u
 from equipoise.quantities.units import HUGE
 
+__all__ = ["MOST_ANGLES", "LinkMotion", "Motion", "Named", "PointMotion", "SliderMotion", "move"]
+
 Array = np.ndarray[Any, Any]
 Value = TypeVar("Value")
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
-
-
-def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:
-    """Second derivative by time, from the derivatives by crank angle."""
-    steady = second * speed**2
-    return steady + first * acceleration if acceleration else steady
-
-
-@dataclass(frozen=True, eq=False)
-class LinkMotion:
-    """Motion of one link; every array (N,).
-
-    angle : rad, counted on through the turns.
-    angle_1, angle_2 : first and second derivative by crank angle (kinematic coefficients).
-    """
-
-    angle: Array
-    angle_1: Array
-    angle_2: Array
-    speed: float
-    acceleration: float
-
-    @property
-    def angular_velocity(self) -> Array:
-        """rad/s."""
-        return self.angle_1 * self.speed
-
-    @property
-    def angular_acceleration(self) -> Array:
-        """rad/s2."""
-        return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
-
-
-@dataclass(frozen=True, eq=False)
-class PointMotion:
-    """Motion of one point; complex arrays (N,), x + i y.
-
-    place : m.  place_1, place_2 : first and second derivative by crank angle, m.
-    """
-
-    place: Array
-    place_1: Array
-    place_2: Array
-    speed: float
-    acceleration: float
-
-    @property
-    def x(self) -> Array:
-        """m."""
-        return self.place.real
-
-    @property
-    def y(self) -> Array:
-        """m."""
-        return self.place.imag
-
-    @property
-    def velocity(self) -> Array:
-        """m/s, complex."""
-        return self.place_1 * self.speed
-
-    @property
-    def acceleration_vector(self) -> Array:
-        """m/s2, complex."""
-        return in_time(self.place_1, self.place_2, self.speed, self.acceleration)
-
-    @property
-    def vx(self) -> Array:
-        """m/s."""
-        return self.velocity.real
-
-    @property
-    def vy(self) -> Array:
-        """m/s."""
-        return self.velocity.imag
-
-    @property
-    def ax(self) -> Array:
-        """m/s2."""
-        return self.acceleration_vector.real
-
-    @property
-    def ay(self) -> Array:
-        """m/s2."""
-        return self.acceleration_vector.imag
-
-
-@dataclass(frozen=True, eq=False)
-class SliderMotion:
-    """Motion along the guide of a sliding joint; arrays (N,).
-
-    travel : m, of the slider's point from the guide's point along the guide's direction.
-    travel_1, travel_2 : first and second derivative by crank angle, m.
-    """
-
-    travel: Array
-    travel_1: Array
-    travel_2: Array
-    speed: float
-    acceleration: float
-
-    @property
-    def velocity(self) -> Array:
-        """m/s, as seen from the guide."""
-        return self.travel_1 * self.speed
-
-    @property
-    def along_acceleration(self) -> Array:
-        """m/s2, as seen from the guide."""
-        return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
 
 
 class Named(dict[str, Value]):
@@ -215,7 +108,7 @@ class Motion:
         between the other and the normal of the guide, or between the two guides, 0 to pi / 2 and
         counted from where the dyad jams.
         """
-        dyads = (group for group in self.linkage.groups if group.number is not None)
+        dyads = (group for group in self.linkage.groups if group.margin is not None)
         return Named("dyad", ((group.joint, self._transmission(group)) for group in dyads))
 
     def _slider(self, slider: Slider) -> SliderMotion:
@@ -229,22 +122,23 @@ class Motion:
             w,
             a,
         )
-        return SliderMotion(*(part.real for part in way), self.speed, self.acceleration)
+        travel, first, second = (part.real for part in way)
+        return SliderMotion(travel, first, second, self.speed, self.acceleration)
 
     def _transmission(self, group: Group) -> Array:
-        assert group.number is not None
+        assert group.margin is not None
         if all(reaction.kind == "pin" for reaction in group.reactions):
             first, second, pin = (self.state[f"p({reaction.at})"] for reaction in group.reactions)
             return self._full(np.abs(np.angle((first - pin) / (second - pin))))
-        number = self.state[group.number]
+        margin = self.state[group.margin]
         if [reaction.kind for reaction in group.reactions] == ["pin", "pin", "slider"]:
-            number = self._of_block(group, number)
-        return self._full(np.arcsin(np.sqrt(np.clip(number, 0.0, 1.0))))
+            margin = self._of_block(group, margin)
+        return self._full(np.arcsin(np.sqrt(np.clip(margin, 0.0, 1.0))))
 
-    def _of_block(self, group: Group, number: Any) -> Any:
+    def _of_block(self, group: Group, margin: Any) -> Any:
         """Squared sine of a block on a guide, but where the block comes to the guide's pivot.
 
-        There the dyad's own number has to be smooth, and is it by being a little too small.
+        There the dyad's margin has to be smooth, and is it by being a little too small.
         """
         block, pivot = (self.state[f"p({reaction.at})"] for reaction in group.reactions[:2])
         slider = next(one for one in self.machine.sliders if one.name == group.reactions[2].name)
@@ -252,7 +146,7 @@ class Motion:
         way = block - pivot
         apart = np.abs(way) ** 2
         there = apart > 0
-        return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), number)
+        return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), margin)
 
     def _link(self, link: str) -> LinkMotion:
         _, first, second = (self.state[name] for name in u(link))

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import replace
 from math import pi
-from typing import ClassVar, Literal
+from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
@@ -22,23 +22,18 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import FRAME, positive, unknown
+from equipoise.mechanism.checks import positive, unknown
+from equipoise.mechanism.declaring import Declared, Measure, matches
+from equipoise.mechanism.outputs import DECLARED
 from equipoise.mechanism.parts import Mechanism
+from equipoise.quantities import Dimension
 
-Measure = Literal["rms", "ripple", "peak", "peak_to_peak", "area"]
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
 area under the absolute value over one turn of the crank."""
-OutputQuantity = Literal["force", "torque", "length", "angle", "energy"]
-
-FORCES = ("shaking_force", "frame_force")
-MOMENTS = ("shaking_moment", "frame_moment", "drive_torque")
-ABOUT = ("shaking_moment", "frame_moment")
-"""Moments that depend on the point about which they are taken."""
 OF_ROWS = ("roll_moment", "yaw_moment")
 """About x and y, from linkages side by side."""
 JOINTS, GAUGES = "joints.", "gauges."
-COMPONENTS = (".x", ".y")
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")
 """Measures of outputs that are one number at each crank angle."""
 MOST_NUMBERS = 200
@@ -126,89 +121,61 @@ class Limit(Frozen):
         return self.objective.name
 
 
-@dataclass(frozen=True)
-class Output:
-    """What an output is: its quantity, and whether it is a vector in the plane."""
-
-    quantity: OutputQuantity
-    is_vector: bool = False
-
-
-def output_of(name: str, machine: Mechanism) -> Output:
+def output_of(name: str, machine: Mechanism) -> Declared:
     """Look up an output of a machine by its name.
 
     Raises
     ------
-    ModelError : there is no such output; says what there is.
+    ModelError : there is no such output, or it is not linear in the masses; says what there is.
     """
-    if name.startswith(GAUGES):
-        return _gauge(name.removeprefix(GAUGES), machine)
-    if name.startswith(JOINTS):
-        return _joint(name.removeprefix(JOINTS), machine)
-    if name in OF_ROWS and not machine.rows:
-        raise ModelError("", f"{name} comes from linkages side by side; give [[rows]]")
-    if name in (*MOMENTS, *OF_ROWS):
-        return Output("torque")
-    known = {force + part: not part for force in FORCES for part in ("", *COMPONENTS)}
-    if name not in known:
-        moments = (*MOMENTS, *OF_ROWS) if machine.rows else MOMENTS
-        raise ModelError("", unknown(name, [*known, *moments, *_named(machine)], "output"))
-    return Output("force", known[name])
-
-
-def _named(machine: Mechanism) -> Iterator[str]:
-    yield from (f"{JOINTS}{name}" for name in joint_names(machine))
-    gauges = machine.support.gauges if machine.support is not None else ()
-    yield from (f"{GAUGES}{name}" for name in gauges)
-
-
-def _gauge(name: str, machine: Mechanism) -> Output:
-    gauges = machine.support.gauges if machine.support is not None else {}
-    if not gauges:
+    found = [(one, item) for one, item in matches(name) if not name.startswith("rows.")]
+    for one, item in found:
+        if item in one.members(machine):
+            return _balanced(one, item, machine)
+    if not found:
+        raise ModelError("", unknown(name, balanced_names(machine), "output"))
+    one, item = found[0]
+    names, kind = list(one.members(machine)), one.group.removesuffix("s")
+    if kind == "gauge" and not names:
         raise ModelError("", "there is no gauge; give a support with gauges")
-    if name not in gauges:
-        raise ModelError("", unknown(name, gauges, "gauge"))
-    return Output("length" if gauges[name].axis is None else "angle")
+    if not names:
+        raise ModelError("", one.reason.format(what=name))
+    raise ModelError("", unknown(item, names, kind))
 
 
-def _joint(name: str, machine: Mechanism) -> Output:
-    joints = joint_names(machine)
-    if name in joints:
-        return Output("force", True)
-    if name.endswith(COMPONENTS) and name[:-2] in joints:
-        return Output("force")
-    raise ModelError("", unknown(name, joints, "joint"))
+def _balanced(one: Declared, item: str, machine: Mechanism) -> Declared:
+    """An output that balancing can take, with the dimension that it has in this machine."""
+    name = one.named(item).removeprefix("rows.")
+    if one.needs == "rows" and not machine.rows:
+        raise ModelError("", f"{name} comes from linkages side by side; give [[rows]]")
+    if one.reason:
+        raise ModelError("", one.reason.format(what=name))
+    if one.needs == "support" and machine.support.gauges[item].axis is not None:  # type: ignore[union-attr]
+        return replace(one, dimension="angle")
+    return one
 
 
-def joint_names(machine: Mechanism) -> list[str]:
-    """Names of pins and sliders, as far as the names in the model tell.
-
-    At a pin of several bodies each moving link has one; which of them carries the others is found
-    only when the linkage is put together.
-    """
-    shared: dict[str, list[str]] = {}
-    for body, points in machine.bodies.items():
-        for point in points:
-            shared.setdefault(point, []).append(body)
-    pins = [point for point, bodies in shared.items() if len(bodies) == 2]
-    several = (
-        f"{point}/{body}"
-        for point, bodies in shared.items()
-        if len(bodies) > 2
-        for body in bodies
-        if body != FRAME
-    )
-    return [*pins, *several, *(slider.name for slider in machine.sliders)]
+def balanced_names(machine: Mechanism) -> list[str]:
+    """Names of everything that balancing can take of a machine."""
+    names = [
+        one.named(item).removeprefix("rows.")
+        for one in DECLARED.values()
+        if not one.reason
+        and (one.needs != "rows" or machine.rows)
+        and not (one.is_family and one.part in ("x", "y"))
+        for item in one.members(machine)
+    ]
+    return list(dict.fromkeys(names))
 
 
-def quantity_of(objective: Objective, machine: Mechanism) -> OutputQuantity | None:
+def quantity_of(objective: Objective, machine: Mechanism) -> Dimension | None:
     """What the measure of an output is; None where it has no name (the area under a force).
 
     Raises
     ------
     ModelError : as for `output_of`.
     """
-    quantity = output_of(objective.output, machine).quantity
+    quantity = output_of(objective.output, machine).dimension
     if objective.measure != "area":
         return quantity
     return "energy" if quantity == "torque" else None
@@ -251,8 +218,9 @@ def _wrong_about(where: str, objective: Objective, machine: Mechanism) -> Iterat
     about, key = objective.about, f"{where}.about"
     if about is None:
         return
-    if objective.output not in ABOUT:
-        yield ModelError(key, f"goes with {' and '.join(ABOUT)}; leave it out")
+    if not output_of(objective.output, machine).about:
+        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
+        yield ModelError(key, f"goes with {' and '.join(names)}; leave it out")
     elif about not in machine.frame:
         yield ModelError(key, unknown(about, machine.frame, "point of the frame"))
 

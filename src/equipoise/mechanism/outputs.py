@@ -9,14 +9,25 @@ from __future__ import annotations
 from typing import Any
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.declaring import DECLARED, GROUPS, Declared, declared, declaring, output
+from equipoise.mechanism.declaring import (
+    DECLARED,
+    GROUPS,
+    Declared,
+    Found,
+    Measure,
+    declared,
+    declaring,
+    matches,
+    output,
+)
 
-__all__ = ["DECLARED", "GROUPS", "Declared", "declared", "declaring", "output"]
+__all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
 """What `declaring` has is had from here, where something is declared."""
 
 FRAME = "frame"
-FORCE, MOMENT = ("rms", "peak"), ("rms", "peak", "area")
-TORQUE = ("rms", "ripple", "peak", "peak_to_peak")
+FORCE: tuple[Measure, ...] = ("rms", "peak")
+MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
+TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
 """Measures that are told of an output before and after balancing."""
 
 
@@ -156,7 +167,7 @@ output(
     loop="{shaking force}",
     ordered=True,
     compared=FORCE,
-)(lambda found: found.forces.shaking_force.value)
+)(lambda found: found.forces.shaking_force)
 output(
     "shaking_moment",
     "torque",
@@ -184,7 +195,7 @@ output(
     linear=True,
     loop="{frame force}",
     summed=(True, False),
-)(lambda found: found.forces.frame_force.value)
+)(lambda found: found.forces.frame_force)
 output(
     "frame_moment",
     "torque",
@@ -199,7 +210,7 @@ _WEIGHT: dict[str, Any] = {
     "summed": False,
 }
 output("weight", "force", to_say("weight"), parts=("weight.x", "weight.y"), sized=False, **_WEIGHT)(
-    lambda found: found.forces.weight.value
+    lambda found: found.forces.weight
 )
 output("weight_moment", "torque", to_say("moment of the weight"), about=True, **_WEIGHT)(
     lambda found: found.forces.weight_moment
@@ -230,7 +241,7 @@ output(
     loop="{joint force:name}",
     summed=(True, False),
     compared=FORCE,
-)(lambda found, joint: found.forces.joints[joint].value)
+)(lambda found, joint: found.forces.joints[joint])
 
 _RAILS: dict[str, Any] = {
     "members": slider_names,
@@ -265,7 +276,7 @@ output(
     summed=(True, False),
     compared=FORCE,
     **_GEARS,
-)(lambda found, gear: found.forces.gears[gear].value)
+)(lambda found, gear: found.forces.gears[gear])
 output(
     "gears.{}.tangential", "force", to_say("tangential tooth force {name}"), summed=False, **_GEARS
 )(lambda found, gear: found.forces.gears[gear].tangential)
@@ -281,6 +292,7 @@ output(
     "force",
     to_say("shaking force"),
     parts=("rows.shaking_force.x", "rows.shaking_force.y"),
+    summed=(True, False),
     compared=FORCE,
     **_ROWS,
 )(lambda found: found.together["shaking_force"])

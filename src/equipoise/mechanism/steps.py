@@ -144,8 +144,9 @@ class Group:
     kind : by a dyad's kernel, by their gear, or by Newton's method on loop equations.
     motion : steps that find their position and derivatives.
     forces : steps that find the reactions in their joints, once all later groups are done.
-    number : name of the dyad's own number, negative where it cannot be closed; None for others.
-    joint : inner joint of the dyad.  dead : says what the links do where the number is zero.
+    margin : name of the dyad's assembly margin, the squared sine of its transmission angle,
+        negative where it cannot be closed; None for others.
+    joint : inner joint of the dyad.  dead : says what the links do where the margin is zero.
     """
 
     kind: Literal["dyad", "geared", "loops"]
@@ -153,7 +154,7 @@ class Group:
     motion: tuple[Step, ...]
     forces: tuple[Step, ...]
     reactions: tuple[Reaction, ...]
-    number: str | None = None
+    margin: str | None = None
     joint: str = ""
     dead: str = ""
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING, Any, cast
 
-from equipoise.balancing.naming import joint_named
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.outputs import joint_named
 from equipoise.planting.goals import dimension_of
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number

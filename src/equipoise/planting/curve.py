@@ -147,16 +147,16 @@ def ratios(curve: TipCurve) -> Figures:
 
 def transmission(curve: TipCurve) -> Figures:
     """Smallest transmission angle of any dyad; an obtuse one counts by what it lacks to 180 deg."""
-    if not any(group.number for group in curve.family.first.groups):
+    if not any(group.margin for group in curve.family.first.groups):
         return {}
 
-    def number(theta: Array) -> Any:
-        return curve.family.numbers(curve.family.solve(theta))
+    def margin(theta: Array) -> Any:
+        return curve.family.margins(curve.family.solve(theta))
 
     def slope(theta: Array) -> Any:
-        return number(theta + STEP) - number(theta - STEP)
+        return margin(theta + STEP) - margin(theta - STEP)
 
-    samples = curve.family.numbers(curve.grid.state)
-    value, at = smallest(number, slope, curve.theta, samples)
+    samples = curve.family.margins(curve.grid.state)
+    value, at = smallest(margin, slope, curve.theta, samples)
     angle = np.arcsin(np.sqrt(np.clip(value, 0.0, 1.0)))
     return {"transmission.min": angle, "transmission.min_at": wrapped(curve, at)}

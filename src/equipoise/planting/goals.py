@@ -257,7 +257,7 @@ class Problem:
             family = Family([assemble(m) for m in machines if m is not None])
             theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (len(built), GRID + 1))
             with np.errstate(all="ignore"):
-                numbers = family.numbers(family.solve(theta))
+                numbers = family.margins(family.solve(theta))
             worst[built] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
         return machines, worst
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import Forces, forces, massless
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import Machine
@@ -75,7 +76,7 @@ class PlantingFigures(Result):
     loops: tuple[Loop, ...]
     cusps: tuple[float, ...]
     tray_crossings: tuple[float, ...]
-    notes: tuple[str, ...]
+    notes: tuple[Note, ...]
 
     def __getitem__(self, name: str) -> float:
         return self.figures[name]
@@ -114,7 +115,7 @@ class PlantingFigures(Result):
                 name: {"in_air": _of(air), "in_soil": _of(soil)}
                 for name, (air, soil) in self.forces.compared().items()
             }
-        result["notes"] = list(self.notes)
+        result["notes"] = list(map(str, self.notes))
         return result
 
 
@@ -205,33 +206,57 @@ def _notes(
     stays: tuple[Visit, ...],
     crossed: tuple[float, ...],
     known: Mapping[str, float],
-) -> Iterator[str]:
+) -> Iterator[Note]:
     planting = curve.planting
     if curve.forward[0, 0] == 0:
         yield (
-            "forward_speed is 0: there is no path over ground, and the figures of that path are "
-            "left out"
+            Note(
+                to_say(
+                    "forward_speed is 0: there is no path over ground, and the figures of"
+                    " that path are left out"
+                )
+            )
         )
     if len(stays) > 1:
         yield (
-            f"the tip is in the soil {len(stays)} times a cycle; entry, exit and lowest point are "
-            "those of the deepest stay"
+            Note(
+                to_say(
+                    "the tip is in the soil {count} times a cycle; entry, exit and lowest"
+                    " point are those of the deepest stay"
+                ),
+                count=len(stays),
+            )
         )
     if planting.tray is not None and not crossed:
-        yield "the tip never passes the tray's edge, so that it picks up nothing"
+        yield Note(to_say("the tip never passes the tray's edge, so that it picks up nothing"))
     if planting.units_per_turn > 1:
         yield (
-            f"units_per_turn is {planting.units_per_turn}: soil loads, and clearances without the "
-            "tip, are those of the one tip named, not of the other units"
+            Note(
+                to_say(
+                    "units_per_turn is {units_per_turn}: soil loads, and clearances "
+                    "without the tip, are those of the one tip named, not of the other "
+                    "units"
+                ),
+                units_per_turn=planting.units_per_turn,
+            )
         )
     if planting.release is not None and known["release.y"] > known["surface"]:
-        yield "the seedling is let go above the surface of the soil"
+        yield Note(to_say("the seedling is let go above the surface of the soil"))
     yield from _collisions(known)
     base = finger_base(curve)
     if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
-        yield f"{base} is below the surface at entry or exit, so that no length of a hole is told"
+        yield Note(
+            to_say(
+                "{base} is below the surface at entry or exit, so that no length of a hole is told"
+            ),
+            base=base,
+        )
     if planting.finger_from is None and base is not None:
-        yield f"the finger is taken from {base} to {planting.tip}; finger_from can name another"
+        yield Note(
+            to_say("the finger is taken from {base} to {tip}; finger_from can name another"),
+            base=base,
+            tip=planting.tip,
+        )
 
 
 def table(figures: PlantingFigures, angles: int = 360) -> list[tuple[str, str, Array]]:

@@ -9,8 +9,8 @@ import warnings
 from collections.abc import Collection
 from typing import TYPE_CHECKING
 
+from equipoise.figures import render
 from equipoise.i18n import say
-from equipoise.plotting.style import render, styled
 from equipoise.present.document import Drawn
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import SECTIONS, each
@@ -75,9 +75,8 @@ def _send(pipe: Connection, found: Findings | ToolFindings, sections: Collection
 
 def _draw(found: Findings | ToolFindings, sections: Collection[str]) -> Drawings:
     drawn: Drawings = {}
-    with styled():  # once for all of them
-        for picture in each(found, sections=sections):
-            svg = render(picture.draw(), "svg").decode()
-            block = Drawn(picture.name, say(picture.caption), svg)
-            drawn.setdefault(picture.section, []).append(block)
+    for picture in each(found, sections=sections):
+        svg = render(picture.draw()).decode()
+        block = Drawn(picture.name, say(picture.caption), svg)
+        drawn.setdefault(picture.section, []).append(block)
     return drawn

@@ -5,7 +5,17 @@ from __future__ import annotations
 import re
 from html import escape
 
-from equipoise.plotting.style import EARTH, FAINT, INK, LINES, MAIN, PALE, SOIL, STRESS, STUBBLE
+from equipoise.figures.style import (
+    EARTH,
+    FAINT,
+    INK,
+    LINES,
+    MAIN,
+    PALE,
+    SOIL,
+    STRESS,
+    STUBBLE,
+)
 from equipoise.symbols.looks import DARK, LIGHT
 
 GRID = "#e6e6e6"

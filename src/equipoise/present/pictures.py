@@ -8,21 +8,20 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from equipoise.i18n import to_say
-from equipoise.plotting.style import styled
 from equipoise.present.findings import Findings, ToolFindings
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
     from equipoise.balancing.balanced import Balanced
+    from equipoise.figures import Picture as Drawing
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.transmission import Transmissions
     from equipoise.planting.summary import PlantingFigures
+    from equipoise.results.charts import Chart
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
 
-Entry = tuple[str, str, Callable[[], "Figure"]]
+Entry = tuple[str, str, Callable[[], "Drawing"]]
 """Name, caption, and what draws it inside `plotting.style.styled`."""
 Part = tuple[str, Iterable[Entry]]
 """A section and its pictures."""
@@ -46,137 +45,135 @@ def of_linkage(found: Findings, at: Sequence[float] | None) -> Iterator[Part]:
         yield "balance", _balance(found.balanced)
 
 
-def pages(name: str, caption: str, make: Callable[[], Iterable[Figure]]) -> Iterator[Entry]:
-    """What goes on over several pictures; how many, only drawing them tells."""
-    with styled():
-        figures = list(make())
-    for number, figure in enumerate(figures, 1):
-        yield name if number == 1 else f"{name}-{number}", caption, partial(_drawn, figure)
+def pages(name: str, caption: str, make: Callable[[], Iterable[Chart]]) -> Iterator[Entry]:
+    """What goes on over several pictures; how many, only their charts tell."""
+    for number, chart in enumerate(make(), 1):
+        yield name if number == 1 else f"{name}-{number}", caption, partial(_made, chart)
 
 
-def _drawn(figure: Figure) -> Figure:
-    return figure
+def _made(chart: Chart) -> Chart:
+    return chart
 
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
-    from equipoise.plotting.analysis import curves_figure, hodograph_figure, linkage_figure
+    from equipoise.figures.analysis import curves, hodograph
+    from equipoise.figures.linkage import linkage
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
-    yield "linkage", caption, partial(linkage_figure, analysis, at)
+    yield "linkage", caption, partial(linkage, analysis, at)
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
-    yield "curves", caption, partial(curves_figure, analysis)
+    yield "curves", caption, partial(curves, analysis)
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
-    yield "hodograph", caption, partial(hodograph_figure, analysis)
+    yield "hodograph", caption, partial(hodograph, analysis)
 
 
 def _planting(figures: PlantingFigures) -> Iterator[Entry]:
-    from equipoise.figures.path import path_figure
-    from equipoise.plotting.signals import joints_figure, ratio_figure, tip_figures, torque_figure
+    from equipoise.figures.path import path
+    from equipoise.figures.planting import joints, ratio, tips, torque
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
-    yield "path", caption, partial(path_figure, figures)
+    yield "path", caption, partial(path, figures)
     machine = figures.machine
     caption = to_say("Angular velocity of a link over that of the crank.")
     for link in machine.links:
         if link != machine.drive.link:
-            yield f"ratio-{link}", caption, partial(ratio_figure, figures, link)
+            yield f"ratio-{link}", caption, partial(ratio, figures, link)
     caption = to_say("Velocity and acceleration of the finger's tip relative to the machine.")
-    with styled():
-        tips = dict(tip_figures(figures))
-    for name, figure in tips.items():
-        yield f"tip-{name}", caption, partial(_drawn, figure)
+    for chart in tips(figures):
+        yield f"tip-{chart.name}", caption, partial(_made, chart)
     if figures.forces is not None:
         caption = to_say("Drive torque with and without the forces of the soil.")
-        yield "soil-torque", caption, partial(torque_figure, figures)
+        yield "soil-torque", caption, partial(torque, figures)
         caption = to_say("Forces in the joints with and without the forces of the soil.")
-        yield "soil-joints", caption, partial(joints_figure, figures)
+        yield "soil-joints", caption, partial(joints, figures)
 
 
 def _forces(found: Findings) -> Iterator[Entry]:
-    from equipoise.plotting import analysis as view
+    from equipoise.figures import analysis as view
 
     analysis = found.analysis
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
-    yield "polar", caption, partial(view.polar_figure, analysis)
+    yield "polar", caption, partial(view.polar, analysis)
     caption = to_say("Shaking force over crank angle.")
-    yield "force", caption, partial(view.force_figure, analysis)
+    yield "force", caption, partial(view.force, analysis)
     caption = to_say("Shaking moment over crank angle.")
-    yield "moment", caption, partial(view.moment_figure, analysis)
+    yield "moment", caption, partial(view.moment, analysis)
     caption = to_say("Drive torque over crank angle, and what it is for.")
-    yield "torque", caption, partial(view.torque_figure, analysis)
+    yield "torque", caption, partial(view.torque, analysis)
     if view.has_orders(analysis):
         caption = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
-        yield "spectrum", caption, partial(view.spectrum_figure, analysis)
+        yield "spectrum", caption, partial(view.spectrum, analysis)
 
 
 def _joints(found: Findings) -> Iterator[Entry]:
-    from equipoise.plotting.analysis import joint_polars_figures, joints_figures
+    from equipoise.figures.joints import joint_polars, joints
 
     caption = to_say("Forces in the joints over crank angle.")
-    yield from pages("joints", caption, partial(joints_figures, found.analysis))
+    yield from pages("joints", caption, partial(joints, found.analysis))
     caption = to_say("Forces in the joints as polar diagrams: the ends of their arrows.")
-    yield from pages("joint-polars", caption, partial(joint_polars_figures, found.analysis))
+    yield from pages("joint-polars", caption, partial(joint_polars, found.analysis))
 
 
 def _vibration(response: Response) -> Iterator[Entry]:
-    from equipoise.plotting.vibration.mounts import mounts_figures, spectrum_figures
-    from equipoise.plotting.vibration.signals import drive_figure, gauge_figure
+    from equipoise.figures.vibration import drive, gauge, mounts, spectra
 
     caption = to_say("Vibration at a gauge of the support over a cycle.")
     for name in response.gauges:
-        yield f"gauge-{name}", caption, partial(gauge_figure, response, name)
+        yield f"gauge-{name}", caption, partial(gauge, response, name)
     caption = to_say("Vibration at the gauges by orders of the crank.")
-    yield from pages("gauge-spectrum", caption, partial(spectrum_figures, response))
+    yield from pages("gauge-spectrum", caption, partial(spectra, response))
     caption = to_say("Forces in the mounts over a cycle.")
-    yield from pages("mounts", caption, partial(mounts_figures, response))
+    yield from pages("mounts", caption, partial(mounts, response))
     caption = to_say("Torque and speed of the drive on the moving support.")
-    yield "drive", caption, partial(drive_figure, response)
+    yield "drive", caption, partial(drive, response)
 
 
 def _speeds(sweep: Sweep) -> Iterator[Entry]:
-    from equipoise.plotting.vibration.map import map_figure
-    from equipoise.plotting.vibration.sweep import gauges_curves, mounts_curves
+    from equipoise.figures.sweep import gauges, mounts, resonance_map
 
     caption = to_say("Vibration at the gauges against speed.")
     for quantity in ("displacement", "velocity", "acceleration"):
-        yield f"response-{quantity}", caption, partial(gauges_curves, sweep, quantity)
+        yield f"response-{quantity}", caption, partial(gauges, sweep, quantity)
     caption = to_say("Where orders of the crank meet natural frequencies.")
-    yield "resonance-map", caption, partial(map_figure, sweep)
+    yield "resonance-map", caption, partial(resonance_map, sweep)
     if sweep.mounts:
         caption = to_say("Forces in the mounts against speed.")
-        yield "mounts-speed", caption, partial(mounts_curves, sweep)
+        yield "mounts-speed", caption, partial(mounts, sweep)
 
 
 def _modes(found: Findings) -> Iterator[Entry]:
-    from equipoise.plotting.vibration.modes import mode_figure
+    from equipoise.figures.modes import mode_chart
 
     free = found.modes
     assert free is not None
     caption = to_say("Shape of a natural vibration of the machine on its support.")
     for number in range(1, len(free.modes) + 1):
-        yield f"mode-{number}", caption, partial(mode_figure, free, number)
+        yield f"mode-{number}", caption, partial(mode_chart, free, number)
 
 
 def _balance(balanced: Balanced) -> Iterator[Entry]:
-    from equipoise.figures.changes import changes_figure
-    from equipoise.plotting.balancing.orders import orders_figures
-    from equipoise.plotting.balancing.phases import phases_figure, together_figure
+    from equipoise.figures.balancing import orders, phases, together
+    from equipoise.figures.changes import changes
 
     if any(change.kind != "phases" for change in balanced.changes):
-        yield "changes", to_say("What to change, to scale."), partial(changes_figure, balanced)
+        yield (
+            "changes",
+            to_say("What to change, to scale."),
+            partial(changes, balanced),
+        )
         yield from _before_and_after(balanced)
     caption = to_say("Orders of what was made small, before and after.")
-    yield from pages("balanced-orders", caption, partial(orders_figures, balanced))
+    yield from pages("balanced-orders", caption, partial(orders, balanced))
     if balanced.phasing is not None:
         both = balanced.original, balanced.machine
-        yield "phases", to_say("Phases of the rows."), partial(phases_figure, *both)
+        yield "phases", to_say("Phases of the rows."), partial(phases, *both)
         caption = to_say("Shaking force of all rows together, before and after.")
-        yield "rows", caption, partial(together_figure, *both)
+        yield "rows", caption, partial(together, *both)
 
 
 def _before_and_after(balanced: Balanced) -> Iterator[Entry]:
-    from equipoise.plotting.balancing.signals import signal_figures
+    from equipoise.figures.balancing import signals
 
     captions = {
         "force": to_say("Shaking force, before and after."),
@@ -184,16 +181,14 @@ def _before_and_after(balanced: Balanced) -> Iterator[Entry]:
         "moment": to_say("Shaking moment, before and after."),
         "torque": to_say("Drive torque, before and after."),
     }
-    with styled():
-        drawn = signal_figures(balanced)
-    for name, figure in drawn.items():
-        yield f"balanced-{name}", captions[name], partial(_drawn, figure)
+    for name, chart in signals(balanced).items():
+        yield f"balanced-{name}", captions[name], partial(_made, chart)
 
 
 def of_tool(found: ToolFindings) -> Iterator[Part]:
     """The one section of a tool."""
     if found.modes is not None:
-        yield "tool", _modes_shown_tool(found.modes)
+        yield "tool", _modes_of_tool(found.modes)
     if found.transmission is not None:
         yield "tool", _transmission(found.transmission, found.modes)
     yield "tool", _moment(found)
@@ -202,48 +197,48 @@ def of_tool(found: ToolFindings) -> Iterator[Part]:
     yield "tool", _design(found)
 
 
-def _modes_shown_tool(modes: ToolModes) -> Iterator[Entry]:
-    from equipoise.plotting.tool.modes import modes_figures
+def _modes_of_tool(modes: ToolModes) -> Iterator[Entry]:
+    from equipoise.figures.handheld import shapes
 
     caption = to_say("Shapes of the natural vibrations of the shaft.")
     for plane, name in enumerate(("modes", "modes-lateral")[: 1 if modes.alike else 2]):
-        yield from pages(name, caption, partial(modes_figures, modes, plane))
+        yield from pages(name, caption, partial(shapes, modes, plane))
 
 
 def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Entry]:
-    from equipoise.plotting.tool.transmission import transmission_figure
+    from equipoise.figures.handheld import transmission
 
     caption = to_say("Share of a shaking force that comes to what holds the tool.")
     planes = ("transmission", "transmission-lateral")[: 1 if found.tool.alike else 2]
     for plane, name in enumerate(planes):
-        yield name, caption, partial(transmission_figure, found, plane, modes)
+        yield name, caption, partial(transmission, found, plane, modes)
 
 
 def _moment(found: ToolFindings) -> Iterator[Entry]:
     if found.sweep is None or found.sweep.response is None:
         return
-    from equipoise.plotting.tool.response import moment_figure
+    from equipoise.figures.handheld import moment
 
     caption = to_say("Bending moment and displacement along the shaft.")
-    yield "moment", caption, partial(moment_figure, found.sweep.response, None)
+    yield "moment", caption, partial(moment, found.sweep.response, None)
 
 
 def _exposure(found: ToolExposure) -> Iterator[Entry]:
-    from equipoise.plotting.tool.exposure import acceleration_figure, exposure_figure
+    from equipoise.figures.handheld import acceleration, weighted
 
     caption = to_say("Acceleration of the hands against speed of the engine.")
-    yield "acceleration", caption, partial(acceleration_figure, found)
+    yield "acceleration", caption, partial(acceleration, found)
     caption = to_say("Daily exposure of the hands, with what is allowed.")
-    yield "exposure", caption, partial(exposure_figure, found)
+    yield "exposure", caption, partial(weighted, found)
 
 
 def _design(found: ToolFindings) -> Iterator[Entry]:
     if found.design is None:
         return
-    from equipoise.plotting.tool.design import design_figure
+    from equipoise.figures.handheld import design
 
     caption = to_say("What the hand that gets most gets over the band of speeds, before and after.")
-    yield "design", caption, partial(design_figure, found.design)
+    yield "design", caption, partial(design, found.design)
 
 
 SECTIONS = ("motion", "planting", "forces", "joints", "vibration", "modes", "balance", "tool")
@@ -261,7 +256,7 @@ class Picture:
     name: str
     section: str
     caption: str
-    draw: Callable[[], Figure]
+    draw: Callable[[], Drawing]
 
 
 def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
@@ -278,8 +273,7 @@ def each(
     sections: Collection[str] = SECTIONS,
 ) -> Iterator[Picture]:
     """Those of some sections one by one: what only later ones need is not computed before."""
-    from equipoise.plotting.style import free_name
-    from equipoise.present.pictures import of_linkage, of_tool
+    from equipoise.figures.style import free_name
 
     parts = of_tool(found) if isinstance(found, ToolFindings) else of_linkage(found, at)
     taken: dict[str, None] = {}
@@ -289,11 +283,4 @@ def each(
         for name, caption, draw in entries:
             own = free_name(name, taken)
             taken[own] = None
-            yield Picture(own, section, caption, partial(_in_style, draw))
-
-
-def _in_style(draw: Callable[[], Figure]) -> Figure:
-    from equipoise.plotting.style import styled
-
-    with styled():
-        return draw()
+            yield Picture(own, section, caption, draw)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.naming import objective_named, output_named, scaled, unit_of
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.present.findings import Findings
 from equipoise.quantities import brief, change, percent
+from equipoise.results.naming import objective_named, output_named, scaled, unit_of_measure
 
 WORSE, MOST_WORSE = 0.1, 3
 NOTHING = 1e-9
@@ -120,7 +120,7 @@ def _from_nothing(balanced: Balanced) -> Iterator[str]:
         if output == name or not name.startswith("rows."):
             continue
         if balanced.before.get(name, after) < NOTHING * after:
-            unit = unit_of(output, "peak")
+            unit = unit_of_measure(output, "peak")
             what = output_named(output)
             yield say("{what} from 0 to {size} {unit}", what=what, size=brief(after), unit=unit)
 

@@ -8,14 +8,15 @@ from math import cos, pi, sin
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.naming import CAUSES, joint_named, objective_named, scaled
 from equipoise.errors import UsageError
 from equipoise.i18n import say
+from equipoise.mechanism.outputs import joint_named
 from equipoise.present.document import Answer, Tile
 from equipoise.present.findings import Findings
 from equipoise.present.remedies import good_already, helps_told
 from equipoise.present.shaking import Shaking
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
+from equipoise.results.naming import CAUSES, objective_named, scaled
 from equipoise.results.tables import shares
 from equipoise.signals import Figures
 

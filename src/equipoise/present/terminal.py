@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text as RichText
 
-from equipoise.i18n import say
+from equipoise.i18n import Note, say
 from equipoise.present.cells import Grid, Head, Text, Units, grid, plain
 from equipoise.results.blocks import Block, Facts, Listing, Notes, Picture, Section, Table
 from equipoise.results.blocks import Text as Running
@@ -89,7 +89,7 @@ class _Printer:
         elif isinstance(block, Notes):
             self.space()
             for note in block.notes:
-                self.words(f"note: {note}")
+                self.words(f"note: {note.said() if isinstance(note, Note) else note}")
         elif isinstance(block, Listing):
             self.space()
             if block.title:

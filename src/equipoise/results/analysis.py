@@ -12,9 +12,10 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
-from equipoise.mechanism.dynamics import Forces, forces, massless, place_of
+from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, Named, move
+from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Figures, Periodic
@@ -210,21 +211,24 @@ def _heading(analysis: Analysis) -> Values:
 
 def _split(found: Forces) -> Values:
     """Every force by cause, and by link: output -> cause or link -> array, or x and y."""
-    split = found.split
-    names = ["shaking_force", "shaking_moment", "frame_force", "frame_moment", "drive_torque"]
-    result: Values = {}
-    for key, parts in (("by_cause", split.by_cause), ("by_link", split.by_link)):
-        result[key] = {name: _parts(parts(name)) for name in names}
-        result[key]["joints"] = {n: _parts(parts(f"joints.{n}")) for n in split.joints}
-        result[key]["gears"] = {n: _parts(parts(f"gears.{n}")) for n in split.gears}
+    read = Found(found.motion, found.split)
+    result: Values = {key: {"joints": {}, "gears": {}} for key in ("by_cause", "by_link")}
+    for one in DECLARED.values():
+        if one.part in ("x", "y") or not one.is_split:
+            continue
+        for item in one.items_of(read):
+            whole = one.vector(read, item)
+            for key, names, axis in (("by_cause", CAUSES, 1), ("by_link", found.split.links, 0)):
+                parts = zip(names, whole.sum(axis=axis), strict=True)
+                values = result[key]
+                for step in one.path(item)[:-1]:
+                    values = values[step]
+                values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
 
 
-def _parts(parts: Mapping[str, Array]) -> Values:
-    return {
-        name: {"x": part.real, "y": part.imag} if np.iscomplexobj(part) else part
-        for name, part in parts.items()
-    }
+def _parts(values: Array) -> Any:
+    return {"x": values.real, "y": values.imag} if np.iscomplexobj(values) else values
 
 
 def _summary(analysis: Analysis) -> Values:

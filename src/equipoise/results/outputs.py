@@ -65,9 +65,9 @@ class Output:
         return self.declared.values(self.analysis, self.item)
 
     @cached_property
-    def vector(self) -> Array:
-        """The same, complex (N,) where it is a vector or a part of one."""
-        return self.declared.vector(self.analysis, self.item)
+    def component(self) -> Array:
+        """The same, but complex (N,) of what is a vector."""
+        return self.declared.component(self.declared.vector(self.analysis, self.item))
 
     @cached_property
     def figures(self) -> Figures:

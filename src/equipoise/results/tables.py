@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.naming import CAUSES, body_named, joint_named, output_named
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
+from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Span, Table, Text, Value
+from equipoise.results.naming import CAUSES, output_named
 from equipoise.signals import Figures, Periodic, figures
 
 if TYPE_CHECKING:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
-from equipoise.balancing.naming import objective_named
-from equipoise.i18n import say
+from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number, percent
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.naming import objective_named
 from equipoise.studies.design_space import Normal, Uniform
 from equipoise.studies.selection import far_apart
 
@@ -168,7 +168,7 @@ def searched_blocks(
     yield from _limits(found.study.outputs, units)
     yield _front(found, units, own)
     if not found.stood_still:
-        yield Notes((say("it may get better yet; give more generations"),))
+        yield Notes((Note(to_say("it may get better yet; give more generations")),))
 
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
@@ -449,14 +449,14 @@ def advice(found: Tolerances) -> str:
     )
 
 
-def _outside(found: Tolerances) -> Iterator[str]:
+def _outside(found: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
     for name, one in found.scatters.items():
         if _beyond(one):
-            yield say(
-                "the model itself does not keep the limits of {name}; change its numbers first",
-                name=name,
+            template = to_say(
+                "the model itself does not keep the limits of {name}; change its numbers first"
             )
+            yield Note(template, name=name)
 
 
 def _beyond(one: Scatter) -> bool:

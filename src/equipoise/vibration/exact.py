@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ResponseError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
@@ -210,7 +211,7 @@ class ExactSolution:
             tuple(self._notes()),
         )
 
-    def _notes(self) -> Iterator[str]:
+    def _notes(self) -> Iterator[Note]:
         """What a reader has to know of the solution."""
         yield from in_words(self.multipliers)
         motor = self.machine.drive.motor
@@ -218,11 +219,21 @@ class ExactSolution:
             shift, own = float(self.states[-1, 0]), fastest(motor)
             if abs(shift) > own:
                 yield (
-                    f"to hold the mean speed, the motor's curve is shifted by {shift:.4g} rad/s, "
-                    f"more than its own {own:.4g} rad/s: it is too weak or slow for this machine"
+                    Note(
+                        to_say(
+                            "to hold the mean speed, the motor's curve is shifted by "
+                            "{shift} rad/s, more than its own {own} rad/s: it is too weak"
+                            " or slow for this machine"
+                        ),
+                        shift=f"{shift:.4g}",
+                        own=f"{own:.4g}",
+                    )
                 )
         if abs(self.lean) > LEANING:
-            yield f"the support leans by {self.lean:.1f} deg from the drawn position in the mean"
+            yield Note(
+                to_say("the support leans by {angle} deg from the drawn position in the mean"),
+                angle=f"{self.lean:.1f}",
+            )
 
     def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
         ride = self.ride

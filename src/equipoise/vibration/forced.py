@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import cast, get_args
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import idle_parts
@@ -87,11 +88,17 @@ def steady_speed(machine: Machine, speed: float | None, drive: bool) -> float:
     return machine.drive.speed if speed is None else float(speed)
 
 
-def left_out(machine: Machine) -> list[str]:
+def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
-    found = list(idle_parts(machine.support))
+    found: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
-        found.append("the drive's acceleration is left out: a steady vibration has a steady crank")
+        found.append(
+            Note(
+                to_say(
+                    "the drive's acceleration is left out: a steady vibration has a steady crank"
+                )
+            )
+        )
     return found
 
 
@@ -169,11 +176,14 @@ def _loudness(answer: Response) -> float:
     return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
 
 
-def _other(louder: Response, other: Response) -> str:
+def _other(louder: Response, other: Response) -> Note:
     share = 100 * _ratio(louder, other)
-    return (
-        f"another steady state at this speed shakes {share:.0f} % as much; which of them the "
-        "machine takes depends on the speeds it comes from"
+    return Note(
+        to_say(
+            "another steady state at this speed shakes {share} % as much; which of "
+            "them the machine takes depends on the speeds it comes from"
+        ),
+        share=f"{share:.0f}",
     )
 
 

@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Periodic
@@ -128,7 +129,7 @@ class Response(Result):
     residual: float | None = None
     multipliers: Array | None = None
     energy: Energy | None = None
-    notes: tuple[str, ...] = ()
+    notes: tuple[Note | str, ...] = ()
 
     @property
     def stable(self) -> bool | None:
@@ -161,7 +162,7 @@ class Response(Result):
             values["multipliers"] = [[m.real, m.imag] for m in self.multipliers.tolist()]
         if self.energy is not None:
             values["energy"] = {"fed_in": self.energy.fed_in, "lost": self.energy.lost}
-        values["notes"] = list(self.notes)
+        values["notes"] = list(map(str, self.notes))
         return values
 
     def columns(self, samples: int = 360) -> list[tuple[str, str, Array]]:
@@ -201,13 +202,13 @@ class Response(Result):
         return values
 
 
-def in_words(multipliers: Array) -> list[str]:
+def in_words(multipliers: Array) -> list[Note]:
     """What to say of multipliers that are not below 1, the largest of them first."""
     largest = abs(multipliers[0]) if multipliers.size else 0.0
     if largest > 1 + NEUTRAL:
-        return ["this steady state is not stable: a disturbance does not die out"]
+        return [Note(to_say("this steady state is not stable: a disturbance does not die out"))]
     if largest >= 1 - NEUTRAL:
-        return ["a disturbance neither grows nor dies out: something is undamped"]
+        return [Note(to_say("a disturbance neither grows nor dies out: something is undamped"))]
     return []
 
 

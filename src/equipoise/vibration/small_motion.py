@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import Gauge
@@ -45,7 +46,11 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     }
     mounts, notes = linear_mounts(linear, moved, moved.derivative() * speed, speed)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
-        notes.append("the support falls over by itself: it does not stand in the drawn position")
+        notes.append(
+            Note(
+                to_say("the support falls over by itself: it does not stand in the drawn position")
+            )
+        )
     return Response(
         body.machine,
         linear.excitation.step,
@@ -61,7 +66,7 @@ def respond_linear(linear: Linear, speed: float) -> Response:
 
 def linear_mounts(
     linear: Linear, moved: Periodic, moving: Periodic, speed: float
-) -> tuple[dict[str, MountForce], list[str]]:
+) -> tuple[dict[str, MountForce], list[Note]]:
     """Forces of the mounts at small displacements and velocities (D, K + 1); and what to say."""
     exciting = force_amplitudes(linear, speed)
     mounts, notes = {}, []
@@ -71,9 +76,16 @@ def linear_mounts(
         force = force + linear.seen_by(row, moving) * -mount.damper
         if not linear.rest.carries(name, mount):
             force, preload = force * 0.0, 0.0
-            notes.append(f"{name} does not touch at rest, and is left out")
+            notes.append(Note(to_say("{name} does not touch at rest, and is left out"), name=name))
         elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
-            notes.append(f"{name} would have to pull, which it cannot; the model exact lets it go")
+            notes.append(
+                Note(
+                    to_say(
+                        "{name} would have to pull, which it cannot; the model exact lets it go"
+                    ),
+                    name=name,
+                )
+            )
         hands_on = exciting if mount.axis is None else exciting[:0]
         mounts[name] = mount_force(force, preload, hands_on)
     return mounts, notes

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,6 +10,7 @@ from typing import Any, cast, get_args
 import numpy as np
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
+from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
@@ -86,7 +86,7 @@ class Sweep(Result):
     resonances: tuple[Resonance, ...]
     fluctuation: Array
     stable: Array
-    notes: tuple[str, ...]
+    notes: tuple[Note | str, ...]
 
     @cached_property
     def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
@@ -130,7 +130,7 @@ class Sweep(Result):
             values["stable"] = self.stable.tolist()
         if np.any(self.fluctuation > 0):
             values["fluctuation"] = _plain(self.fluctuation)
-        values["notes"] = list(self.notes)
+        values["notes"] = list(map(str, self.notes))
         return values
 
 
@@ -228,26 +228,44 @@ def _by_orders(
     return answers
 
 
-def _missing(grid: Array, answers: list[Response | None]) -> list[str]:
+def _missing(grid: Array, answers: list[Response | None]) -> list[Note]:
     lost = [speed for speed, answer in zip(grid.tolist(), answers, strict=True) if answer is None]
     if len(lost) == len(grid):
         raise ResponseError("no steady state was found at any of these speeds")
     if not lost:
         return []
-    return [f"no steady state was found at {len(lost)} of {len(grid)} speeds, {range_shown(lost)}"]
+    template = to_say("no steady state was found at {lost} of {count} speeds, {speeds}")
+    return [Note(template, lost=len(lost), count=len(grid), speeds=range_shown(lost))]
 
 
-def _noted(grid: Array, answers: list[Response | None]) -> Iterator[str]:
+def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
     """What is to be said of the responses, each with the speeds of which it holds."""
-    where: dict[str, list[tuple[float, str]]] = {}
+    where: dict[str, list[tuple[float, Note | str]]] = {}
     for speed, answer in zip(grid.tolist(), answers, strict=True):
         for note in () if answer is None else answer.notes:
             # Notes that differ in a number only are one.
-            where.setdefault(re.sub(r"-?[0-9.]+", "", note), []).append((speed, note))
+            kind = _kind(note)
+            where.setdefault(kind, []).append((speed, note))
     for found in where.values():
         speeds = [speed for speed, _ in found]
         everywhere = len(found) == len(grid)
-        yield found[0][1] if everywhere else f"{range_shown(speeds)}: {found[0][1]}"
+        note = found[0][1]
+        if everywhere:
+            yield note
+        else:
+            yield Note(to_say("{speeds}: {note}"), speeds=range_shown(speeds), note=note)
+
+
+def _kind(note: Note | str) -> str:
+    """The same for notes that differ in numbers only."""
+    if isinstance(note, str):
+        return note
+    words = (str(value) for value in note.values.values())
+    return "/".join([note.template, *(word for word in words if not _is_number(word))])
+
+
+def _is_number(word: str) -> bool:
+    return word.replace(".", "").replace("-", "").isdigit()
 
 
 def _gathered(
@@ -257,7 +275,7 @@ def _gathered(
     answers: list[Response | None],
     linear: Linear,
     met: list[Resonance],
-    notes: tuple[str, ...],
+    notes: tuple[Note | str, ...],
 ) -> Sweep:
     first = next(answer for answer in answers if answer is not None)
     return Sweep(

@@ -10,7 +10,6 @@ from typing import Any
 
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.measures import unit_of as si_unit
-from equipoise.balancing.naming import MEASURES, objective_named, output_named, scaled, unit_of
 from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
@@ -18,6 +17,13 @@ from equipoise.balancing.workshop import sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.quantities import number
+from equipoise.results.naming import (
+    MEASURES,
+    objective_named,
+    output_named,
+    scaled,
+    unit_of_measure,
+)
 from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.rounding import clean
@@ -192,7 +198,7 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         if output.startswith("gauges"):
             factor, unit = scaled(si_unit(Objective(output), found.original))
         else:
-            factor, unit = scaled(unit_of(output, measure))
+            factor, unit = scaled(unit_of_measure(output, measure))
     return {"label": label, "unit": unit, "before": factor * before, "after": factor * after}
 
 
@@ -200,7 +206,7 @@ def _proof(found: Balanced, replaced: bool) -> str:
     if found.gap is None:
         return f"Found among {found.method}; that nothing better exists is not proved of phases."
     gap = max(found.gap, EXACT)
-    proved = f"proved {found.scope}".strip()
+    proved = f"proved {' and '.join(map(str, found.scope))}".strip()
     of = "without the counterweights that were taken off" if replaced else "before"
     return (
         f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "

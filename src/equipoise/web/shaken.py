@@ -90,4 +90,4 @@ def _told(found: Response, block: Block) -> Values:
                 "peak_to_peak": float(np.ptp(values)),
             }
         )
-    return {"gauges": gauges, "arrays": block.told, "notes": list(found.notes)}
+    return {"gauges": gauges, "arrays": block.told, "notes": list(map(str, found.notes))}

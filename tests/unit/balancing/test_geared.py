@@ -178,7 +178,7 @@ def test_the_best_of_all_teeth() -> None:
     gears, _ = found.changes
     assert gears.values["teeth"] == min(costs, key=lambda teeth: costs[teeth])
     assert found.objectives[wish[0].name][1] == pytest.approx(min(costs.values()), rel=1e-7)
-    assert "9 choices of gears" in found.method
+    assert "9 choices of gears" in str(found.method)
 
 
 def test_a_ratio_is_followed_between_the_grid() -> None:

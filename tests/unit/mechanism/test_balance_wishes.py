@@ -22,7 +22,8 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.objectives import joint_names, output_of, quantity_of
+from equipoise.mechanism.objectives import output_of, quantity_of
+from equipoise.mechanism.outputs import joint_names
 from equipoise.mechanism.support import Row
 from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank
@@ -78,10 +79,10 @@ def test_phases_need_rows() -> None:
         (Objective("shaking_force.z"), "output",
          "no output is called 'shaking_force.z'; did you mean 'shaking_force.y'?"),
         (Objective("x"), "output",
-         "no output is called 'x'; there are 'shaking_force', 'shaking_force.x', "
-         "'shaking_force.y', 'frame_force', 'frame_force.x', 'frame_force.y', 'shaking_moment', "
-         "'frame_moment', 'drive_torque', 'roll_moment', 'yaw_moment', 'joints.A', 'joints.D', "
-         "'joints.B', 'joints.C', 'gauges.g', 'gauges.nod'"),
+         "no output is called 'x'; there are 'shaking_force.x', 'shaking_force.y', "
+         "'shaking_force', 'shaking_moment', 'drive_torque', 'frame_force.x', 'frame_force.y', "
+         "'frame_force', 'frame_moment', 'joints.A', 'joints.D', 'joints.B', 'joints.C', "
+         "'roll_moment', 'yaw_moment', 'gauges.g', 'gauges.nod'"),
         (Objective("drive_torque.x"), "output",
          "no output is called 'drive_torque.x'; did you mean 'drive_torque'?"),
         (Objective("joints.Q"), "output",
@@ -111,6 +112,10 @@ def test_phases_need_rows() -> None:
         (Objective("gauges.g", speeds=(1.0, 0.0)), "speeds[2]",
          "the crank stands still there; give another speed"),
         (Objective("gauges.g", speeds=(1.0, 1.0)), "speeds[2]", "the same speed is given twice"),
+        (Objective("links.rocker.angle"), "output",
+         "links.rocker.angle is a part of the motion, which masses do not change"),
+        (Objective("weight.x"), "output",
+         "weight.x shakes nothing; take the force or moment on the frame instead"),
         (Objective("drive_torque", weight=0.0), "weight", "got 0; give more than 0"),
         (Objective("drive_torque", weight=nan), "weight", "got nan; give a finite number"),
     ],

@@ -93,14 +93,14 @@ def test_a_crank_alone() -> None:
     family = same_as_alone(cranks)
     first, second = family.rates(family.solve(rows(2)), "crank")
     assert np.all(first == 1.0) and np.all(second == 0.0)
-    assert family.numbers(family.solve(rows(2))).shape == (2, len(THETA))
+    assert family.margins(family.solve(rows(2))).shape == (2, len(THETA))
 
 
 def test_numbers_are_squared_sines_of_transmission_angles() -> None:
     designs = designs_of(eq.load("kim-chung-a"), 4)
     family = Family([eq.assemble(design) for design in designs])
     theta = rows(4)
-    found = family.numbers(family.solve(theta))
+    found = family.margins(family.solve(theta))
     for row, design, angles in zip(found, designs, theta, strict=True):
         points = eq.move(design, angles).points
         coupler, rocker = (points["C"].place - points[p].place for p in "BD")
@@ -113,7 +113,7 @@ def test_a_design_that_stays_open_has_negative_numbers() -> None:
     good, bad = four_bar(1.0, 0.35, 0.9, 0.8), four_bar(1.0, 0.35, 0.9, 0.3)
     family = Family([eq.assemble(good), eq.assemble(bad)])
     theta = np.broadcast_to(np.linspace(0, 2 * np.pi, 90), (2, 90))
-    numbers = family.numbers(family.solve(theta))
+    numbers = family.margins(family.solve(theta))
     gap = np.abs(1.0 - 0.35 * np.exp(1j * theta[1]))
     reach = (gap < 0.9 + 0.3) & (gap > 0.9 - 0.3)
     assert np.all(numbers[0] > 0)

@@ -25,7 +25,7 @@ from equipoise.mechanism.balance import (
     SpringChoice,
     Weight,
 )
-from equipoise.mechanism.objectives import OutputQuantity
+from equipoise.mechanism.outputs import DECLARED
 from equipoise.schema import dumps, json_schema, loads
 from equipoise.schema.document_weights import Weighted
 from equipoise.schema.document_wishes import MEASURED_IN, Measured
@@ -113,7 +113,8 @@ def test_materials(material: str) -> None:
 def test_words_of_the_door_are_those_of_the_values() -> None:
     assert get_args(Weighted.model_fields["shape"].annotation) == SHAPES
     assert get_args(Measured.model_fields["measure"].annotation) == MEASURES
-    assert {*get_args(OutputQuantity)} == {*MEASURED_IN}
+    linear = {one.dimension for one in DECLARED.values() if not one.reason}
+    assert linear | {"energy", "angle"} == {*MEASURED_IN}
 
 
 # -- refusing --------------------------------------------------------------------------------------

@@ -167,7 +167,7 @@ def test_mount_that_does_not_touch_is_left_out() -> None:
     }
     machine = springs(center_of_mass=(0.4, 0.0, 0.0), mounts=mounts, freedoms=("heave", "pitch"))
     found = respond(machine, SPEED, "moment")
-    assert "a does not touch at rest, and is left out" in found.notes
+    assert "a does not touch at rest, and is left out" in map(str, found.notes)
     assert found.mounts["a"].force.extreme(1)[0] == 0
 
 
@@ -180,7 +180,7 @@ def test_mount_that_would_have_to_pull() -> None:
     words = "would have to pull, which it cannot; the model exact lets it go"
     assert not respond(machine, 1.0, "moment").notes
     found = respond(machine, sqrt(STIFF / 15), "moment")
-    assert found.notes == (f"a {words}", f"b {words}")
+    assert [*map(str, found.notes)] == [f"a {words}", f"b {words}"]
 
 
 def test_a_constant_force_on_what_nothing_holds() -> None:

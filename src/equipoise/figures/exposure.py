@@ -1,0 +1,162 @@
+"""The charts of hand-arm vibration: its spectrum, and a day's exposure against hours of work."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure
+from equipoise.exposure.weighting import EDGES, factor
+from equipoise.figures.style import free_name, short
+from equipoise.i18n import say
+from equipoise.quantities import Display
+from equipoise.results.charts import Area, Axis, Band, Chart, Curve, Line, Mark, Panel, shown
+
+if TYPE_CHECKING:
+    from equipoise.exposure.daily import Exposure
+    from equipoise.exposure.weighting import Weighted
+
+Array = np.ndarray[Any, Any]
+
+RATE = Display("m/s^2", 1.0)
+TOLD = (8.0, 16.0, 31.5, 63.0, 125.0, 250.0, 500.0, 1000.0)
+"""Hz: bands that are named below the picture."""
+DEEPEST = 1e-4
+"""Of the highest band: what is lower is not drawn."""
+SHORTEST, LONGEST = 1 / 12, 24.0
+"""Ends of the hours of work; where a task takes less, half of that."""
+TIMES = {1 / 720: "5 s", 1 / 60: "1 min", 1 / 12: "5 min", 0.25: "15 min", 0.5: "30 min"} | {
+    float(hours): f"{hours} h" for hours in (1, 2, 4, 8, 16)
+}
+MOST_NAMES = 8
+"""Tasks that are drawn with their names."""
+
+
+def charts(
+    measured: Sequence[tuple[str, Weighted]],
+    tools: Sequence[tuple[str, float]],
+    day: Exposure | None,
+) -> dict[str, Chart]:
+    """``spectrum`` of every input that has one, and ``exposure``, names that also do for files.
+
+    tools : names and total values, m/s2.
+    """
+    drawn: dict[str, Chart] = {}
+    for name, weighted in measured:
+        own = free_name("spectrum", drawn)
+        drawn[own] = spectrum(weighted, name).named(own)
+    drawn["exposure"] = exposure(tools, day)
+    return drawn
+
+
+def spectrum(weighted: Weighted, title: str) -> Chart:
+    """One-third-octave spectra of all axes together, before and after weighting, and Wh."""
+    after = np.sqrt(np.sum(weighted.band_a_hw**2, axis=0))
+    before = after if weighted.band_a_h is None else np.sqrt(np.sum(weighted.band_a_h**2, axis=0))
+    top = float(np.max(before)) or 1.0
+    low = max(DEEPEST * top, 0.5 * float(np.min(after[after > 0], initial=top)))
+    areas = []
+    if weighted.band_a_h is not None:
+        label = say("RMS, {value} m/s²", value=shown(_root(weighted.a_h)))
+        areas.append(_stairs(before, low, "unweighted", label))
+    label = say("weighted, a_hv = {value} m/s²", value=shown(weighted.a_hv))
+    areas.append(_stairs(after, low, "weighted", label))
+    curves = tuple(Curve(area.x, area.high, "", area.role) for area in areas)
+    x = _frequencies()
+    smooth = np.geomspace(EDGES[0], EDGES[-1], 400)
+    panels = (
+        Panel(
+            x,
+            Axis(say("RMS"), RATE, "log", low, 1.6 * top),
+            curves,
+            areas=tuple(areas),
+            height=200.0,
+        ),
+        Panel(
+            x,
+            Axis("Wh", scale="log", low=0.005, high=1.5),
+            (Curve(smooth, factor(smooth), "", "ink"),),
+            height=62.0,
+        ),
+    )
+    return Chart("spectrum", title, say("One-third-octave bands, all axes together"), panels)
+
+
+def _stairs(values: Array, low: float, role: str, label: str) -> Area:
+    """Bands as an area from their edges to their values."""
+    x, high = np.repeat(EDGES, 2)[1:-1], np.repeat(np.maximum(values, low), 2)
+    return Area(x, np.full(len(x), low), high, role, label)
+
+
+def _frequencies() -> Axis:
+    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)
+    ends = {"low": float(EDGES[0]), "high": float(EDGES[-1])}
+    return Axis(say("frequency"), Display("Hz", 1.0), "log", **ends, ticks=ticks)
+
+
+def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
+    """A(8) against hours of work, of every task and of the day, with action and limit value."""
+    lines = [(name, a_hv) for name, a_hv in tools if a_hv > 0]
+    x, y = _axes(lines, day)
+    assert x.low is not None and x.high is not None and y.low is not None and y.high is not None
+    ends = np.array([x.low, x.high])
+    curves = [Curve(ends, _a8(a_hv, ends), "", "thin") for _, a_hv in lines]
+    marks = []
+    for value, name in ((ACTION, say("action value")), (LIMIT, say("limit value"))):
+        text = f"{name} {value:g} m/s²"
+        marks.append(Mark(x.low, value, text, "lines", 60.0, sign=False, near=3.0))
+    if day is None:
+        for name, a_hv in lines[:MOST_NAMES]:
+            hours = float(np.clip(8 * y.low * ACTION / a_hv**2, SHORTEST * 1.5, LONGEST / 1.5))
+            place = (hours, float(_a8(a_hv, hours)))
+            marks.append(Mark(*place, short(name), "main", -45.0, sign=False))
+    else:
+        if len(day.tasks) > 1 and day.a8 > 0:
+            curves.append(Curve(ends, _a8(day.a_hv, ends), "", "stress"))
+            place = (day.duration / 3600, day.a8)
+            marks.append(Mark(*place, say("all of them"), "day", 90.0))
+        tasks = [task for task in day.tasks if task.acceleration > 0]
+        for number, task in enumerate(tasks):
+            text = short(task.name) if number < MOST_NAMES else ""
+            marks.append(Mark(task.duration / 3600, task.partial, text, "task", -45.0))
+    levels = (Line(ACTION, "action value", axis="y"), Line(LIMIT, "limit value", axis="y"))
+    panel = Panel(
+        x,
+        y,
+        tuple(curves),
+        tuple(marks),
+        (Band(LIMIT, y.high, "forbidden", axis="y"),),
+        levels,
+        height=250.0,
+    )
+    title = say("Daily vibration exposure")
+    if day is not None:
+        title = say("A(8) = {value} m/s²", value=shown(day.a8))
+    what = say("Exposure A(8) against hours of work a day, Directive 2002/44/EC")
+    return Chart("exposure", title, what, (panel,))
+
+
+def _axes(lines: Sequence[tuple[str, float]], day: Exposure | None) -> tuple[Axis, Axis]:
+    """Hours of work, and A(8)."""
+    marked = [partial_exposure(a_hv, 8 * 3600) for _, a_hv in lines]
+    if day is not None:
+        marked = [task.partial for task in day.tasks if task.partial > 0] or marked
+        marked += [day.a8] * (day.a8 > 0)
+    low = min([1.0, *(0.5 * value for value in marked)])
+    high = max([10.0, *(2 * value for value in marked)])
+    times = [] if day is None else [task.duration / 3600 for task in day.tasks]
+    first = min([SHORTEST, *(0.5 * hours for hours in times)])
+    ticks = tuple(TIMES.items())
+    x = Axis(say("work a day"), scale="log", low=first, high=LONGEST, ticks=ticks)
+    return x, Axis("A(8)", RATE, "log", low, high)
+
+
+def _a8(a_hv: float, hours: Any) -> Any:
+    """A(8), m/s2, of a total value that acts for some hours."""
+    return partial_exposure(a_hv, 3600.0) * np.sqrt(hours)
+
+
+def _root(values: Array | None) -> float:
+    return 0.0 if values is None else float(np.sqrt(np.sum(values**2)))

@@ -1,0 +1,135 @@
+"""Every picture of a result by name: its charts, and the drawings of the machine among them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.balancing.balanced import Balanced
+    from equipoise.balancing.pareto import Front
+    from equipoise.balancing.phase_search import Phasing
+    from equipoise.figures import Picture
+    from equipoise.mechanism.model import Machine
+    from equipoise.planting.summary import PlantingFigures
+    from equipoise.results.analysis import Analysis
+    from equipoise.results.charts import Chart
+    from equipoise.vibration.free import FreeVibration
+
+    Pictures = dict[str, Picture]
+
+CHARTS = {
+    "Response": "vibration:response_charts",
+    "Transient": "vibration:transient_charts",
+    "Sweep": "sweep:sweep_charts",
+    "ToolModes": "handheld:mode_charts",
+    "Transmissions": "handheld:transmission_charts",
+    "ToolResponse": "handheld:response_charts",
+    "ToolExposure": "handheld:exposure_charts",
+    "ToolDesign": "handheld:design_charts",
+    "Variation": "handheld:variation_charts",
+    "Landscape": "studies:landscape_charts",
+}
+"""Kind of result that needs nothing else for its charts -> module here, and the function."""
+
+
+def pictures_of(result: Any) -> Pictures:
+    """Every picture of a result by name, which also does for a file.
+
+    Raises
+    ------
+    UsageError : there are none of such a result.
+    """
+    kind = type(result).__name__
+    if kind in PICTURES:
+        return PICTURES[kind](result)
+    if kind not in CHARTS:
+        raise UsageError(f"there are no pictures of {kind}; draw one of {', '.join(KINDS)}")
+    module, _, name = CHARTS[kind].partition(":")
+    charts: dict[str, Chart] = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
+    return {**charts}
+
+
+def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
+    """Every picture of an analysis by name, which also does for a file.
+
+    ``linkage``; ``curves`` and ``hodograph`` where points move; where masses are known ``polar``,
+    ``force``, ``moment``, ``torque``, ``joints`` and ``joint-polars``, with ``joints-2`` and so on
+    where there are many; ``spectrum`` where the crank angles are those of a whole cycle, at least
+    90 in a turn.
+
+    Of a single crank angle there is the linkage alone.
+
+    at : crank angles (rad) at which the linkage is drawn; where they are not given, a clear one.
+    """
+    from equipoise.figures import analysis as view
+    from equipoise.figures import joints
+    from equipoise.figures.linkage import linkage
+
+    found: Pictures = {"linkage": linkage(analysis, at)}
+    if len(analysis.crank_angle) < 2:
+        return found
+    if view.moving(analysis.motion):
+        found |= {"curves": view.curves(analysis), "hodograph": view.hodograph(analysis)}
+    if analysis.solved is None:
+        return found
+    for chart in (view.polar, view.force, view.moment, view.torque):
+        found[chart.__name__] = chart(analysis)
+    if view.has_orders(analysis):
+        found["spectrum"] = view.spectrum(analysis)
+    of_joints = (*joints.joints(analysis), *joints.joint_polars(analysis))
+    return found | {chart.name: chart for chart in of_joints}
+
+
+def planting_pictures(figures: PlantingFigures) -> Pictures:
+    """``path``, and the charts of a planting machine."""
+    from equipoise.figures.path import path
+    from equipoise.figures.planting import charts
+
+    return {"path": path(figures), **charts(figures)}
+
+
+def mode_pictures(free: FreeVibration) -> Pictures:
+    """Every mode by name: ``mode-1``, ``mode-2`` and so on."""
+    from equipoise.figures.modes import mode_chart
+
+    return {f"mode-{k}": mode_chart(free, k) for k in range(1, len(free.modes) + 1)}
+
+
+def balance_pictures(
+    found: Balanced | Phasing | Front, original: Machine | None = None
+) -> Pictures:
+    """Every picture of a result of balancing by name.
+
+    Of a balanced machine its charts and, where its linkage is changed, ``changes``; of a trade-off
+    ``front``.
+
+    original : the machine before; phases alone do not know it.
+    """
+    from equipoise.balancing.pareto import Front
+    from equipoise.balancing.phase_search import Phasing
+    from equipoise.figures import balancing as view
+    from equipoise.figures.changes import changes
+
+    if isinstance(found, Front):
+        return {"front": view.front(found)}
+    if isinstance(found, Phasing):
+        return {**view.phasing_charts(found, original)}
+    pictures: Pictures = {**view.charts(found)}
+    if any(change.kind != "phases" for change in found.changes):
+        pictures["changes"] = changes(found)
+    return pictures
+
+
+PICTURES: dict[str, Callable[[Any], Pictures]] = {
+    "Analysis": analysis_pictures,
+    "PlantingFigures": planting_pictures,
+    "FreeVibration": mode_pictures,
+    "Balanced": balance_pictures,
+    "Phasing": balance_pictures,
+    "Front": balance_pictures,
+}
+KINDS = (*PICTURES, *CHARTS)

@@ -1,0 +1,362 @@
+"""The charts of studies: designs against each other, scatter, what causes it, an objective's map.
+
+Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.crank import continued, groups, told_speed
+from equipoise.figures.style import short
+from equipoise.i18n import say
+from equipoise.quantities import Dimension, Display, display, in_unit, typeset
+from equipoise.results.charts import Axis, Bars, Chart, Curve, Line, Mark, Panel, Surface, shown
+from equipoise.results.naming import objective_named
+
+if TYPE_CHECKING:
+    from equipoise.schema.study_units import Unit
+    from equipoise.studies.design_space import Make
+    from equipoise.studies.objective_map import Landscape
+    from equipoise.studies.search import Searched
+    from equipoise.studies.selection import Best
+    from equipoise.studies.tolerances import Cause, Tolerances
+    from equipoise.studies.variance import Scatter
+
+Array = np.ndarray[Any, Any]
+Units = Mapping[str, "Unit"]
+Own = tuple[Array, Array]
+"""Values (d,) and figures (m,) of the model itself."""
+
+MARGIN, NARROW = 0.08, 0.05
+"""Free at each side, over what is drawn: of designs, and of scatter."""
+PERCENT = Display("%", 100.0)
+BAR, TALL, THIN = 21.0, 0.68, 0.34
+"""Points from bar to bar of causes; heights of bars, over that."""
+MOST_SHARES = 4
+"""Panels of shares in a picture."""
+
+
+def unit_of(unit: Unit) -> Display:
+    """The unit of a study as an axis has it."""
+    return Display(unit.name, 1 / unit.factor)
+
+
+# -- designs ---------------------------------------------------------------------------------------
+
+
+def best_charts(found: Best, title: str, units: Units) -> dict[str, Chart]:
+    """``front`` where there are several aims; ``designs``: the first aim over every number.
+
+    More than ten numbers go on in ``designs-2`` and so on.
+    """
+    columns = {name: found.values[:, k] for k, name in enumerate(found.numbers)}
+    columns |= {name: found.figures[:, k] for k, name in enumerate(found.outputs)}
+    labels = tuple(str(number) for number in found.designs.tolist())
+    return _of(Designs(title, found.by, found.numbers, columns, labels, units))
+
+
+def searched_charts(found: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
+    """The same of a search, and ``search``: how it got better from generation to generation.
+
+    own : the model itself, for comparison.
+    """
+    study = found.study
+    columns = {name: found.values[:, k] for k, name in enumerate(study.paths)}
+    columns |= {name: found.figures[:, k] for k, name in enumerate(study.names)}
+    labels = tuple(str(number) for number in range(len(found.values)))
+    before = None
+    if own is not None:
+        before = dict(zip((*study.paths, *study.names), (*own[0], *own[1]), strict=True))
+    by = dict(found.objectives)
+    designs = Designs(study.title, by, study.paths, columns, labels, units, before)
+    return {**_of(designs), "search": grown(found, units)}
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Designs (K) as columns (K,) by name, SI units.
+
+    by : what they were chosen by, and which way.  numbers : names of what varies.
+    labels : of the designs.  units : in which they are drawn.
+    own : the model itself by the same names, where it is known.
+    """
+
+    title: str
+    by: Mapping[str, Make]
+    numbers: Sequence[str]
+    columns: Mapping[str, Array]
+    labels: Sequence[str]
+    units: Units
+    own: Mapping[str, float] | None = None
+
+    def axis(self, name: str, most: int = 40, way: bool = True) -> Axis:
+        """Of a number or figure; way : whether it is told which way is good."""
+        label, unit = short(name, most), unit_of(self.units[name])
+        if way and name in self.by:
+            good = say("large is good") if self.by[name] == "largest" else say("small is good")
+            label = f"{label} ({good})"
+        return Axis(label, unit, room=MARGIN)
+
+
+def _of(designs: Designs) -> dict[str, Chart]:
+    drawn = {"front": front(designs)} if len(designs.by) > 1 else {}
+    return drawn | {chart.name: chart for chart in over_numbers(designs)}
+
+
+def front(designs: Designs) -> Chart:
+    """Every two aims against each other."""
+    pairs = list(combinations(designs.by, 2))
+    alone = len(pairs) == 1
+    panels = [
+        _against(designs, first, second, 40 if alone else 26, told=alone) for first, second in pairs
+    ]
+    what = say("{count} designs that no other beats in everything", count=len(designs.labels))
+    columns = 1 if alone else 2
+    return Chart("front", designs.title, what, tuple(panels), columns, False, _keys(designs))
+
+
+def over_numbers(designs: Designs) -> Iterator[Chart]:
+    """The first aim over each number that varies."""
+    aim = next(iter(designs.by))
+    every = list(designs.numbers)
+    for suffix, names in groups(every):
+        panels = tuple(_against(designs, name, aim, 34) for name in names)
+        what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
+        what += continued(names, every)
+        columns = min(2, len(panels))
+        name = f"designs{suffix}"
+        yield Chart(name, designs.title, what, panels, columns, False, _keys(designs))
+
+
+def _against(designs: Designs, first: str, second: str, most: int, told: bool = False) -> Panel:
+    x, y = designs.columns[first], designs.columns[second]
+    marks = []
+    if designs.own is not None:
+        marks.append(Mark(designs.own[first], designs.own[second], "", "own"))
+    if told:
+        for k in sorted({int(np.argmin(x)), int(np.argmax(x))}):
+            text = say("design {name}", name=designs.labels[k])
+            marks.append(Mark(float(x[k]), float(y[k]), text, "designs", 60.0, sign=False))
+    return Panel(
+        designs.axis(first, most),
+        designs.axis(second, most, way=told or (second not in designs.numbers and most < 30)),
+        (Curve(x, y, "", "designs"),),
+        tuple(marks),
+        height=250.0 if told else 118.0,
+        zero=False,
+    )
+
+
+def _keys(designs: Designs) -> tuple[tuple[str, str], ...]:
+    own = (("own", say("the model itself")),) if designs.own is not None else ()
+    return (("designs", say("designs")), *own)
+
+
+def grown(found: Searched, units: Units) -> Chart:
+    """How good the best designs were after each generation."""
+    counts = {"count": found.computed, "generations": found.generations}
+    what = say("{count} designs in {generations} generations", **counts)
+    last = len(found.volumes)
+    x = Axis(say("generation"), low=1.0, high=float(max(2, last)))
+    y = Axis(say("share that the front dominates"), PERCENT)
+    if len(found.objectives) == 1:
+        (name,) = found.objectives
+        y = Axis(say("best {name}", name=short(name, 24)), unit_of(units[name]))
+    curve = Curve(np.arange(1.0, last + 1), np.asarray(found.volumes, float), steps=True)
+    return Chart("search", found.study.title, what, (Panel(x, y, (curve,)),))
+
+
+# -- tolerances ------------------------------------------------------------------------------------
+
+
+def tolerance_charts(found: Tolerances, units: Units) -> dict[str, Chart]:
+    """``scatter``: each figure over all machines; ``tighten``: what half of each tolerance does;
+    ``shares``: what causes the scatter of each figure.
+
+    More than ten figures go on in ``scatter-2`` and so on.
+    """
+    drawn = (*scatter(found, units), tighten(found), *shares(found))
+    return {chart.name: chart for chart in drawn}
+
+
+def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
+    """A histogram of each figure; bars outside of its limits are pale."""
+    every = list(found.scatters)
+    limited = any(_limits(one) for one in found.scatters.values())
+    keys = [("machines", say("machines")), ("model", say("the model itself"))]
+    if limited:
+        keys += [("outside", say("outside of limits")), ("bound", say("limit"))]
+    for suffix, names in groups(every):
+        what = say("Scatter over {count} machines", count=found.designs) + continued(names, every)
+        panels = tuple(
+            _histogram(name, found.scatters[name], units[name], found.designs) for name in names
+        )
+        columns = min(2, len(panels))
+        title = found.study.title
+        yield Chart(f"scatter{suffix}", title, what, panels, columns, False, tuple(keys))
+
+
+def _histogram(name: str, one: Scatter, unit: Unit, designs: int) -> Panel:
+    edges, shares = np.asarray(one.edges, float), one.counts / designs
+    inside = np.ones(len(shares), bool)
+    if one.output.at_least is not None:
+        inside &= edges[1:] > one.output.at_least
+    if one.output.at_most is not None:
+        inside &= edges[:-1] < one.output.at_most
+    roles = tuple("machines" if good else "outside" for good in inside)
+    lines = [Line(limit, "bound") for limit in _limits(one)]
+    if np.isfinite(one.base):
+        lines.append(Line(one.base, "model"))
+    held = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
+    room = NARROW * (max(held) - min(held)) or 0.05 * abs(held[0]) or 1.0
+    shown_in = unit_of(unit)
+    label = say("in {unit}", unit=shown_in.name) if unit.name else ""
+    x = Axis(label, Display("", shown_in.factor), low=min(held) - room, high=max(held) + room)
+    bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
+    title = short(name, 40)
+    if one.within is not None:
+        share = shown(100 * one.within.value)
+        title = say("{name}: {share} % within limits", name=short(name, 24), share=share)
+    y = Axis(say("machines"), PERCENT, low=0.0)
+    return Panel(x, y, lines=tuple(lines), bars=(bars,), title=title, height=98.0)
+
+
+def _limits(one: Scatter) -> list[float]:
+    ends = (one.output.at_least, one.output.at_most)
+    return [end for end in ends if end is not None]
+
+
+def tighten(found: Tolerances) -> Chart:
+    """By how much the scatter falls where one tolerance is halved."""
+    gains = np.array([max(cause.gain, 0.0) for cause in found.causes])
+    bars = Bars(np.arange(len(gains)), gains, TALL, across="y", told=True)
+    most = 1.12 * float(np.max(gains)) or 1.0
+    panel = _bars_of(found.causes, (bars,), Axis(say("variance less"), PERCENT, low=0.0, high=most))
+    what = say("What half of a tolerance does: variance less, in the mean of the figures")
+    return Chart("tighten", found.study.title, what, (panel,))
+
+
+def shares(found: Tolerances) -> Iterator[Chart]:
+    """Share of each tolerance in the variance of each figure."""
+    causes = found.causes
+    every = [name for name in found.scatters if name in causes[0].effects]
+    keys = (
+        ("part", say("by itself")),
+        ("whole", say("with all that it does together with others")),
+    )
+    for suffix, names in groups(every, MOST_SHARES):
+        panels = []
+        for name in names:
+            effects = [cause.effects[name] for cause in causes]
+            total = np.array([max(effect.total.value, 0.0) for effect in effects])
+            first = np.array([max(effect.first.value, 0.0) for effect in effects])
+            rows = np.arange(len(causes))
+            bars = (
+                Bars(rows, total, TALL, "whole", across="y"),
+                Bars(rows, first, THIN, "part", across="y"),
+            )
+            x = Axis(say("share of the variance"), PERCENT, low=0.0, high=1.0)
+            panels.append(_bars_of(causes, bars, x, title=short(name, 50)))
+        what = say("What causes the scatter of each figure") + continued(names, every)
+        yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
+
+
+def _bars_of(causes: Sequence[Cause], bars: tuple[Bars, ...], x: Axis, **rest: Any) -> Panel:
+    """Lying bars, one for each cause, the first at the top."""
+    ticks = tuple(
+        (float(row), short(joined(cause.numbers), 38)) for row, cause in enumerate(causes)
+    )
+    y = Axis(low=len(causes) - 0.5, high=-0.5, ticks=ticks)
+    return Panel(x, y, bars=bars, height=BAR * len(causes), **rest)
+
+
+def joined(names: Sequence[str]) -> str:
+    """Paths that vary together: what they have in common is said once."""
+    first, *others = names
+    if not others:
+        return first
+    parts = [name.split(".") for name in names]
+    same = 0
+    while all(part[: same + 1] == parts[0][: same + 1] for part in parts):
+        same += 1
+    ends = [".".join(part[same:]) for part in parts]
+    return ".".join([*parts[0][:same], " + ".join(ends)])
+
+
+# -- an objective over two numbers -----------------------------------------------------------------
+
+HANDY: dict[Dimension, str] = {
+    "mass": "g",
+    "inertia": "kg mm^2",
+    "angular speed": "rpm",
+    "stiffness": "N/mm",
+}
+"""Units of numbers of a model beside the usual ones."""
+
+
+def number_unit(dimension: Dimension | None) -> Display:
+    """The unit in which a number of the model is told."""
+    if dimension is None:
+        return Display("", 1.0)
+    return in_unit(HANDY[dimension]) if dimension in HANDY else display(dimension)
+
+
+def told_best(found: Landscape) -> str:
+    """The best place in a sentence."""
+    axes = [Axis(path, number_unit(found.dimensions[path])) for path in found.paths]
+    places = (
+        f"{axis.label} = {axis.quantity(value)}"
+        for axis, value in zip(axes, found.best, strict=True)
+    )
+    value = f"{shown(found.least)} {typeset(found.unit)}"
+    return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
+
+
+def landscape_charts(found: Landscape) -> dict[str, Chart]:
+    """``landscape``: the objective over its two numbers."""
+    return {"landscape": landscape(found)}
+
+
+def landscape(found: Landscape) -> Chart:
+    """Lines of equal value with their values, the least of all, and the model as it is."""
+    x, y = (
+        Axis(
+            short(path, 60),
+            number_unit(found.dimensions[path]),
+            low=float(values[0]),
+            high=float(values[-1]),
+        )
+        for path, values in zip(found.paths, (found.x, found.y), strict=True)
+    )
+    unit = typeset(found.unit)
+    told = f"{x.quantity(found.best[0])}, {y.quantity(found.best[1])}"
+    places = {"least": (found.best, f"{shown(found.least)} {unit}\n{told}", say("least"))}
+    if found.start is not None and not np.isnan(found.before) and _is_inside(found, found.start):
+        places["own"] = (found.start, f"{shown(found.before)} {unit}", say("as it is"))
+    marks = [
+        Mark(*at, text, role, bold=True, label=name) for role, (at, text, name) in places.items()
+    ]
+    lacking = say("cannot turn") if np.any(np.isnan(found.values)) else ""
+    surface = Surface(found.x, found.y, found.values, Axis("", Display(found.unit, 1.0)), lacking)
+    panel = Panel(x, y, marks=tuple(marks), surface=surface, height=330.0, zero=False, grid=False)
+    values = {
+        "objective": objective_named(found.objective, len(found.machine.rows)),
+        "unit": unit,
+        "speed": told_speed(found.machine.drive.speed),
+    }
+    others = [
+        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        for path, value in found.given.items()
+    ]
+    what = "; ".join([say("{objective}, {unit}, at {speed}", **values), *others])
+    return Chart("landscape", found.machine.title, what, (panel,))
+
+
+def _is_inside(found: Landscape, pair: tuple[float, float]) -> bool:
+    return all(v[0] <= one <= v[-1] for v, one in zip((found.x, found.y), pair, strict=True))

@@ -1,0 +1,367 @@
+"""Curves against speed: the axis, named and quieter ones, resonances, the resonance map."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.crank import read_axis
+from equipoise.figures.style import KINDS, short
+from equipoise.i18n import say, to_say
+from equipoise.quantities import Display
+from equipoise.results.charts import (
+    RPM,
+    Aside,
+    Axis,
+    Band,
+    Chart,
+    Curve,
+    Flag,
+    Line,
+    Mark,
+    Panel,
+    shown,
+)
+
+if TYPE_CHECKING:
+    from equipoise.vibration.free import Resonance
+    from equipoise.vibration.sweep import Sweep
+
+Array = np.ndarray[Any, Any]
+
+LOUD = 0.1
+"""Share from which a resonance is loud."""
+UNBOUNDED = 5e3
+"""Over the median, what only a resonance without damping can reach."""
+QUANTITIES = {
+    "displacement": (
+        to_say("Peak-to-peak displacement at the gauges against crank speed"),
+        "peak_to_peak",
+    ),
+    "velocity": (to_say("RMS of the velocity at the gauges against crank speed"), "velocity_rms"),
+    "acceleration": (
+        to_say("RMS of the acceleration at the gauges against crank speed"),
+        "acceleration_rms",
+    ),
+}
+PEAKS, ALIKE = 3, 0.02
+"""Curves whose highest peak is told; share by which two peaks differ that are told apart."""
+MOST_SPEEDS = 0.9
+"""Share of the values that the unit suits."""
+MOST_ORDERS, USUAL_ORDERS = 20, (1.0, 2.0, 3.0)
+"""Orders that are drawn in the map at most, and where none meets a mode."""
+HERTZ = Display("Hz", 1 / (2 * pi))
+
+
+@dataclass(frozen=True, eq=False)
+class Named:
+    """Values (S,) against speed, and what they are called."""
+
+    name: str
+    values: Array
+
+    @property
+    def largest(self) -> float:
+        """Largest value that is no resonance without damping."""
+        return float(np.max(bounded(self.values), initial=0.0))
+
+
+def sweep_charts(sweep: Sweep) -> dict[str, Chart]:
+    """Every picture of the vibration over a range of speeds by name.
+
+    ``response``, ``velocity`` and ``acceleration`` of the gauges; ``resonance-map``; ``mounts``
+    where there are any.
+    """
+    drawn = {"response": gauges(sweep, "displacement").named("response")}
+    drawn["resonance-map"] = resonance_map(sweep)
+    if sweep.mounts:
+        drawn["mounts"] = mounts(sweep)
+    for quantity in ("velocity", "acceleration"):
+        drawn[quantity] = gauges(sweep, quantity)
+    return drawn
+
+
+# -- curves ----------------------------------------------------------------------------------------
+
+
+def bounded(values: Array) -> Array:
+    """Those of some values that are numbers, and no peak without bound."""
+    finite = values[np.isfinite(values)]
+    if not finite.size:
+        return finite
+    return np.asarray(finite[finite <= UNBOUNDED * np.median(finite)])
+
+
+def ordered(read: Mapping[str, Array]) -> list[Named]:
+    """Curves that are named, in their order; behind them the quieter ones that are not."""
+    found = [Named(name, values) for name, values in read.items()]
+    loudest = sorted(found, key=lambda one: -one.largest)[: len(KINDS)]
+    return [c for c in found if c in loudest] + [c for c in found if c not in loudest]
+
+
+def curves_of(x: Array, found: Sequence[Named], stable: Array | None = None) -> tuple[Curve, ...]:
+    """Curves over places (S,), dashed where they are not stable; the quieter ones share a name."""
+    drawn = []
+    quieter = say("{count} quieter ones", count=len(found) - len(KINDS))
+    for number, one in enumerate(found):
+        named = number < len(KINDS)
+        role = f"kind {number}" if named else "quieter"
+        label = short(one.name, 40) if named else quieter
+        y = np.where(one.values > 0, one.values, np.nan)
+        if stable is None or np.all(stable):
+            drawn.append(Curve(x, y, label, role))
+            continue
+        near = np.convolve(~stable, np.ones(3), "same") > 0
+        drawn.append(Curve(x, np.where(stable, y, np.nan), label, role))
+        drawn.append(Curve(x, np.where(near, y, np.nan), "", role, dashed=True))
+    return tuple(drawn)
+
+
+def log_ends(
+    found: Sequence[Named], below: float, above: float, more: Any = ()
+) -> tuple[float, float]:
+    """Ends of a log axis that holds curves and some more values, with room as factors."""
+    every = np.concatenate([*(bounded(one.values) for one in found), np.asarray(more, float)])
+    heard = every[np.isfinite(every) & (every > 0)]
+    high = float(np.max(heard, initial=0.0)) or 1.0
+    low = max(float(np.min(heard, initial=high)), high * 1e-6)
+    return low / below, high * above
+
+
+def speed_axis(sweep: Sweep) -> Axis:
+    """The x axis: the crank's speed, whatever its sense."""
+    clockwise = " " + say("(clockwise)") if sweep.speed[-1] < 0 else ""
+    low, high = (float(end) for end in np.abs(sweep.speed[[0, -1]]))
+    return Axis(say("crank speed"), replace(RPM, unit=f"rpm{clockwise}"), low=low, high=high)
+
+
+def bands(sweep: Sweep) -> tuple[Band, ...]:
+    """The speeds to keep away from, loud resonances darker."""
+    found = []
+    for loud, role in ((False, "quiet band"), (True, "loud band")):
+        spans = [
+            (abs(r.avoid[0]), abs(r.avoid[1]))
+            for r in sweep.resonances
+            if r.avoid is not None and (r.share >= LOUD) == loud
+        ]
+        found += [Band(low, high, role) for low, high in merged(spans)]
+    return tuple(found)
+
+
+def merged(spans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
+    """Spans that do not overlap, and cover the same."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted((min(span), max(span)) for span in spans):
+        if found and low <= found[-1][1]:
+            found[-1] = (found[-1][0], max(high, found[-1][1]))
+        else:
+            found.append((low, high))
+    return found
+
+
+def fraction(order: float) -> str:
+    """An order as a whole number or a fraction of one."""
+    return str(Fraction(order).limit_denominator(1000))
+
+
+def peaks(
+    axis: Axis, speed: Array, found: Sequence[Named], told: str, most: int = PEAKS
+) -> tuple[Mark, ...]:
+    """Value and speed at the highest places of the loudest of the named curves.
+
+    told : a text with ``{value}`` and ``{speed}``.
+    """
+    marks: list[tuple[int, float, Mark]] = []
+    named = [*enumerate(found[: len(KINDS)])]
+    for number, one in sorted(named, key=lambda pair: -pair[1].largest)[:most]:
+        if not one.largest or np.nanmax(one.values) > one.largest:
+            continue
+        k, size = int(np.nanargmax(one.values)), one.largest
+        if any(k == peak and abs(size - same) < ALIKE * size for peak, same, _ in marks):
+            continue
+        text = ""
+        if 0 < k < len(speed) - 1:
+            text = say(told, value=axis.told(size), speed=shown(speed[k] * RPM.factor))
+        mark = Mark(
+            float(speed[k]), size, text, f"kind {number}", 20.0, sign=False, optional=bool(marks)
+        )
+        marks.append((k, size, mark))
+    return tuple(mark for _, _, mark in marks if mark.text)
+
+
+# -- a range of speeds -----------------------------------------------------------------------------
+
+
+def gauges(sweep: Sweep, quantity: str) -> Chart:
+    """What the gauges read of a quantity against speed."""
+    what, key = QUANTITIES[quantity]
+    panels = []
+    for rotation in (False, True):
+        read = {n: getattr(c, key) for n, c in sweep.gauges.items() if c.rotation == rotation}
+        if read:
+            label = say("peak to peak") if quantity == "displacement" else say("RMS")
+            named = f"{say('rotation')}, {label}" if rotation else label
+            panels.append(_panel(sweep, named, quantity, rotation, ordered(read)))
+    return _chart(sweep, quantity, say(what), panels)
+
+
+def mounts(sweep: Sweep) -> Chart:
+    """Force that varies in the mounts, and share of the shaking force that they hand on."""
+    assert sweep.machine.support is not None
+    own = sweep.machine.support.mounts
+    panels = []
+    for rotation in (False, True):
+        read = {
+            name: curve.peak_to_peak
+            for name, curve in sweep.mounts.items()
+            if (own[name].axis is not None) == rotation
+        }
+        if read:
+            panels.append(_panel(sweep, say("peak to peak"), "force", rotation, ordered(read)))
+    handed = {
+        name: curve.transmissibility
+        for name, curve in sweep.mounts.items()
+        if np.any(np.isfinite(curve.transmissibility))
+    }
+    what = say("Force in the mounts")
+    if handed:
+        found = _in_order_of(panels[0], handed)
+        panels.append(_panel(sweep, say("transmissibility"), "", False, found))
+        what += "; " + say("transmissibility: its RMS over the shaking force's")
+    return _chart(sweep, "mounts", what, panels)
+
+
+def _in_order_of(panel: Panel, read: Mapping[str, Array]) -> list[Named]:
+    """Curves in the order of those of the same names in another panel."""
+    names = [curve.label for curve in panel.curves if curve.label in read]
+    if len(names) < len(read):
+        return ordered(read)
+    return [Named(name, read[name]) for name in names]
+
+
+def _panel(
+    sweep: Sweep, label: str, quantity: str, rotation: bool, found: Sequence[Named]
+) -> Panel:
+    """Curves over one axis; where it is a quantity, with their highest peaks."""
+    heard = np.concatenate([bounded(one.values) for one in found])
+    speed = np.abs(sweep.speed)
+    y = Axis(label)
+    if quantity:
+        usual = np.quantile(heard, MOST_SPEEDS) if heard.size else 0.0
+        y = read_axis(label, quantity, rotation, usual)
+    parts: dict[str, Any] = {"bands": bands(sweep), "lines": _lines(sweep), "keyed": True}
+    if not np.any(heard > 0):
+        y = replace(y, low=0.0, high=1.0 / y.unit.factor, ticks=())
+        return Panel(speed_axis(sweep), y, message=say("nothing moves"), **parts)
+    low, high = log_ends(found, 1.6, 3.0)
+    y = replace(y, low=low, high=high, scale="log")
+    told = "{value} at {speed} rpm"
+    marks = peaks(y, speed, found, told) if quantity else ()
+    return Panel(speed_axis(sweep), y, curves_of(speed, found, sweep.stable), marks, **parts)
+
+
+def _lines(sweep: Sweep) -> tuple[Line, ...]:
+    """Where an order meets a mode."""
+    return tuple(
+        Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances
+    )
+
+
+def flags(resonances: Sequence[Resonance]) -> tuple[Flag, ...]:
+    """Order and mode of resonances, the quietest left out first."""
+    return tuple(
+        Flag(abs(r.speed), (fraction(r.order), str(r.mode)), r.share)
+        for r in sorted(resonances, key=lambda r: abs(r.speed))
+    )
+
+
+def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
+    """Panels below each other, the first under names of resonances."""
+    words = (say("order"), say("mode")) if sweep.resonances else ()
+    first = replace(panels[0], flags=flags(sweep.resonances), flag_words=words)
+    keys = []
+    if sweep.resonances:
+        keys.append(("loud", say("order meets mode")))
+    if any(resonance.avoid is not None for resonance in sweep.resonances):
+        keys.append(("loud band", say("keep away (pale: quiet)")))
+    if np.any(~sweep.stable & np.isfinite(sweep.fluctuation)):
+        keys.append(("not stable", say("not stable")))
+    what = f"{what}; {say('model {model}', model=sweep.model)}"
+    whole = (first, *panels[1:])
+    return Chart(name, sweep.machine.title, what, whole, keys=tuple(keys))
+
+
+# -- the resonance map -----------------------------------------------------------------------------
+
+
+def resonance_map(sweep: Sweep) -> Chart:
+    """Natural frequencies, orders, and their meetings, each as large as it is loud (Campbell)."""
+    axis = speed_axis(sweep)
+    ends = (axis.low or 0.0, axis.high or 1.0)
+    top = highest(sweep)
+    marks = tuple(Mark(abs(r.speed), r.frequency, "", meeting(r.share)) for r in sweep.resonances)
+    asides, lines = [], []
+    for number, mode in enumerate(sweep.modes, 1):
+        if mode.swings:
+            at = 2 * pi * mode.cycles_per_second
+            told = {"number": number, "frequency": shown(mode.cycles_per_second)}
+            lines.append(Line(at, "mode", axis="y"))
+            asides.append(Aside(at, say("mode {number}: {frequency} Hz", **told), "mode"))
+    curves, above = [], []
+    low, high = min(ends), max(ends)
+    for order in _orders(sweep):
+        curves.append(Curve(np.array([low, high]), order * np.array([low, high]), "", "order"))
+        if order * high <= top:
+            text = say("order {order}", order=fraction(order))
+            asides.append(Aside(order * high, text))
+        elif order * low < top:
+            above.append(Flag(top / order, (fraction(order),), order))
+    if ends[0] > ends[1]:  # the names stand where the lines leave at the right
+        asides = [a for a in asides if a.role == "mode"]
+    panel = Panel(
+        axis,
+        Axis(say("frequency"), HERTZ, low=0.0, high=top),
+        tuple(curves),
+        marks,
+        bands(sweep),
+        tuple(lines),
+        flags=tuple(above),
+        flag_words=(say("order"),),
+        asides=tuple(asides),
+        height=240.0,
+    )
+    keys = [("meeting", say("order meets mode"))] if sweep.resonances else []
+    if any(resonance.avoid is not None for resonance in sweep.resonances):
+        keys.append(("loud band", say("keep away (pale: quiet)")))
+    what = say("Orders of the crank's speed, natural frequencies, and how loud they meet (size)")
+    return Chart("resonance-map", sweep.machine.title, what, (panel,), keys=tuple(keys))
+
+
+def meeting(share: float) -> str:
+    """The role of a meeting: its area grows with the share, from what can just be seen."""
+    size = round(3 + 11 * float(np.sqrt(share)), 1)
+    return f"meeting {min(size, 14.0):g}"
+
+
+def highest(sweep: Sweep) -> float:
+    """Upper end of the y axis, rad/s."""
+    swinging = [2 * pi * mode.cycles_per_second for mode in sweep.modes if mode.swings]
+    fastest = float(np.max(np.abs(sweep.speed)))
+    if not swinging:
+        return USUAL_ORDERS[-1] * fastest
+    top = 1.2 * max(swinging)
+    return top if sweep.resonances else max(top, fastest)
+
+
+def _orders(sweep: Sweep) -> list[float]:
+    """Orders that meet a mode, the loudest if they are many; or else the usual ones."""
+    usual = USUAL_ORDERS[:1] if sweep.resonances else USUAL_ORDERS
+    loudness: dict[float, float] = dict.fromkeys(usual, 0.0)
+    for resonance in sweep.resonances:
+        loudness[resonance.order] = max(resonance.share, loudness.get(resonance.order, 0.0))
+    return sorted(sorted(loudness, key=lambda order: (-loudness[order], order))[:MOST_ORDERS])

@@ -1,0 +1,354 @@
+"""The charts of a machine on its support at one speed: gauges, mounts, drive, orders; from rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from math import pi
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.crank import (
+    GAUGES,
+    ROOM,
+    continued,
+    crank_axis,
+    extremes,
+    groups,
+    read_axis,
+    told_speed,
+    varies,
+)
+from equipoise.figures.style import free_name, short
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.support import AXES
+from equipoise.quantities import display
+from equipoise.results.charts import (
+    RPM,
+    Axis,
+    Band,
+    Bars,
+    Chart,
+    Curve,
+    Line,
+    Mark,
+    Panel,
+    shown,
+)
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear
+
+if TYPE_CHECKING:
+    from equipoise.signals import Periodic
+    from equipoise.vibration.response import GaugeSignals, MountForce, Response
+    from equipoise.vibration.transient import Transient
+
+Array = np.ndarray[Any, Any]
+
+QUANTITIES = {
+    "displacement": to_say("displacement"),
+    "velocity": to_say("velocity"),
+    "acceleration": to_say("acceleration"),
+}
+SAMPLES = 720
+"""In a turn."""
+VARIES = 1e-9
+"""Share of a signal below which what varies is rounding."""
+LEAST_ORDER, MOST_BARS = 10, 60
+MATTERS = 1e-4
+"""Share of the largest amplitude at which the log axis ends, and above which orders are drawn."""
+TOUCHES = 1e-3
+"""Share of the largest force below which a one-sided mount counts as off its ground."""
+SMALL = 78.0
+"""Points: height of one of many panels."""
+MOST_IN_TIME = 6
+"""Panels of the way from rest in one picture."""
+LABELS = {
+    ("displacement", False): to_say("moved"),
+    ("displacement", True): to_say("turned"),
+    ("force", False): to_say("force"),
+    ("force", True): to_say("torque"),
+}
+
+
+def response_charts(response: Response) -> dict[str, Chart]:
+    """Every picture of the vibration at one speed by name, which also does for a file.
+
+    ``gauge-NAME`` for each gauge and ``spectrum``; ``mounts`` where there are any; ``drive``.
+    Many gauges or mounts go on in ``spectrum-2``, ``mounts-2`` and so on.
+    """
+    drawn: dict[str, Chart] = {}
+    for name in response.gauges:
+        own = free_name(f"gauge-{name}", drawn)
+        drawn[own] = gauge(response, name).named(own)
+    drawn |= {chart.name: chart for chart in (*spectra(response), *mounts(response))}
+    return drawn | {"drive": drive(response)}
+
+
+# -- signals over a period -------------------------------------------------------------------------
+
+
+def sampled(signal: Periodic) -> tuple[Array, Array]:
+    """Crank angles (rad) and values of a whole period, with its first value again at its end."""
+    count = SAMPLES * signal.turns
+    values = signal.samples(count)
+    return np.linspace(0.0, signal.period, count + 1), np.append(values, values[0])
+
+
+def told(signal: Periodic) -> tuple[Array, Array, list[tuple[float, float]]]:
+    """The same, a constant where it varies by no more than rounding, and its extremes."""
+    theta, values = sampled(signal)
+    if float(np.ptp(values)) <= VARIES * float(np.max(np.abs(values))):
+        return theta, np.full_like(values, float(signal.mean)), []
+    both = (signal.extreme(sign) for sign in (1, -1))
+    return theta, values, [(float(at), float(value)) for value, at in both]
+
+
+def phase_axis(response: Response) -> Axis:
+    """The x axis: the crank's angle, or time where a motor drives."""
+    link, with_motor = response.machine.drive.link, response.drive.speed is not None
+    return crank_axis(link, response.speed, response.turns, with_motor)
+
+
+def period_told(response: Response) -> str:
+    """Length of a period, speed and model in words."""
+    values = {"speed": told_speed(response.speed), "model": response.model}
+    if response.turns == 1:
+        return say("over one turn at {speed}; model {model}", **values)
+    return say("over {turns} turns at {speed}; model {model}", turns=response.turns, **values)
+
+
+def gauge(response: Response, name: str) -> Chart:
+    """Displacement, velocity and acceleration at a gauge."""
+    read = response.gauges[name]
+    panels = []
+    for quantity, signal in (
+        ("displacement", read.displacement),
+        ("velocity", read.velocity),
+        ("acceleration", read.acceleration),
+    ):
+        theta, values, places = told(signal)
+        turned = read.rotation and quantity == "displacement"
+        label = say("rotation") if turned else say(QUANTITIES[quantity])
+        y = read_axis(label, quantity, read.rotation, values, room=ROOM)
+        marks = extremes(y, values, places, "main", angles=True)
+        panels.append(Panel(phase_axis(response), y, (Curve(theta, values),), marks))
+    what = say("Rotation at {gauge}") if read.rotation else say("Motion at {gauge}")
+    what = f"{what.format(gauge=short(name))}, {period_told(response)}"
+    return Chart(f"gauge-{name}", response.machine.title, what, tuple(panels))
+
+
+def drive(response: Response) -> Chart:
+    """Torque of the drive and, where it varies, speed of the crank."""
+    found = response.drive
+    values = sampled(found.torque)[1]
+    torque = read_axis(say("drive torque"), "force", True, values, room=ROOM)
+    panels = [_with_mean(response, found.torque, torque)]
+    if found.speed is not None:
+        share = shown(100 * found.fluctuation)
+        title = say("varies by {share} % of its mean", share=share)
+        y = Axis(say("crank speed"), RPM, room=ROOM)
+        panels.append(_with_mean(response, found.speed, y, title=title))
+    what = say("Drive of {link}", link=short(response.machine.drive.link))
+    rows = len(response.machine.rows)
+    what += ", " + say("{rows} rows together", rows=rows) if rows > 1 else ""
+    what += f", {period_told(response)}"
+    return Chart("drive", response.machine.title, what, tuple(panels))
+
+
+def _with_mean(response: Response, signal: Periodic, y: Axis, **rest: Any) -> Panel:
+    """A signal over a period, with a dashed line at its mean and its value."""
+    theta, values, places = told(signal)
+    lines: tuple[Line, ...] = ()
+    if varies(values):
+        mean = float(signal.mean)
+        mean = 0.0 if abs(mean) <= VARIES * float(np.ptp(values)) else mean
+        lines = (Line(mean, "mean", axis="y"),)
+        rest["remark"] = say("dashed: mean {value}", value=y.quantity(mean))
+    marks = extremes(y, values, places, "main", angles=True)
+    return Panel(phase_axis(response), y, (Curve(theta, values),), marks, lines=lines, **rest)
+
+
+# -- orders at the gauges --------------------------------------------------------------------------
+
+
+def spectra(response: Response) -> Iterator[Chart]:
+    """Amplitude of each order at the gauges."""
+    every = list(response.gauges)
+    for suffix, names in groups(every):
+        what = say("Amplitude at the gauges by order") + continued(names, every)
+        speed, model = told_speed(response.speed), response.model
+        what += ", " + say("at {speed}; model {model}", speed=speed, model=model)
+        last = max(_last_order(response.gauges[name]) for name in names)
+        panels = tuple(_bars(response.gauges[name], name, last) for name in names)
+        title = response.machine.title
+        yield Chart(f"spectrum{suffix}", title, what, panels, columns=min(2, len(panels)))
+
+
+def _last_order(found: GaugeSignals) -> float:
+    """Up to where orders matter."""
+    signal = found.displacement
+    sizes = signal.sizes[1:]
+    above = np.flatnonzero(sizes > MATTERS * np.max(sizes, initial=0.0))
+    count = max(int(above[-1]) + 1 if above.size else 0, LEAST_ORDER * signal.turns)
+    return min(count, max(MOST_BARS, LEAST_ORDER * signal.turns)) / signal.turns
+
+
+def _bars(found: GaugeSignals, name: str, last: float) -> Panel:
+    signal = found.displacement
+    orders, sizes = signal.orders[1:], signal.sizes[1:]
+    orders, sizes = orders[orders <= last], sizes[orders <= last]
+    largest = float(np.max(sizes, initial=0.0))
+    x = Axis(say("order: events in one turn of the crank"), low=0.0, high=last + 1)
+    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes)
+    title = short(name, 44)
+    if not largest:
+        return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
+    ends: dict[str, Any] = {"low": largest * MATTERS, "high": largest * 6, "scale": "log"}
+    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes, **ends)
+    heard = sizes > largest * MATTERS
+    loudest = int(np.argmax(sizes))
+    mark = Mark(float(orders[loudest]), largest, y.told(largest), sign=False, near=3.0)
+    bars = Bars(orders[heard], sizes[heard], 0.62 / signal.turns)
+    return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
+
+
+# -- forces in the mounts --------------------------------------------------------------------------
+
+
+def mounts(response: Response) -> Iterator[Chart]:
+    """Force in each mount over a period, beside what it carries at rest."""
+    every = list(response.mounts)
+    at_rest = _at_rest(response) if every else {}
+    for suffix, names in groups(every):
+        what = say("Force in the mounts on the support") + continued(names, every)
+        what = f"{what}, {period_told(response)}"
+        panels = tuple(_mount(response, name, at_rest[name]) for name in names)
+        keys = (("main", say("force")), ("mean", say("at rest")))
+        title = response.machine.title
+        yield Chart(f"mounts{suffix}", title, what, panels, min(2, len(panels)), keys=keys)
+
+
+def _at_rest(response: Response) -> dict[str, float]:
+    """What each mount carries at rest, N or N m; 0 where it does not touch."""
+    machine = response.machine
+    rest = Linear.of(machine, usual_step(machine, response.model)).rest
+    assert machine.support is not None
+    return {
+        name: rest.preload[name] if rest.carries(name, mount) else 0.0
+        for name, mount in machine.support.mounts.items()
+    }
+
+
+def _mount(response: Response, name: str, rest: float) -> Panel:
+    """One mount."""
+    mount = response.mounts[name]
+    assert response.machine.support is not None
+    model = response.machine.support.mounts[name]
+    rotation = model.axis is not None
+    theta, values, places = told(mount.force)
+    lifted = off_ground(mount) if model.one_sided else []
+    if lifted and response.model == "exact":  # the sum of its orders swings about 0
+        values, places = np.maximum(values, 0.0), places[:1]
+    label = say("torque") if rotation else say("force")
+    y = read_axis(label, "force", rotation, [*values, rest], room=ROOM)
+    title = short(name, 44)
+    if lifted:
+        title = f"{short(name, 20)}: {_told_off(response, mount, lifted)}"
+    curves = (
+        Curve(theta, values),
+        Curve(theta[[0, -1]], np.full(2, rest), "", "mean"),
+    )
+    return Panel(
+        phase_axis(response),
+        y,
+        curves,
+        extremes(y, values, places, "main"),
+        tuple(Band(low, high, "off", say("off its ground")) for low, high in lifted),
+        title=title,
+        height=SMALL,
+    )
+
+
+def off_ground(mount: MountForce) -> list[tuple[float, float]]:
+    """Crank angles (rad) between which a one-sided mount does not push."""
+    theta, values = sampled(mount.force)
+    off = values <= TOUCHES * max(float(np.max(values)), 0.0)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], off, [False]]).astype(int)))
+    return [
+        (float(theta[start]), float(theta[min(stop, len(theta)) - 1]))
+        for start, stop in edges.reshape(-1, 2)
+    ]
+
+
+def _told_off(response: Response, mount: MountForce, off: list[tuple[float, float]]) -> str:
+    """For how long it is off its ground, in words."""
+    share = sum(high - low for low, high in off) / mount.force.period
+    if not np.any(mount.force.sizes):
+        return say("does not touch")
+    if response.model == "exact":
+        return say("off its ground for {share} %", share=f"{100 * mount.lifts_off:.0f}")
+    return say("would have to pull for {share} %", share=f"{100 * share:.0f}")
+
+
+# -- from rest -------------------------------------------------------------------------------------
+
+
+def transient_charts(transient: Transient) -> dict[str, Chart]:
+    """``gauges`` and ``mounts`` where there are any, ``speed`` where the crank's speed varies."""
+    found: dict[str, Chart] = {}
+    support = transient.machine.support
+    if support is not None:
+        gauges = transient.gauges
+        # Without gauges in the model, the free coordinates are read.
+        own = {name: support.gauges[name].axis if support.gauges else name for name in gauges}
+        turning = {name: axis in AXES for name, axis in own.items()}
+        what = say("Displacement at the gauges")
+        found |= _in_time(transient, "gauges", what, "displacement", gauges, turning)
+        turning = {name: mount.axis is not None for name, mount in support.mounts.items()}
+        what = say("Force in the mounts on the support")
+        found |= _in_time(transient, "mounts", what, "force", transient.mounts, turning)
+    speed = transient.crank_speed
+    if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
+        drive = short(transient.machine.drive.link)
+        what = say("Speed of {link}", link=drive) + f", {_from_rest(transient)}"
+        panel = _time_panel(transient, Axis(say("crank speed"), RPM, room=0.08), speed)
+        found["speed"] = Chart("speed", transient.machine.title, what, (panel,))
+    return found
+
+
+def _in_time(
+    transient: Transient,
+    name: str,
+    what: str,
+    quantity: str,
+    read: Mapping[str, Array],
+    turning: Mapping[str, bool],
+) -> dict[str, Chart]:
+    """Signals below each other against time."""
+    every, drawn = list(read), {}
+    for suffix, names in groups(every, MOST_IN_TIME):
+        panels = []
+        for one in names:
+            values = read[one] + 0.0
+            dimension, usual = GAUGES[quantity, turning[one]]
+            unit = display(dimension, values, usual)
+            y = Axis(say(LABELS[quantity, turning[one]]), unit, room=0.08)
+            low, high = float(np.min(values)), float(np.max(values))
+            ends = say("{low} to {high}", low=y.told(low), high=y.quantity(high))
+            panels.append(_time_panel(transient, y, values, title=f"{short(one, 40)}: {ends}"))
+        whole = f"{what}{continued(names, every)}, {_from_rest(transient)}"
+        title = transient.machine.title
+        drawn[name + suffix] = Chart(name + suffix, title, whole, tuple(panels))
+    return drawn
+
+
+def _time_panel(transient: Transient, y: Axis, values: Array, **rest: Any) -> Panel:
+    time = transient.time
+    x = Axis.of(say("time"), "time", low=float(time[0]), high=float(time[-1]))
+    return Panel(x, y, (Curve(time, values, "", "thin"),), **rest)
+
+
+def _from_rest(transient: Transient) -> str:
+    turns = abs(float(transient.crank_angle[-1] - transient.crank_angle[0])) / (2 * pi)
+    return say("from rest, {turns} turns of the crank; model exact", turns=shown(turns))
