@@ -120,7 +120,7 @@ def sympy_function() -> Callable[[], object]:
     return lambda: compiled(grid, drive)
 
 
-def full_forces() -> eq.Forces:
+def full_forces() -> eq.mechanism.Forces:
     return eq.analyze(MACHINE, ANGLES).forces
 
 

@@ -19,25 +19,29 @@ from equipoise.balancing.solution import closed_form
 from timing import in_turn, report
 
 MACHINE = eq.load("yamashita-1")
-EQUAL_MASS = eq.Balance(
-    masses=(eq.AddedMass("crank", "A", eq.Weight("point", mass=1.145)),),
-    objectives=(eq.Objective("shaking_force.y"),),
+EQUAL_MASS = eq.balancing.Balance(
+    masses=(eq.balancing.AddedMass("crank", "A", eq.balancing.Weight("point", mass=1.145)),),
+    objectives=(eq.balancing.Objective("shaking_force.y"),),
 )
 SIX_BAR = eq.load("watt-six-bar")
-FORCE = eq.Objective("shaking_force", "peak")
+FORCE = eq.balancing.Objective("shaking_force", "peak")
 
 
-def thirty() -> eq.Balance:
+def thirty() -> eq.balancing.Balance:
     """A plan of 30 numbers: a weight of any spread and a ring on each of five links."""
     places = [(link, next(iter(body.points))) for link, body in SIX_BAR.links.items()]
-    spread = eq.Weight("any", radius=0.05, at_most=1.0)
-    ring = eq.Weight("ring", radius=0.05, inner_radius=0.02, thickness=0.01, density=7850.0)
-    masses = [eq.AddedMass(*place, weight) for place in places for weight in (spread, ring)]
-    joint = eq.Objective("joints.B", "peak")
-    return eq.Balance(
+    spread = eq.balancing.Weight("any", radius=0.05, at_most=1.0)
+    ring = eq.balancing.Weight(
+        "ring", radius=0.05, inner_radius=0.02, thickness=0.01, density=7850.0
+    )
+    masses = [
+        eq.balancing.AddedMass(*place, weight) for place in places for weight in (spread, ring)
+    ]
+    joint = eq.balancing.Objective("joints.B", "peak")
+    return eq.balancing.Balance(
         masses=tuple(masses),
         objectives=(FORCE,),
-        limits=(eq.Limit(joint, ratio=1.1),),
+        limits=(eq.balancing.Limit(joint, ratio=1.1),),
         added_mass=2.0,
     )
 
@@ -54,7 +58,7 @@ def evolved() -> object:
     """The same by differential evolution over moments of the counterweight."""
 
     def cost(place: np.ndarray) -> float:
-        added = eq.Balance(masses=EQUAL_MASS.masses, objectives=EQUAL_MASS.objectives)
+        added = eq.balancing.Balance(masses=EQUAL_MASS.masses, objectives=EQUAL_MASS.objectives)
         problem = Problem.of(MACHINE, added)
         x, y = place
         numbers = [np.array([1.0, x, y, x * x, y * y])]

@@ -119,11 +119,11 @@ def seconds(task: Callable[[], object]) -> tuple[float, object]:
 
 def exact_motion(speed: float | None) -> Mapping[str, np.ndarray]:
     """The frame's motion by Equipoise, at the instants of the simulation, m."""
-    constant = eq.MotorTable((0.0, 1.0), (TORQUE, TORQUE))
-    motor = eq.Motor(table=constant, mean_speed="free")
+    constant = eq.mechanism.MotorTable((0.0, 1.0), (TORQUE, TORQUE))
+    motor = eq.mechanism.Motor(table=constant, mean_speed="free")
     machine = replace(MACHINE, drive=replace(MACHINE.drive, motor=motor))
     samples = round(DURATION / SAMPLING) + 1
-    return eq.from_rest(machine, DURATION, speed, drive=speed is None, samples=samples).gauges
+    return eq.simulate(machine, DURATION, speed, drive=speed is None, samples=samples).gauges
 
 
 def difference(speed: float | None) -> tuple[float, float]:

@@ -83,7 +83,9 @@ def main() -> None:
     report(in_turn(exact, 10), "shooting, DOP853", 1e-3, "ms")
     print("\nresponses at 200 speeds and those about resonances, in ms")
     sweeps = {
-        f"sweep, model {model}": lambda model=model: eq.sweep_speed(MACHINE, 2.0, 30.0, model)
+        f"sweep, model {model}": lambda model=model: eq.vibration.sweep_speed(
+            MACHINE, 2.0, 30.0, model
+        )
         for model in ("linear", "exact")
     }
     report(in_turn(sweeps, 3), "sweep, model linear", 1e-3, "ms")

@@ -12,7 +12,7 @@ machine = eq.load("yamashita-1")
 analysis = eq.analyze(machine)
 force = analysis.forces.shaking_force
 
-vertical = eq.harmonics(force.y, 5)
+vertical = eq.signals.harmonics(force.y, 5)
 print("order   vertical N   share of first")
 for order in range(1, 6):
     size = abs(vertical[order])

@@ -10,9 +10,9 @@ import equipoise as eq
 
 machine = eq.load("lee-kim-b")
 print("shaking force depends on these combinations only:")
-print(eq.base_parameters(machine, ["shaking_force"]))
+print(eq.mechanism.base_parameters(machine, ["shaking_force"]))
 
-found = eq.regressor(eq.move(machine))
+found = eq.mechanism.regressor(eq.move(machine))
 names = [f"{link}.{quantity}" for link, quantity in found.parameters]
 free = [names.index("crank.moment_x"), names.index("crank.moment_y")]
 

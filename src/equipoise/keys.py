@@ -14,7 +14,7 @@ plain functions beside the class.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from importlib import import_module
@@ -24,7 +24,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
-from equipoise.quantities import HUGE, SI, TINY, Dimension
+from equipoise.quantities import HUGE, SI, TINY, Dimension, pattern
 
 Class = TypeVar("Class", bound=type)
 MOST_WHOLE = 1_000_000
@@ -132,8 +132,31 @@ class Anything(Kind):
     """
 
     schema: Any = None
-    text: str = ""
-    """What to say where it is no text; nothing where it need not be one."""
+
+
+@dataclass(frozen=True)
+class Told(Number):
+    """A number whose dimension something else tells; `Frozen.from_table` makes it of its text.
+
+    right : what to give where no text is given.  schema : what the JSON Schema says of it.
+    """
+
+    right: str = "give number and unit in quotes"
+    schema: Any = None
+
+
+def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]) -> dict[str, Any]:
+    """JSON Schema of a table in which the key `name` tells the dimension of `sizes`."""
+    cases = []
+    for dimension in dict.fromkeys(dimensions.values()):
+        names = [one for one, own in dimensions.items() if own == dimension]
+        cases.append(
+            {
+                "if": {"properties": {name: {"enum": names}}, "required": [name]},
+                "then": {"properties": {size: {"pattern": pattern(dimension)} for size in sizes}},
+            }
+        )
+    return {"allOf": cases}
 
 
 def items_of(value: Any) -> tuple[Any, ...]:
@@ -168,7 +191,7 @@ class Listing(Kind):
 
     def check(self, value: Any) -> tuple[Any, ...]:
         items = tuple(map(self.item.check, items_of(value)))
-        if self.sizes == (2,) and len(items) != 2:
+        if self.sizes == (2,) and len(items) != 2 and not self.right:
             raise ValueError
         return items
 
@@ -232,6 +255,9 @@ class OneOr(Kind):
         return items
 
 
+PLANES = ("vertical", "lateral")
+
+
 @dataclass(frozen=True)
 class Planes(Kind):
     """Of the vertical and the lateral plane: one for both, or a table of two."""
@@ -274,11 +300,13 @@ class Table(Kind):
     of : the class, or ``module:name`` of one that takes time to import.
     flat : its keys stand among those of the table that has it.
     headed : inside of another table it is written below a header of its own.
+    without : keys of a flat one that do not stand there.
     """
 
     of: Any
     flat: bool = False
     headed: bool = False
+    without: tuple[str, ...] = ()
 
     @property
     def wanted(self) -> str:  # type: ignore[override]
@@ -386,14 +414,16 @@ class Key:
         kind = innermost(self.kind)
         return f" {SI[kind.dimension]}" if isinstance(kind, Quantity) else ""
 
-    @property
-    def limits(self) -> str:
-        """What to give, in words."""
+    def right(self, value: float) -> str:
+        """What to give instead of a number beyond the limits."""
         if self.why:
             return self.why
-        if self.above is not None:
-            return f"give more than {self.above:g}"
-        return f"give {self.at_least:g} or more"
+        if self.below is not None and value >= self.below:
+            return f"give less than {self.below:g}"
+        least = (
+            f"more than {self.above:g}" if self.above is not None else f"{self.at_least:g} or more"
+        )
+        return f"give {least}"
 
 
 Keys = Mapping[str, Key]
@@ -414,7 +444,7 @@ def key(
 
     The other parameters are those of `Key`, and `factory` and `compare` as of a dataclass.
     """
-    kind = Quantity(kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
+    kind = Quantity(dimension=kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
     standing = factory() if factory is not None else default
     declaration = Key(name, kind, text, default=standing, **more)
     given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
@@ -423,11 +453,14 @@ def key(
     return field(metadata={_KEY: declaration}, compare=compare, **given)
 
 
-def inside(kind: Kind, *, default: Any = REQUIRED, compare: bool = True) -> Any:
-    """Declare a field that no file has a key for; its kind is checked all the same."""
+def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, **more: Any) -> Any:
+    """Declare a field that no file has a key for; it is checked all the same, as of `key`."""
+    kind = Quantity(dimension=kind) if isinstance(kind, str) else kind  # type: ignore[arg-type]
     given: dict[str, Any] = {} if default is REQUIRED else {"default": default}
     return field(
-        metadata={_KEY: Key("", kind, default=default, inside=True)}, compare=compare, **given
+        metadata={_KEY: Key("", kind, default=default, inside=True, **more)},
+        compare=compare,
+        **given,
     )
 
 
@@ -453,9 +486,9 @@ class Frozen:
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __post_init__(self) -> None:
-        for name, kind, optional in _checked(type(self)):
+        for name, kind, without in _checked(type(self)):
             value = getattr(self, name)
-            if value is None and optional:
+            if value is without and without in (None, ()):  # there is one empty tuple only
                 continue
             try:
                 object.__setattr__(self, name, kind.check(value))
@@ -534,39 +567,30 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     found: dict[str, Key] = {}
     for one in keys_of(cls).values():
         kind = one.kind
-        found |= all_keys(kind.type) if isinstance(kind, Table) and kind.flat else {one.name: one}
+        if isinstance(kind, Table) and kind.flat:
+            inner = all_keys(kind.type).items()
+            found |= {name: own for name, own in inner if name not in kind.without}
+        else:
+            found[one.name] = one
     return found
 
 
 @cache
 def _declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     """What is declared of the fields of a class; without a name where no file has it."""
-    found: list[Key] = [_of_shape(*item) for item in getattr(cls, "shapes", {}).items()]
+    found: list[Key] = []
     for one in fields(cls):
         declared: Key | None = one.metadata.get(_KEY)
-        if declared is None and one.name not in getattr(cls, "shapes", {}):
-            flat = one.name in getattr(cls, "flat", ())
-            found.append(Key(one.name, Table(Frozen, flat=True) if flat else Anything(),
-                         field=one.name, default=None))  # fmt: skip
         if declared is not None:
             name = declared.name if declared.inside else declared.name or one.name
             found.append(replace(declared, name=name, field=one.name))
     return tuple(found)
 
 
-def _of_shape(name: str, shape: str) -> Key:
-    kind: Kind = {
-        "text": Text(), "number": Number(), "pair": Listing(Number(), (2,)), "count": Whole(),
-        "row": ROW, "names": Listing(Text()), "list": Tables(Table(Frozen)),
-    }[shape.rstrip("?")]  # fmt: skip
-    return Key(name, kind, field=name, default=None if shape.endswith("?") else REQUIRED,
-               endless=name in ("shear_stiffness",))  # fmt: skip
-
-
 @cache
-def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, bool], ...]:
-    """Fields of a class with what they have to be, and whether they may be None."""
-    return tuple((one.field, one.kind, one.default is None) for one in _declarations(cls))
+def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, Any], ...]:
+    """Fields of a class with what they have to be, and their defaults."""
+    return tuple((one.field, one.kind, one.default) for one in _declarations(cls))
 
 
 # -- values of an object ---------------------------------------------------------------------------
@@ -591,7 +615,7 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if names and leaf not in names:
             yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
         elif not isinstance(leaf, str) and not one.allows(leaf):
-            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.limits}")
+            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.right(leaf)}")
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
@@ -607,8 +631,10 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
     elif isinstance(value, tuple | list):
         one = of is not None and isinstance(of.kind, OneOr | Planes)
         alike = one and all(item == value[0] for item in value)
+        planes = of is not None and isinstance(of.kind, Planes) and len(value) == len(PLANES)
         for number, item in enumerate(value, 1):
-            yield from _leaves(where if alike else f"{where}[{number}]", item, of)
+            part = f".{PLANES[number - 1]}" if planes else f"[{number}]"
+            yield from _leaves(where if alike else where + part, item, of)
     else:
         for one in _declarations(type(value)):
             flat = isinstance(one.kind, Table) and one.kind.flat

@@ -14,6 +14,8 @@ import numpy as np
 
 from equipoise.errors import UsageError
 
+__all__ = ["Figures", "Periodic", "harmonics"]
+
 Array = np.ndarray[Any, Any]
 
 LEAST_SAMPLES, SAMPLES_PER_ORDER, NEWTON_ROUNDS = 720, 8, 4

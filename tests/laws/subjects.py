@@ -59,12 +59,12 @@ def forces_of(name: str, speed: float | None = None, acceleration: float | None 
     return forces(machine_of(name), speed=speed, acceleration=acceleration)
 
 
-def forces(machine: eq.Machine, angles: Any = ANGLES, **how: Any) -> eq.Forces:
+def forces(machine: eq.Machine, angles: Any = ANGLES, **how: Any) -> eq.mechanism.Forces:
     """Return the forces of a machine."""
     return eq.analyze(machine, angles, **how).forces
 
 
-def kinetic_power(found: eq.Forces) -> Array:
+def kinetic_power(found: eq.mechanism.Forces) -> Array:
     """Rate of change of kinetic energy, from velocities and accelerations, one row a link."""
     rows = []
     for name, link in found.motion.machine.links.items():
@@ -76,7 +76,7 @@ def kinetic_power(found: eq.Forces) -> Array:
     return np.array(rows)
 
 
-def gravity_power(found: eq.Forces) -> Array:
+def gravity_power(found: eq.mechanism.Forces) -> Array:
     """Power of gravity, one row a link."""
     machine = found.motion.machine
     gravity = complex(*machine.gravity)
@@ -86,7 +86,7 @@ def gravity_power(found: eq.Forces) -> Array:
     ])  # fmt: skip
 
 
-def load_power(found: eq.Forces) -> Array:
+def load_power(found: eq.mechanism.Forces) -> Array:
     """Power of the loads, one row a load.
 
     The soil's is what it does relative to the machine; the rest drives the machine over ground.
@@ -98,7 +98,7 @@ def load_power(found: eq.Forces) -> Array:
     return np.array(rows)
 
 
-def spring_power(found: eq.Forces) -> Array:
+def spring_power(found: eq.mechanism.Forces) -> Array:
     """Power of the springs, one row a spring: what their energy k (l - l0)^2 / 2 loses."""
     motion, machine = found.motion, found.motion.machine
     rows = [np.zeros(len(motion.crank_angle))]
@@ -111,7 +111,7 @@ def spring_power(found: eq.Forces) -> Array:
     return np.array(rows)
 
 
-def acting(found: eq.Forces) -> Iterator[tuple[str, str | None, Array, Array]]:
+def acting(found: eq.mechanism.Forces) -> Iterator[tuple[str, str | None, Array, Array]]:
     """Link and point of each load, its force (complex, N) and torque (N m), evaluated anew."""
     motion, machine = found.motion, found.motion.machine
     for load in machine.loads:
@@ -130,7 +130,7 @@ def along(a: Any, b: Any) -> Any:
     return (np.conj(a) * b).real
 
 
-def outputs(found: eq.Forces) -> Iterator[tuple[str, Array]]:
+def outputs(found: eq.mechanism.Forces) -> Iterator[tuple[str, Array]]:
     """Every output of the forces by name; vectors are complex."""
     for name in ("shaking_force", "frame_force"):
         yield name, getattr(found, name).value
@@ -148,7 +148,7 @@ def family_of(family: str, found: Any) -> Iterator[tuple[str, Array]]:
                 yield f"{family}/{name}/{part}", getattr(joint, part)
 
 
-def sizes(found: eq.Forces) -> tuple[float, float]:
+def sizes(found: eq.mechanism.Forces) -> tuple[float, float]:
     """Largest force (N) and moment (N m) that occur anywhere in a machine."""
     force, moment = [0.0], [0.0]
     for name, value in outputs(found):
@@ -171,7 +171,7 @@ def same(got: Any, want: Any, tolerance: float, scale: float | None = None) -> N
     assert apart <= tolerance * largest, f"{apart:.3g} off, of {largest:.3g}"
 
 
-def same_outputs(got: eq.Forces, want: eq.Forces, tolerance: float) -> None:
+def same_outputs(got: eq.mechanism.Forces, want: eq.mechanism.Forces, tolerance: float) -> None:
     """Check that two machines have the same outputs, measured against the largest of each sort."""
     force, moment = sizes(want)
     expected = dict(outputs(want))

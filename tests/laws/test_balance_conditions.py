@@ -39,7 +39,7 @@ def balanced(machine: eq.Machine, found: Conditions, values: Array) -> Array:
 def effects(machine: eq.Machine, output: str) -> tuple[Array, Array, int]:
     """Parameters (P,), effects (P, N) at 1 rad/s and turns of the cycle."""
     motion = eq.move(machine, SAMPLES, 1.0, 0.0)
-    found = eq.regressor(motion)
+    found = eq.mechanism.regressor(motion)
     return found.values, getattr(found, output), motion.turns
 
 

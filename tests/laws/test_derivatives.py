@@ -30,7 +30,7 @@ every_dyad = pytest.mark.parametrize("name", DYADS)
 # -- in fifty digits -------------------------------------------------------------------------------
 
 
-def exact_state(linkage: eq.Linkage, theta: Any) -> dict[str, Any]:
+def exact_state(linkage: eq.mechanism.Linkage, theta: Any) -> dict[str, Any]:
     """Run every step on mpmath numbers at one crank angle."""
     machine, drive = linkage.machine, linkage.machine.drive.link
     zero, one = mpmath.mpf(0), mpmath.mpc(1)
@@ -60,7 +60,7 @@ STEP, DIGITS = 1e-12, 1e-20
 @cache
 def three_states(name: str, theta: float) -> tuple[dict[str, Any], ...]:
     """States a small step before, at, and after a crank angle."""
-    linkage = eq.assemble(machine_of(name))
+    linkage = eq.mechanism.assemble(machine_of(name))
     with mpmath.workdps(50):
         middle, step = mpmath.mpf(theta), mpmath.mpf(STEP)
         return tuple(exact_state(linkage, middle + k * step) for k in (-1, 0, 1))
@@ -99,7 +99,7 @@ def test_links_against_differences(name: str, theta: float) -> None:
 
 @every_dyad
 def test_arrays_agree_with_fifty_digits(name: str) -> None:
-    linkage = eq.assemble(machine_of(name))
+    linkage = eq.mechanism.assemble(machine_of(name))
     state = linkage.solve(np.array(ANGLES))
     for k, theta in enumerate(ANGLES):
         for key, value in three_states(name, theta)[1].items():
@@ -128,7 +128,7 @@ WHOLE = (*sorted(eq.examples("linkage")), *(f"{kind}:0" for kind in KINDS), "gea
 
 
 @cache
-def whole_cycle(name: str) -> eq.Motion:
+def whole_cycle(name: str) -> eq.mechanism.Motion:
     return eq.move(machine_of(name), COUNT, speed=1.0, acceleration=0.0)
 
 

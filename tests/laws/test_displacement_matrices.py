@@ -247,7 +247,7 @@ def driven_route(name: str) -> Route:
 
 
 @cache
-def motion_of(name: str) -> eq.Motion:
+def motion_of(name: str) -> eq.mechanism.Motion:
     loop = loop_of(name)
     return eq.move(loop.machine, THETA2 + loop.phi)
 
@@ -259,7 +259,7 @@ def motion_of(name: str) -> eq.Motion:
 def test_linkage_is_a_crank_rocker_that_moves_well(name: str) -> None:
     """The tolerance rests on it.  B and C of the paper run clockwise."""
     loop = loop_of(name)
-    bar = eq.four_bar(loop.machine)
+    bar = eq.mechanism.four_bar(loop.machine)
     assert bar is not None
     assert bar.type == "crank-rocker"
     assert np.min(abs(np.sin(angles_of(name)[2]))) > np.sin(np.radians(29))

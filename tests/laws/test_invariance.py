@@ -33,7 +33,9 @@ TOLERANCE = 1e-11
 every_subject = pytest.mark.parametrize("name", names())
 
 
-def scaled(found: eq.Forces, force: complex = 1, moment: float = 1, flip: bool = False) -> Any:
+def scaled(
+    found: eq.mechanism.Forces, force: complex = 1, moment: float = 1, flip: bool = False
+) -> Any:
     """Outputs as another description must give them."""
     for name, value in outputs(found):
         if np.iscomplexobj(value):
@@ -43,7 +45,7 @@ def scaled(found: eq.Forces, force: complex = 1, moment: float = 1, flip: bool =
             yield name, sign * value * (abs(force) if is_force(name) else moment)
 
 
-def agree(got: eq.Forces, want: dict[str, Any], tolerance: float = TOLERANCE) -> None:
+def agree(got: eq.mechanism.Forces, want: dict[str, Any], tolerance: float = TOLERANCE) -> None:
     """Compare all outputs with what they must be, measured against the largest of each sort."""
     force, moment = sizes(got)
     found = dict(outputs(got))
@@ -211,7 +213,7 @@ def test_sliders_told_from_the_other_link(name: str) -> None:
     same(moved.drive_torque, found.drive_torque, TOLERANCE, sizes(found)[1])
 
 
-def best(swapped: eq.Machine, machine: eq.Machine) -> eq.Forces:
+def best(swapped: eq.Machine, machine: eq.Machine) -> eq.mechanism.Forces:
     """Analyse with the assembly sides as the swapped file needs them.
 
     An RPR dyad's side goes by the slider's point and direction, which both are others now.
@@ -259,7 +261,7 @@ def test_loads_add_up(name: str) -> None:
          first.drive_torque + second.drive_torque - 2 * plain.drive_torque,
          TOLERANCE, sizes(both)[1])  # fmt: skip
     always = replace(one, start=0.3, stop=0.3 + 2 * np.pi)
-    table = eq.LoadTable((0.0, 1.0), ((30.0, 30.0), (-10.0, -10.0)))
+    table = eq.mechanism.LoadTable((0.0, 1.0), ((30.0, 30.0), (-10.0, -10.0)))
     tabulated = eq.Load(link, point, table=table)
     for same_load in (always, tabulated):
         other = forces(replace(machine, loads=(same_load,)), speed=0.0, acceleration=0.0)

@@ -26,7 +26,7 @@ def near(got: object, want: object, scale: float = 1.0, tolerance: float = 1e-12
     np.testing.assert_allclose(got, want, rtol=0, atol=tolerance * scale)
 
 
-def forces(machine: eq.Machine, angles: object = 48) -> eq.Forces:
+def forces(machine: eq.Machine, angles: object = 48) -> eq.mechanism.Forces:
     return eq.analyze(machine, angles, SPEED, ACCELERATION).forces  # type: ignore[arg-type]
 
 
@@ -94,7 +94,7 @@ def test_finite_rod_gives_even_harmonics() -> None:
     """Series of the crank mechanism in powers of crank over rod."""
     s = 0.2
     found = forces(slider_crank(0.03 / s), 64).at(acceleration=0.0)
-    amplitudes = eq.harmonics(found.shaking_force.x) / (2.0 * 0.03 * SPEED**2)
+    amplitudes = eq.signals.harmonics(found.shaking_force.x) / (2.0 * 0.03 * SPEED**2)
     series = {1: 1.0, 2: s + s**3 / 4 + 15 * s**5 / 128, 4: -(s**3) / 4 - 3 * s**5 / 16,
               6: 9 * s**5 / 128}  # fmt: skip
     for order in range(7):
@@ -130,7 +130,7 @@ def test_scotch_yoke_is_an_exact_sine() -> None:
     found = forces(machine).at(acceleration=0.0)
     near(found.motion.points["Y"].place, 0.03 * np.cos(THETA), tolerance=1e-16)
     near(found.motion.points["Y"].place_2, -0.03 * np.cos(THETA), tolerance=1e-16)
-    amplitudes = np.abs(eq.harmonics(found.shaking_force.value.real))
+    amplitudes = np.abs(eq.signals.harmonics(found.shaking_force.value.real))
     assert np.argmax(amplitudes) == 1
     near(np.delete(amplitudes, 1), 0.0, amplitudes[1], 1e-14)
 

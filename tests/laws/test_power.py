@@ -75,7 +75,7 @@ def test_moment_on_the_frame_closes(name: str, about: Any) -> None:
     same(found.frame_moment, sum(parts), TOLERANCE, moment_scale(found))
 
 
-def load_resultant(found: eq.Forces) -> tuple[Any, Any]:
+def load_resultant(found: eq.mechanism.Forces) -> tuple[Any, Any]:
     """Force and moment about the pole of all loads."""
     motion = found.motion
     total, turning = np.zeros(len(ANGLES), complex), np.zeros(len(ANGLES))
@@ -85,7 +85,7 @@ def load_resultant(found: eq.Forces) -> tuple[Any, Any]:
     return total, turning
 
 
-def moment_scale(found: eq.Forces) -> float:
+def moment_scale(found: eq.mechanism.Forces) -> float:
     """Largest moment: of any output, or of any joint's force about the pole."""
     centers = found.motion.mass_centers.values()
     reach = max(float(np.max(np.abs(center.place - found.about))) for center in centers)
@@ -179,7 +179,7 @@ def test_rotation_turns_without_force(name: str) -> None:
 @every_subject
 def test_outputs_are_linear_in_the_parameters(name: str) -> None:
     found = forces_of(name)
-    regressor = eq.regressor(found.motion)
+    regressor = eq.mechanism.regressor(found.motion)
     loads = dict(split_outputs(found.split))
     scale = split_scales({
         key: regressor.values[:, None] * value for key, value in split_outputs(regressor)
@@ -195,13 +195,13 @@ def test_outputs_are_linear_in_the_parameters(name: str) -> None:
 def test_regressor_tells_other_masses(name: str) -> None:
     """Each column is the difference that one parameter makes."""
     machine = without_loads(machine_of(name))
-    regressor = eq.regressor(forces(machine).motion)
+    regressor = eq.mechanism.regressor(forces(machine).motion)
     rng = np.random.default_rng(5)
     for link in machine.links:
         x, y, mass, inertia = rng.uniform(0.01, 0.2, 4)
         machine = machine.with_link(link, mass=mass, center_of_mass=(x, y), inertia=inertia)
     other = forces(machine)
-    values = eq.regressor(other.motion).values
+    values = eq.mechanism.regressor(other.motion).values
     force, moment = sizes(other)
     same(values @ regressor.frame_force, other.frame_force.value, 1e-11, force)
     same(values @ regressor.drive_torque, other.drive_torque, 1e-11, moment)

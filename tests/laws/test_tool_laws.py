@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -15,8 +15,10 @@ from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.shaft import Section, Segment, Theory
+from equipoise.handheld.section import Section, Theory
+from equipoise.handheld.shaft import Segment
 from equipoise.handheld.shapes import Line
+from equipoise.keys import Planes, Quantity, keys_of
 from unit.handheld.samples import THEORIES, bare, both, pieces_of, random_tool, still
 
 Array = np.ndarray[Any, Any]
@@ -317,7 +319,12 @@ def swapped(tool: Tool) -> Tool:
     def turn(part: Any) -> Any:
         if part is None:
             return None
-        pairs = {name: getattr(part, name)[::-1] for name, s in part.shapes.items() if s == "pair"}
+        kinds = {name: one.kind for name, one in keys_of(type(part)).items()}
+        pairs = {
+            name: getattr(part, name)[::-1]
+            for name, kind in kinds.items()
+            if isinstance(kind, Planes) and isinstance(kind.item, Quantity)
+        }
         return replace(part, **pairs)
 
     stations = tuple(
@@ -394,7 +401,7 @@ def scaled(tool: Tool, length: float, stiffness: float, mass: float) -> tuple[To
         if part is None:
             return None
         changes: dict[str, Any] = {}
-        for name in part.shapes:
+        for name in (one.name for one in fields(part)):
             if name in units:
                 value = getattr(part, name)
                 pair = isinstance(value, tuple)

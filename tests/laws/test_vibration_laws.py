@@ -18,7 +18,6 @@ from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import respond
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import MODELS, Model, Response
-from equipoise.vibration.transient import from_rest
 from laws.transforms import mirrored_in_x, shifted
 from support.machines import make
 from unit.vibration.build import STIFFNESS, Array, cart, close, rig, springs
@@ -548,7 +547,7 @@ def test_in_free_fall_the_common_centre_of_mass_stays() -> None:
     """
     nothing = {"nothing": Mount((0.0, 0.0, 0.0), damping=1e-12, preload=0.0)}
     machine = replace(springs(mounts=nothing), gravity=(0.0, 0.0)).with_rows(ROWS[1])
-    found = from_rest(machine, 0.6, samples=61)
+    found = eq.simulate(machine, 0.6, samples=61)
     place, rate = found.system.place_and_rate(found.states)
     s = found.system.sums(found.crank_angle)
     turn = np.exp(1j * place[2])

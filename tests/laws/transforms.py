@@ -74,9 +74,9 @@ def turned(machine: eq.Machine, angle: float) -> eq.Machine:
     )
 
 
-def turned_position(position: eq.Position, angle: float) -> eq.Position:
+def turned_position(position: eq.mechanism.Position, angle: float) -> eq.mechanism.Position:
     turn = complex(np.exp(1j * angle))
-    return eq.Position(
+    return eq.mechanism.Position(
         position.crank_angle + angle,
         mapped(position.points, lambda z: z * turn),
         {link: value + angle for link, value in position.angles.items()},
@@ -95,7 +95,7 @@ def turned_load(load: eq.Load, angle: float) -> eq.Load:
     )
 
 
-def table(given: eq.LoadTable, change: Map, later: float = 0.0) -> eq.LoadTable:
+def table(given: eq.mechanism.LoadTable, change: Map, later: float = 0.0) -> eq.mechanism.LoadTable:
     """Change a table of forces; one of torques is only put off."""
     angles = tuple(a + later for a in given.crank_angle)
     if len(given.values) == 1:
@@ -127,7 +127,7 @@ def mirrored_in_x(machine: eq.Machine) -> eq.Machine:
     flip = {"left": "right", "right": "left"}
     position = machine.position
     if position is not None:
-        position = eq.Position(
+        position = eq.mechanism.Position(
             -position.crank_angle,
             mapped(position.points, np.conj),
             {link: -value for link, value in position.angles.items()},

@@ -72,7 +72,7 @@ class Planter:
     def machine(self) -> eq.Machine:
         return eq.load(self.name)
 
-    def move(self, theta2: Any) -> eq.Motion:
+    def move(self, theta2: Any) -> eq.mechanism.Motion:
         """Motion at crank angles theta2, rad."""
         return eq.move(self.machine, np.atleast_1d(theta2) + radians(self.phi))
 
@@ -133,7 +133,7 @@ def close(found: Any, wanted: Any) -> None:
 
 @PLANTERS
 def test_example_holds_table_1(planter: Planter) -> None:
-    machine, bar = planter.machine, eq.four_bar(planter.machine)
+    machine, bar = planter.machine, eq.mechanism.four_bar(planter.machine)
     assert bar is not None
     assert (bar.a, bar.b, bar.c, bar.d) == pytest.approx([x / 100 for x in planter.lengths])
     place = complex(*machine.links["coupler"].points["P"]) * 100 - planter.lengths[2]

@@ -144,7 +144,7 @@ def geared(name: str, phi: float = 0.0, start: float | None = None) -> eq.Machin
     )
 
 
-def solved(machine: eq.Machine, acceleration: float = ACCELERATION) -> eq.Forces:
+def solved(machine: eq.Machine, acceleration: float = ACCELERATION) -> eq.mechanism.Forces:
     return eq.forces(eq.move(machine, COUNT, acceleration=acceleration))
 
 
@@ -175,7 +175,9 @@ class Turning:
     a: Array
 
 
-def turnings(motion: eq.Motion, name: str, phi: float) -> tuple[Turning, Turning, Turning]:
+def turnings(
+    motion: eq.mechanism.Motion, name: str, phi: float
+) -> tuple[Turning, Turning, Turning]:
     """Angles by the triangle formulas (1) to (7), then (9) to (12).
 
     delta in (3) is the triangle's angle at O4, beta the angle of the line from A to O4 below X.
@@ -200,7 +202,7 @@ def turnings(motion: eq.Motion, name: str, phi: float) -> tuple[Turning, Turning
     return Turning(t2, same * w2, same * a2), Turning(t3, w3, a3), Turning(t4, w4, a4)
 
 
-def shaking_moment_17(motion: eq.Motion, name: str, phi: float) -> Array:
+def shaking_moment_17(motion: eq.mechanism.Motion, name: str, phi: float) -> Array:
     """(17), the moment on the frame about O2, minus the rate of change of (15)."""
     r1, b2, b3, b4 = TABLE_2[name]
     l2, l3, l4 = turnings(motion, name, phi)
@@ -242,7 +244,9 @@ class Nine:
     f14: Array
 
 
-def nine_equations(motion: eq.Motion, name: str, phi: float, load_torque: Any = 0.0) -> Nine:
+def nine_equations(
+    motion: eq.mechanism.Motion, name: str, phi: float, load_torque: Any = 0.0
+) -> Nine:
     """The 9 by 9 system of Table 1: unknowns F12, T_s, F32, F43, F14, by components."""
     r1, *bodies = TABLE_2[name]
     moving = turnings(motion, name, phi)
@@ -294,7 +298,7 @@ def table_1(centers: list[Array], a: Array, b: Array, pivot: complex) -> Array:
 def test_example_holds_table_2(name: str) -> None:
     machine = eq.load(f"lee-kim-{name}")
     r1, *bodies = TABLE_2[name]
-    bar = eq.four_bar(machine)
+    bar = eq.mechanism.four_bar(machine)
     assert bar is not None
     assert (bar.a, bar.b, bar.c, bar.d) == pytest.approx([r1, *(b.length for b in bodies)])
     for link, body in zip((machine.links[x] for x in LINKS), bodies, strict=True):
@@ -469,12 +473,12 @@ def test_shaking_moment_follows_equations_17_and_26(name: str, phi: float) -> No
     close(found.shaking_moment, wanted)
 
 
-def added_26(found: eq.Forces, name: str, phi: float, gear_inertia: float = 0.0) -> Array:
+def added_26(found: eq.mechanism.Forces, name: str, phi: float, gear_inertia: float = 0.0) -> Array:
     rocker = turnings(found.motion, name, phi)[2]
     return added_moment_26(rocker, theta_e(found, name, phi), name, gear_inertia)
 
 
-def theta_e(found: eq.Forces, name: str, phi: float) -> Array:
+def theta_e(found: eq.mechanism.Forces, name: str, phi: float) -> Array:
     """theta_e0 - n (theta_4 - theta_4 at crank angle 0), from the line of pivots."""
     weight = TABLE_4[name]
     angle = found.motion.links["rocker"].angle
@@ -511,7 +515,7 @@ class Device:
 
 
 def device(
-    found: eq.Forces, name: str, phi: float, pressure: float, gear_inertia: float = 0.0
+    found: eq.mechanism.Forces, name: str, phi: float, pressure: float, gear_inertia: float = 0.0
 ) -> Device:
     weight, rocker = TABLE_4[name], turnings(found.motion, name, phi)[2]
     n, at = weight.ratio, theta_e(found, name, phi) + radians(phi)

@@ -30,7 +30,7 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import changed, determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
-from equipoise.schema.tools import load_tool
+from equipoise.schema.models import load_tool
 
 KGF = 9.80665
 LENGTH, WEIGHT, STIFFNESS = 1.544, 3.56, 100 * KGF

@@ -145,7 +145,9 @@ def test_pure_sine_of_type_2(
     assert np.hypot(*(center - printed)) < grid
     machine = centered(TYPE_2.machine, link, complex(*center))
     forces = eq.analyze(machine).forces
-    sizes = np.abs(eq.harmonics(-forces.shaking_force.y / (sum(TYPE_2.masses) / 1e3), 20)) * 1e3
+    sizes = (
+        np.abs(eq.signals.harmonics(-forces.shaking_force.y / (sum(TYPE_2.masses) / 1e3), 20)) * 1e3
+    )
     assert sizes[1] == pytest.approx(amplitude, abs=0.5)
     assert np.max(sizes[2:]) < 1e-9
     assert np.max(np.abs(conditions(machine, "sine").residuals)) < 1e-15
@@ -247,7 +249,7 @@ def test_equations_80_and_83_leave_the_torque_as_it_is(finger: Finger) -> None:
     balanced = least_moments(finger.machine, ["crank", "rocker"]).machine
     parts = eq.analyze(balanced).forces.split.by_cause("drive_torque")
     for cause in ("translation", "rotation"):
-        orders = np.abs(eq.harmonics(parts[cause], 4))
+        orders = np.abs(eq.signals.harmonics(parts[cause], 4))
         assert np.min(orders[2:]) > 0.02 * orders[1]
     scale = np.max(
         np.abs(eq.analyze(finger.machine).forces.split.by_cause("drive_torque")["weight"])
@@ -257,7 +259,7 @@ def test_equations_80_and_83_leave_the_torque_as_it_is(finger: Finger) -> None:
     _, m_c, m_d = finger.masses
     sine = centered(finger.machine, "rocker", -m_c * finger.centers[1] * d / (c * m_d))
     weight = eq.analyze(sine).forces.split.by_cause("drive_torque")["weight"]
-    sizes = np.abs(eq.harmonics(weight, 20))
+    sizes = np.abs(eq.signals.harmonics(weight, 20))
     assert np.max(sizes[2:]) < 1e-12 * sizes[1]
 
 

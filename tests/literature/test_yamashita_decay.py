@@ -42,9 +42,9 @@ T_F = 0.1 * KGF
 """N m: dry friction such as the rig did not have, 0.4 mm at the gauge."""
 
 
-def rig(friction: float = 0.0, noise: float = 0.0) -> eq.Record:
+def rig(friction: float = 0.0, noise: float = 0.0) -> eq.measured.Record:
     """What the gauge reads in ten seconds, m."""
-    read = eq.simulate_decay(
+    read = eq.measured.simulate_decay(
         np.linspace(0.0, 10.0, 5001),
         natural_frequency=OMEGA,
         damping_ratio=RATIO,
@@ -64,7 +64,7 @@ def test_beta_follows_from_the_data() -> None:
 def test_equations_60_to_62_with_n_as_the_slope(friction: float) -> None:
     """Exact turning points, a half-period apart, put into the equations."""
     beta = OMEGA * sqrt(1 - RATIO**2)
-    peaks = eq.simulate_decay(
+    peaks = eq.measured.simulate_decay(
         pi / beta * np.arange(14),
         natural_frequency=OMEGA,
         damping_ratio=RATIO,
@@ -79,8 +79,8 @@ def test_equations_60_to_62_with_n_as_the_slope(friction: float) -> None:
     assert -m * K_F / (2 * (1 + n)) == pytest.approx(friction, abs=1e-10)
 
 
-def identified(record: eq.Record) -> eq.Decay:
-    return eq.identify_decay(record, K, arm=GAUGE, spring_arm=L_E)
+def identified(record: eq.measured.Record) -> eq.measured.Decay:
+    return eq.measured.identify_decay(record, K, arm=GAUGE, spring_arm=L_E)
 
 
 @pytest.mark.parametrize("friction", [0.0, T_F], ids=["as printed", "with friction"])

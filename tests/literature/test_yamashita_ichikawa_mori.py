@@ -212,13 +212,13 @@ def torque_parts(finger: Finger, s: Angles) -> dict[str, Array]:
 
 def moved(
     finger: Finger, theta_b: Array, machine: eq.Machine | None = None, acceleration: float = 0.0
-) -> eq.Motion:
+) -> eq.mechanism.Motion:
     """Motion at the paper's crank angles."""
     machine = finger.machine if machine is None else machine
     return eq.move(machine, theta_b - radians(finger.psi), acceleration=acceleration)
 
 
-def both(finger: Finger) -> tuple[eq.Forces, Angles]:
+def both(finger: Finger) -> tuple[eq.mechanism.Forces, Angles]:
     """Forces from Equipoise and angles from the paper, with the crank speeding up."""
     solved = eq.forces(moved(finger, THETA_B, acceleration=ACCELERATION))
     return solved, angles(finger, THETA_B, finger.rpm * pi / 30, ACCELERATION)
@@ -234,7 +234,7 @@ def over_theta_b(finger: Finger, orders: int) -> Array:
     """Harmonics of the vertical acceleration over theta_b."""
     machine = finger.machine
     solved = eq.forces(eq.move(machine, 360))
-    amplitudes = eq.harmonics(-solved.shaking_force.y / finger.total_mass, orders)
+    amplitudes = eq.signals.harmonics(-solved.shaking_force.y / finger.total_mass, orders)
     return np.asarray(amplitudes * np.exp(-1j * np.arange(orders + 1) * radians(finger.psi)))
 
 
@@ -248,7 +248,7 @@ def close(found: Any, wanted: Any) -> None:
 
 @FINGERS
 def test_example_holds_table_3(finger: Finger) -> None:
-    machine, bar = finger.machine, eq.four_bar(finger.machine)
+    machine, bar = finger.machine, eq.mechanism.four_bar(finger.machine)
     assert bar is not None
     assert (bar.a, bar.b, bar.c, bar.d) == pytest.approx([x / 1e3 for x in finger.lengths])
     for link, mass, center in zip(
@@ -307,7 +307,7 @@ def test_conditions_5_and_6(
     largest = max(np.max(np.abs(first / r_c)), np.max(np.abs(second * c / (r_c * d))))
     assert bool(largest <= 1 + 1e-12) == turns
     assert (min(abs(a + b - c - d), abs(b + c - a - d)) > 1e-9) == apart
-    bar = eq.four_bar(with_lengths(lengths))
+    bar = eq.mechanism.four_bar(with_lengths(lengths))
     assert bar is not None
     assert (bar.condition_5, bar.condition_6) == (turns, apart)
 
@@ -429,7 +429,7 @@ def test_two_units_of_type_2() -> None:
 
 def test_flattest_coupler_center_of_type_2() -> None:
     """Section 5-2: (5.8, 27.8) mm from a grid search; exact (6.24, 26.22) mm, 40.2 % less."""
-    found = eq.regressor(moved(TYPE_2, FINE))
+    found = eq.mechanism.regressor(moved(TYPE_2, FINE))
     k = found.parameters.index(("coupler", "moment_x"))
     columns = -found.shaking_force[k : k + 2].imag / TYPE_2.total_mass
     alone = vertical(TYPE_2)
@@ -473,7 +473,7 @@ def test_pure_sine_of_type_2(
     center = -m_d * g_d * c / (d * m_c) if link == "coupler" else -m_c * g_c * d / (c * m_d)
     assert center == pytest.approx(exact, abs=0.006)
     assert abs(center - printed) < grid
-    found = np.abs(eq.harmonics(vertical(TYPE_2, moved_center(link, center)), 20)) * 1e3
+    found = np.abs(eq.signals.harmonics(vertical(TYPE_2, moved_center(link, center)), 20)) * 1e3
     assert found[1] == pytest.approx(amplitude, abs=0.5)
     assert found[1] == pytest.approx(amplitude_printed, rel=3e-3)
     assert np.max(found[2:]) < 1e-9
@@ -581,9 +581,9 @@ def test_parts_of_the_torque_are_columns_of_the_regressor(finger: Finger) -> Non
             assert np.max(np.abs(moving[link, quantity])) < 1e-12
 
 
-def regressor_parts(motion: eq.Motion) -> dict[tuple[str, str], Array]:
+def regressor_parts(motion: eq.mechanism.Motion) -> dict[tuple[str, str], Array]:
     """Drive torque by link and inertial parameter, N m."""
-    found = eq.regressor(motion)
+    found = eq.mechanism.regressor(motion)
     rows = found.values[:, None] * found.drive_torque
     return dict(zip(found.parameters, rows, strict=True))
 
@@ -613,7 +613,7 @@ def test_sensitivities_of_equation_64(finger: Finger) -> None:
     """M dY''/d(first moment) of every link, and M dY''/dm, as columns of the regressor."""
     motion = moved(finger, THETA_B)
     s = angles(finger, THETA_B, finger.rpm * pi / 30, 0.0)
-    found = eq.regressor(motion)
+    found = eq.mechanism.regressor(motion)
     column = {p: -row.imag for p, row in zip(found.parameters, found.shaking_force, strict=True)}
     still = np.zeros(THETA_B.shape)
     rows: tuple[tuple[str, Array, Array, Array], ...] = (
@@ -657,7 +657,7 @@ def sign_changes(quantity: str) -> list[float]:
     """theta_b in degrees at which the coupler's first moment leaves the vertical force alone."""
 
     def effect(theta_b: Any) -> Array:
-        found = eq.regressor(moved(TYPE_2, np.radians(np.atleast_1d(theta_b))))
+        found = eq.mechanism.regressor(moved(TYPE_2, np.radians(np.atleast_1d(theta_b))))
         column: Array = found.shaking_force[found.parameters.index(("coupler", quantity))].imag
         return column
 

@@ -38,7 +38,7 @@ import equipoise as eq
 from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import resonances, vibrate_freely
+from equipoise.vibration.free import resonances
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.response import Model
 from equipoise.vibration.sweep import sweep_speed
@@ -179,7 +179,7 @@ def test_example_is_the_rig() -> None:
 
 def test_natural_frequency() -> None:
     """Table 2: beta = 12.4 rad/s, from the decay; recomputed from K, I and L_E 12.415."""
-    (mode,) = vibrate_freely(RIG).modes
+    (mode,) = eq.modes(RIG).modes
     assert mode.natural_frequency == pytest.approx(sqrt(STIFFNESS * SPRING_ARM**2 / INERTIA))
     assert mode.natural_frequency == pytest.approx(12.415, abs=5e-4)
     assert round(mode.natural_frequency, 1) == 12.4

@@ -46,21 +46,21 @@ GAP = 1e-8
 STEEL = {"thickness": 0.01, "density": 7850.0}
 
 
-def added(link: str, at: str, shape: str = "any", **room: float) -> eq.AddedMass:
-    return eq.AddedMass(link, at, Weight(shape, **room))  # type: ignore[arg-type]
+def added(link: str, at: str, shape: str = "any", **room: float) -> eq.balancing.AddedMass:
+    return eq.balancing.AddedMass(link, at, Weight(shape, **room))  # type: ignore[arg-type]
 
 
-def limit(output: str, measure: str, **much: float) -> eq.Limit:
-    return eq.Limit(Objective(output, measure), **much)  # type: ignore[arg-type]
+def limit(output: str, measure: str, **much: float) -> eq.balancing.Limit:
+    return eq.balancing.Limit(Objective(output, measure), **much)  # type: ignore[arg-type]
 
 
 def small(*outputs: tuple[str, str]) -> tuple[Objective, ...]:
     return tuple(Objective(*one) for one in outputs)  # type: ignore[arg-type]
 
 
-def geared(low: float, high: float, shape: str = "any", **room: float) -> eq.GearedWeight:
+def geared(low: float, high: float, shape: str = "any", **room: float) -> eq.balancing.GearedWeight:
     weight = Weight(shape, **{"radius": 0.05, **room})  # type: ignore[arg-type]
-    return eq.GearedWeight("rocker", weight, ratio=(low, high), pitch_radius=0.05)
+    return eq.balancing.GearedWeight("rocker", weight, ratio=(low, high), pitch_radius=0.05)
 
 
 # -- plans -----------------------------------------------------------------------------------------
@@ -68,9 +68,9 @@ def geared(low: float, high: float, shape: str = "any", **room: float) -> eq.Gea
 MOMENT = small(("shaking_moment", "rms"))
 CRANK = added("crank", "A", radius=0.06, at_most=0.5)
 ROCKER = added("rocker", "D", radius=0.06, at_most=0.5)
-BOX = eq.CenterMove("coupler", x=(-0.06, 0.02), y=(-0.03, 0.03))
+BOX = eq.balancing.CenterMove("coupler", x=(-0.06, 0.02), y=(-0.03, 0.03))
 ANY = added("rocker", "C", radius=0.05, at_most=0.6)
-CIRCLE = eq.CenterMove("coupler", center=(-0.045, -0.02), radius=0.02)
+CIRCLE = eq.balancing.CenterMove("coupler", center=(-0.045, -0.02), radius=0.02)
 
 PAPERS: dict[str, tuple[str, Balance]] = {
     "coupler in a box": ("yamashita-1", Balance(moves=(BOX,), objectives=MOMENT)),
@@ -200,16 +200,16 @@ class Draws:
             else None,
         )
 
-    def move(self, link: str) -> eq.CenterMove:
+    def move(self, link: str) -> eq.balancing.CenterMove:
         center = np.array(self.machine.links[link].center_of_mass)
         radius = self.size * self.uniform(0.05, 0.6)
         if self.rng.random() < 0.5:
             x, y = map(float, center + radius * self.rng.uniform(-0.5, 0.5, 2))
-            return eq.CenterMove(link, center=(x, y), radius=radius)
+            return eq.balancing.CenterMove(link, center=(x, y), radius=radius)
         low, high = center + radius * np.array([[-1], [1]]) * self.rng.uniform(0.2, 1, (2, 2))
-        return eq.CenterMove(link, *zip(low.tolist(), high.tolist(), strict=True))
+        return eq.balancing.CenterMove(link, *zip(low.tolist(), high.tolist(), strict=True))
 
-    def added(self, link: str) -> eq.AddedMass:
+    def added(self, link: str) -> eq.balancing.AddedMass:
         at = str(self.rng.choice([*self.machine.links[link].points]))
         shape = str(self.rng.choice(["any", "any", "point", "disc", "ring", "sector"]))
         radius = self.size * self.uniform(0.2, 1.2)
@@ -231,9 +231,9 @@ class Draws:
         drawn = {one.name: one for one in (self.objective() for _ in range(count))}
         return tuple(drawn.values())
 
-    def limits(self, count: int) -> Iterator[eq.Limit]:
+    def limits(self, count: int) -> Iterator[eq.balancing.Limit]:
         for one in self.objectives(count):
-            yield eq.Limit(one, ratio=self.uniform(1, 1.3))
+            yield eq.balancing.Limit(one, ratio=self.uniform(1, 1.3))
 
     def objective(self) -> Objective:
         """Draw a measure; forces in joints only without gears, whose flanks change sides."""
@@ -298,7 +298,7 @@ def case_of(name: str) -> tuple[Machine, Balance]:
 
 
 @cache
-def balanced(name: str) -> eq.Balanced:
+def balanced(name: str) -> eq.balancing.Balanced:
     return eq.balance(*case_of(name))
 
 
@@ -454,7 +454,7 @@ SMOOTH = ("any, root mean square", "any, forces and torque")
 """Small enough, written in the factors of the mean squares, for a first-order solver."""
 
 
-def convex_case(name: str) -> tuple[eq.Balanced, Problem]:
+def convex_case(name: str) -> tuple[eq.balancing.Balanced, Problem]:
     machine, plan = eq.load(CONVEX[name][0]), CONVEX[name][1]
     return eq.balance(machine, plan), Problem(machine, plan)
 
@@ -479,7 +479,7 @@ def test_optimum_by_a_first_order_solver(name: str) -> None:
 REAL = [*CASES, *(f"convex: {name}" for name in CONVEX if name not in CASES)]
 
 
-def real_case(name: str) -> tuple[Machine, Balance, eq.Balanced]:
+def real_case(name: str) -> tuple[Machine, Balance, eq.balancing.Balanced]:
     if name.startswith("convex: "):
         source, plan = CONVEX[name.removeprefix("convex: ")]
         return eq.load(source), plan, eq.balance(eq.load(source), plan)

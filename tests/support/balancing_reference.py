@@ -38,7 +38,7 @@ Bool = NDArray[np.bool_]
 # -- outputs of machines ---------------------------------------------------------------------------
 
 
-def output_of(objective: eq.Objective) -> Output:
+def output_of(objective: eq.balancing.Objective) -> Output:
     return objective.output, objective.about, objective.orders
 
 
@@ -90,7 +90,7 @@ def value_of(measure: str, signal: Array) -> Any:
     return 2 * pi * np.mean(np.abs(one), 0)
 
 
-def measured(machine: Machine, objective: eq.Objective) -> float:
+def measured(machine: Machine, objective: eq.balancing.Objective) -> float:
     """Return what an objective is in a machine."""
     return float(value_of(objective.measure, signals_of(machine, [output_of(objective)])[0]))
 
@@ -134,7 +134,7 @@ class Part:
     added: bool = True
 
 
-def moved(move: eq.CenterMove, machine: Machine) -> Part:
+def moved(move: eq.balancing.CenterMove, machine: Machine) -> Part:
     """Move a centre of mass in its rectangle or circle."""
     mass, sx, sy, _ = parameters_of(machine.links[move.link])
     old = (sx / mass) ** 2 + (sy / mass) ** 2
@@ -155,12 +155,12 @@ def moved(move: eq.CenterMove, machine: Machine) -> Part:
     return Part(move.link, low, high, lambda at: by(*at), added=False)
 
 
-def plate(weight: eq.Weight) -> float:
+def plate(weight: eq.balancing.Weight) -> float:
     """Mass of a plate in kg/m2."""
     return (weight.thickness or 0.0) * (weight.density or 0.0)
 
 
-def mass_range(weight: eq.Weight) -> tuple[float, float]:
+def mass_range(weight: eq.balancing.Weight) -> tuple[float, float]:
     """Return least and largest mass of a weight that fits into its room, kg."""
     if weight.mass is not None:
         return weight.mass, weight.mass
@@ -168,35 +168,35 @@ def mass_range(weight: eq.Weight) -> tuple[float, float]:
     return 0.0, min(room, inf if weight.at_most is None else weight.at_most)
 
 
-Shape = Callable[[eq.Weight, Array], tuple[Array, Array, Array]]
+Shape = Callable[[eq.balancing.Weight, Array], tuple[Array, Array, Array]]
 """Of mass and further coordinates: mass, distance times mass, inertia about the room's centre."""
 
 
-def _any(weight: eq.Weight, at: Array) -> tuple[Array, Array, Array]:
+def _any(weight: eq.balancing.Weight, at: Array) -> tuple[Array, Array, Array]:
     mass, _, out, spread = at
     radius = weight.radius
     return mass, mass * radius * out, mass * radius**2 * (out**2 + spread * (1 - out**2))
 
 
-def _point(weight: eq.Weight, at: Array) -> tuple[Array, Array, Array]:
+def _point(weight: eq.balancing.Weight, at: Array) -> tuple[Array, Array, Array]:
     mass, _, out = at
     return mass, mass * weight.radius * out, mass * (weight.radius * out) ** 2
 
 
-def _disc(weight: eq.Weight, at: Array) -> tuple[Array, Array, Array]:
+def _disc(weight: eq.balancing.Weight, at: Array) -> tuple[Array, Array, Array]:
     mass, _, out = at
     size = np.sqrt(np.maximum(mass, 0) / (pi * plate(weight)))
     distance = out * (weight.radius - size)
     return mass, mass * distance, mass * (distance**2 + size**2 / 2)
 
 
-def _ring(weight: eq.Weight, at: Array) -> tuple[Array, Array, Array]:
+def _ring(weight: eq.balancing.Weight, at: Array) -> tuple[Array, Array, Array]:
     mass, inner = at[0], weight.inner_radius
     outer = np.sqrt(np.maximum(mass, 0) / (pi * plate(weight)) + inner**2)
     return mass, 0 * mass, mass * (inner**2 + outer**2) / 2
 
 
-def _sector(weight: eq.Weight, at: Array) -> tuple[Array, Array, Array]:
+def _sector(weight: eq.balancing.Weight, at: Array) -> tuple[Array, Array, Array]:
     mass, outer, inner = at[0], weight.radius, weight.inner_radius
     half = mass / (plate(weight) * (outer**2 - inner**2))
     moment = 2 / 3 * plate(weight) * (outer**3 - inner**3) * np.sin(half)
@@ -214,7 +214,7 @@ SHAPES: dict[str, tuple[Shape, tuple[tuple[float, float], ...]]] = {
 }
 
 
-def weighed(link: str, center: tuple[float, float], weight: eq.Weight) -> Part:
+def weighed(link: str, center: tuple[float, float], weight: eq.balancing.Weight) -> Part:
     """Add a mass to a link about one of its points."""
     shape, further = SHAPES[weight.shape]
     low, high = zip(mass_range(weight), *further, strict=True)
@@ -231,7 +231,7 @@ def weighed(link: str, center: tuple[float, float], weight: eq.Weight) -> Part:
     return Part(link, low, high, effect)
 
 
-def with_shaft(machine: Machine, geared: eq.GearedWeight, ratio: float) -> Machine:
+def with_shaft(machine: Machine, geared: eq.balancing.GearedWeight, ratio: float) -> Machine:
     """Add the shaft of a geared counterweight, without mass, turning `ratio` times as fast."""
     name = geared.name
     pivot = next(p for p in machine.links[geared.driver].points if p in machine.frame)
@@ -248,7 +248,9 @@ def with_shaft(machine: Machine, geared: eq.GearedWeight, ratio: float) -> Machi
     )
 
 
-def axis_of(machine: Machine, geared: eq.GearedWeight, ratio: float) -> tuple[float, float]:
+def axis_of(
+    machine: Machine, geared: eq.balancing.GearedWeight, ratio: float
+) -> tuple[float, float]:
     """Return where a shaft lies whose gear meshes with one of the driver's pitch radius."""
     pin = next(at for p, at in machine.frame.items() if p in machine.links[geared.driver].points)
     assert geared.pitch_radius is not None
@@ -309,7 +311,7 @@ class Problem:
     """A plan in coordinates: cost, and limits as shares by which they are passed."""
 
     machine: Machine
-    plan: eq.Balance
+    plan: eq.balancing.Balance
     ratio: float = 1.0
     parts: list[Part] = field(default_factory=list)
 
@@ -335,7 +337,7 @@ class Problem:
             for limit, goal in zip(self.plan.limits, self.kept, strict=True)
         ]
 
-    def _affine(self, wishes: Sequence[eq.Objective]) -> list[Measured]:
+    def _affine(self, wishes: Sequence[eq.balancing.Objective]) -> list[Measured]:
         """Learn from a few machines what the outputs have to do with the parameters."""
         outputs = [output_of(wish) for wish in wishes]
         before = signals_of(self.original, outputs)
@@ -624,7 +626,7 @@ class _Lifted:
     The moment of inertia of a point, a disc or a moved link is left out: it must not matter.
     """
 
-    def __init__(self, center: tuple[float, float], weight: eq.Weight | None) -> None:
+    def __init__(self, center: tuple[float, float], weight: eq.balancing.Weight | None) -> None:
         import cvxpy as cp
 
         self.weight = weight
@@ -687,7 +689,7 @@ class _Lifted:
         return float(np.linalg.norm(self.moments.value) / deep - np.sin(half))
 
 
-def _moved(move: eq.CenterMove, link: Link, unknown: _Lifted) -> list[Any]:
+def _moved(move: eq.balancing.CenterMove, link: Link, unknown: _Lifted) -> list[Any]:
     import cvxpy as cp
 
     mass, sx, sy, _ = parameters_of(link)
@@ -797,7 +799,7 @@ def piece_inertia(piece: dict[str, Any]) -> float:
     return about
 
 
-def made(machine: Machine, plan: eq.Balance, changes: Sequence[Any]) -> Machine:
+def made(machine: Machine, plan: eq.balancing.Balance, changes: Sequence[Any]) -> Machine:
     """Make the changes of a machine from what they say of pieces, places and gears."""
     for geared in plan.geared:
         gears = next(c for c in changes if c.kind == "gears" and c.link == geared.name)
@@ -827,7 +829,7 @@ class FreeShaft:
     """
 
     machine: Machine
-    plan: eq.Balance
+    plan: eq.balancing.Balance
 
     def __post_init__(self) -> None:
         (self.geared,) = self.plan.geared

@@ -20,7 +20,7 @@ def text(time: Any, values: Any, header: str = "time [s],displacement [mm]") -> 
 
 
 TIME = np.linspace(0.0, 2.6, 800)
-RECORD = eq.simulate_decay(
+RECORD = eq.measured.simulate_decay(
     TIME,
     natural_frequency=12.4,
     damping_ratio=0.03,
@@ -134,7 +134,9 @@ def test_three_half_swings_have_no_interval_by_the_line() -> None:
 
 def test_notes_are_printed() -> None:
     time = np.linspace(0.0, 9.0, 3000)
-    record = eq.simulate_decay(time, natural_frequency=12.4, damping_ratio=0.04, noise=0.01)
+    record = eq.measured.simulate_decay(
+        time, natural_frequency=12.4, damping_ratio=0.04, noise=0.01
+    )
     Path("long.csv").write_text(text(time, record.displacement), encoding="utf-8")
     shown = succeeded(equipoise("decay", "long.csv"))
     assert "\nnote: Coulomb friction cannot be told from noise" in shown

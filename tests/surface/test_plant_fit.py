@@ -136,7 +136,7 @@ def test_what_gets_lost_is_told(folder: Path) -> None:
 
 def test_tables_beside_the_new_file_are_not_replaced(folder: Path) -> None:
     machine = eq.load("kim-chung-a").with_planting(
-        soil=eq.Soil(table=eq.SoilTable((0.0, 0.04), (5.0, 9.0)))
+        soil=eq.mechanism.Soil(table=eq.mechanism.SoilTable((0.0, 0.04), (5.0, 9.0)))
     )
     eq.save(machine, "mine.toml")
     (folder / "mine-fit.soil.csv").write_text("mine", encoding="utf-8")

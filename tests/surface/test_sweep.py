@@ -68,7 +68,7 @@ def test_what_is_printed(made: Path) -> None:
     shown = (made / "out").read_text()
     assert shown.startswith(f"Lengths of type I\n{made / STORE}: 200 designs of 2 numbers, ")
     counts = dict(re.findall(r"^(computed|keep every limit) +(\d+) ", shown, re.MULTILINE))
-    store = eq.open_store(STORE)
+    store = eq.studies.open_store(STORE)
     figures = store.read(range(200)).outcome.figures
     assert counts["computed"] == str(np.isfinite(figures[:, 0]).sum())
     assert counts["keep every limit"] == str(np.sum(figures[:, 0] <= 13))
@@ -81,7 +81,7 @@ def test_what_is_printed(made: Path) -> None:
 def test_units_are_those_of_the_files(made: Path) -> None:
     """The limit is in mN, lengths and masses of the model are in mm and g."""
     shown = (made / "out").read_text()
-    first = eq.best(eq.open_store(STORE), 1)
+    first = eq.studies.best(eq.studies.open_store(STORE), 1)
     row = next(line for line in shown.splitlines() if line.startswith(f"{first.designs[0]:>8}"))
     _, vertical, torque, length, mass = map(float, row.split())
     assert vertical == pytest.approx(1e3 * first.figures[0, 0], rel=1e-3)
@@ -102,7 +102,7 @@ def test_json(folder: Path) -> None:
         "designs": 50,
         "note": None,
     }
-    found = eq.best(eq.open_store("new.zarr"), 3)
+    found = eq.studies.best(eq.studies.open_store("new.zarr"), 3)
     assert content["kept"] == found.kept
     assert content["best"] == found.to_dict()
     assert content["computed_now"] == 50
@@ -118,7 +118,7 @@ def test_resuming_computes_what_is_missing_and_nothing_else(folder: Path) -> Non
     assert "200 designs of 2 numbers, nothing was missing" in shown
     for file in Path(STORE).glob("vertical/c/*"):
         file.unlink()
-    assert eq.resume(STORE, workers=2).missing() == []
+    assert eq.schema.resume(STORE, workers=2).missing() == []
     assert chunks() == before
     for file in Path(STORE).glob("vertical/c/*"):
         file.unlink()
@@ -130,7 +130,7 @@ def test_resuming_computes_what_is_missing_and_nothing_else(folder: Path) -> Non
 def test_one_process_at_a_time(folder: Path) -> None:
     for file in Path(STORE).glob("vertical/c/*"):
         file.unlink()
-    with eq.open_store(STORE, write=True).writing():
+    with eq.studies.open_store(STORE, write=True).writing():
         said = refused(equipoise("resume", STORE))
     assert said.startswith(f"{STORE}: process {os.getpid()} on ")
     assert "is writing into this store; wait until it is done, or stop it" in said
@@ -161,7 +161,7 @@ def test_a_bundled_study_and_the_examples(folder: Path) -> None:
     assert set(eq.examples("study")) <= names
     for name in eq.examples("study"):
         shown = succeeded(equipoise("check", name))
-        assert shown.startswith(eq.load_study(name).title)
+        assert shown.startswith(eq.schema.load_study(name).title)
         assert f"ready for: equipoise sweep {name} -o designs.zarr" in shown
 
 
@@ -193,7 +193,7 @@ def test_an_interrupted_sweep_goes_on(folder: Path) -> None:
         "equipoise: interrupted; what is stored stays; go on by: equipoise resume long.zarr"
     )
     assert "Traceback" not in err
-    store = eq.open_store("long.zarr")
+    store = eq.studies.open_store("long.zarr")
     assert 0 < len(store.missing()) < store.chunks
 
 
@@ -303,7 +303,7 @@ def test_the_best_as_json() -> None:
     found = best("--count", "4")
     assert found == {
         "title": "Lengths of type I",
-        **eq.best(eq.open_store(STORE), 4).to_dict(),
+        **eq.studies.best(eq.studies.open_store(STORE), 4).to_dict(),
     }
     figures = [one["figures"]["vertical"] for one in found["designs"]]
     assert figures == sorted(figures)
@@ -330,7 +330,7 @@ def test_designs_as_csv() -> None:
         "vertical [N]",
         "torque [N m]",
     ]
-    found = eq.best(eq.open_store(STORE), 3)
+    found = eq.studies.best(eq.studies.open_store(STORE), 3)
     assert [int(row[0]) for row in rows] == found.designs.tolist()
     assert np.array([row[1:3] for row in rows], float).tolist() == found.values.tolist()
 
@@ -340,7 +340,7 @@ def test_the_best_as_a_model_file() -> None:
     result = equipoise("best", STORE, "--out", "best.toml")
     assert succeeded(result)
     assert result.err == "wrote best.toml\n"
-    found = eq.best(eq.open_store(STORE), 1)
+    found = eq.studies.best(eq.studies.open_store(STORE), 1)
     machine = eq.load("best.toml")
     assert machine.links["coupler"].points["C"][0] == found.values[0, 0]
     assert machine.title.endswith(f", design {found.designs[0]}")
@@ -353,13 +353,13 @@ def test_the_best_as_a_model_file() -> None:
 
 
 def test_another_design_as_a_model_file() -> None:
-    store = eq.open_store(STORE)
+    store = eq.studies.open_store(STORE)
     reason = store.read(range(200)).outcome.reason
     good, bad = (int(np.flatnonzero(found)[0]) for found in (reason == 0, reason != 0))
     succeeded(equipoise("best", STORE, "-o", "other.toml", "--design", good))
     values = dict(zip(store.numbers, store.read(range(good, good + 1)).values[0], strict=True))
-    assert eq.machine_of(store, good) == study_of(store).model.machine(values)
-    assert eq.load("other.toml").links == eq.machine_of(store, good).links
+    assert eq.schema.machine_of(store, good) == study_of(store).model.machine(values)
+    assert eq.load("other.toml").links == eq.schema.machine_of(store, good).links
     said = refused(equipoise("best", STORE, "-o", "bad.toml", "--design", bad))
     assert said == f"design {bad} has no figures (does not turn fully); choose another"
     assert not Path("bad.toml").exists()
@@ -376,7 +376,9 @@ def test_a_tool() -> None:
     shown = succeeded(result)
     assert re.search(r"natural", shown)
     succeeded(equipoise("best", "tool.zarr", "--out", "saw.toml"))
-    assert eq.load_tool("saw.toml").title.startswith("Brush cutter of Nagamine and Irie, design ")
+    assert eq.schema.load_tool("saw.toml").title.startswith(
+        "Brush cutter of Nagamine and Irie, design "
+    )
 
 
 def test_a_store_whose_study_cannot_be_read(monkeypatch: pytest.MonkeyPatch) -> None:

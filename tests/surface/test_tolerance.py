@@ -35,7 +35,7 @@ def test_json_is_what_python_has() -> None:
     result = equipoise("tolerance", study, "--json")
     assert result.out.count("\n") == 1
     found = json.loads(succeeded(result))
-    own = eq.tolerance(eq.load_study(study)).to_dict()
+    own = eq.studies.tolerance(eq.schema.load_study(study)).to_dict()
     assert found["within"] == own["within"]
     assert found["tighten"] == own["tighten"]
     assert found["outputs"]["vertical"]["percentiles"] == pytest.approx(
@@ -44,7 +44,7 @@ def test_json_is_what_python_has() -> None:
 
 
 def test_figures_in_the_units_of_the_files(shown: str) -> None:
-    own = eq.tolerance(eq.load_study(written(TOLERANCES)))
+    own = eq.studies.tolerance(eq.schema.load_study(written(TOLERANCES)))
     one = own.scatters["vertical"]
     row = next(line for line in shown.splitlines() if re.match(r"vertical +N +\d", line))
     model, mean, deviation = map(float, row.split()[2:5])
@@ -58,7 +58,7 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
 
 def test_what_to_tighten_first(shown: str) -> None:
     """Mass and inertia go together, so that they are one cause."""
-    own = eq.tolerance(eq.load_study(written(TOLERANCES)))
+    own = eq.studies.tolerance(eq.schema.load_study(written(TOLERANCES)))
     first = own.causes[0]
     (sentence,) = re.findall(r"^Tighten first: .*$", shown, re.MULTILINE)
     assert sentence.startswith(f"Tighten first: {' and '.join(first.numbers)}")

@@ -63,13 +63,13 @@ def test_the_paper_as_json() -> None:
 
 
 def test_json_is_what_python_has() -> None:
-    tool = eq.load_tool("brush-cutter")
+    tool = eq.schema.load_tool("brush-cutter")
     found = read("brush-cutter", "--respond", "6000 : 9000 rpm", "--exposure")
     speeds = np.array(found["speed"])
-    exposure = eq.expose_tool(tool, speeds)
+    exposure = eq.handheld.expose_tool(tool, speeds)
     assert found["a_hv"] == pytest.approx(exposure.a_hv.tolist())
     assert found["a8"] == pytest.approx(exposure.a8)
-    swept = eq.sweep_tool(tool, speeds)
+    swept = eq.handheld.sweep_tool(tool, speeds)
     handle = found["stations"]["front-handle"]
     forces = swept.force("front-handle")["hand"]
     assert handle["forces"]["hand"] == pytest.approx(forces.tolist())
@@ -130,7 +130,7 @@ def test_variation() -> None:
 def test_sensitivities_are_those_of_python() -> None:
     found = read("sensitivities", "pole-saw", "--speeds", "5000 rpm : 6000 rpm")
     speeds = np.linspace(5000 * RPM, 6000 * RPM, 201)
-    slopes = eq.tool_sensitivities(eq.load_tool("pole-saw"), speeds)
+    slopes = eq.handheld.tool_sensitivities(eq.schema.load_tool("pole-saw"), speeds)
     told = {(s, k): v for s, part in found["sensitivities"].items() for k, v in part.items()}
     assert told.keys() == slopes.keys()
     assert list(told.values()) == pytest.approx(list(slopes.values()))
@@ -170,12 +170,12 @@ def test_design_is_written_and_read_back(folder: Path) -> None:
     assert result.err == "wrote better.toml; next: equipoise tool better.toml\n"
     assert {path.name for path in folder.iterdir()} == {"tool.toml", "better.toml"}
     place = found["variables"]["harness position"]
-    better = eq.load_tool("better.toml")
+    better = eq.schema.load_tool("better.toml")
     assert better.station("harness").position == pytest.approx(place["after"], rel=1e-12)
     measure = found["figures"]["a_hv of the worst hand, RMS over the band"]
     assert measure["after"] < measure["before"]
     speeds = np.array(found["speed"])
-    a_hv = eq.expose_tool(better, speeds).a_hv
+    a_hv = eq.handheld.expose_tool(better, speeds).a_hv
     assert a_hv.tolist() == pytest.approx(found["a_hv_after"])
     weights = np.ones(len(speeds))
     weights[[0, -1]] = 0.5

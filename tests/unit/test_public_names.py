@@ -3,54 +3,80 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
 
 import equipoise as eq
 
-NAMES = [name for name in eq.__all__ if not name.startswith("__")]
+PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 HEAVY = ("numpy", "pandas", "xarray", "pint", "pydantic", "rich", "scipy", "numba", "cyclopts")
+ROOMS = ("", *(name for name in eq.__all__ if isinstance(getattr(eq, name), ModuleType)))
+
+
+def room(name: str) -> ModuleType:
+    return import_module(f"equipoise.{name}") if name else eq
+
+
+def public(name: str) -> list[str]:
+    """What a room offers, but for rooms of its own."""
+    names = getattr(room(name), "__all__", [])
+    return [one for one in names if not isinstance(getattr(room(name), one), ModuleType)]
+
+
+NAMES = {
+    f"{name}.{one}".lstrip("."): getattr(room(name), one) for name in ROOMS for one in public(name)
+}
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_is_there_and_documented(name: str) -> None:
-    found: Any = getattr(eq, name)
-    assert found.__name__ == name
+    found: Any = NAMES[name]
+    assert found.__name__ == name.rpartition(".")[2]
     assert found.__module__.startswith("equipoise.")
     assert found.__doc__
-    assert not found.__doc__.startswith(f"{name}("), "a docstring that dataclass has made up"
+    assert not found.__doc__.startswith(f"{found.__name__}("), "a docstring that dataclass made up"
 
 
-def documented(name: str) -> list[tuple[str, Any]]:
-    found = getattr(eq, name)
-    if not inspect.isclass(found):
-        return []
-    members = vars(found).items()
-    return [
-        (key, value)
-        for key, value in members
-        if not key.startswith("_") and (inspect.isfunction(value) or isinstance(value, property))
-    ]
+def methods() -> Iterator[tuple[str, Any]]:
+    for name, found in NAMES.items():
+        if inspect.isclass(found):
+            members = vars(found).items()
+            functions = ((key, one) for key, one in members if inspect.isfunction(one))
+            yield from ((f"{name}.{key}", one) for key, one in functions if key[0] != "_")
 
 
-@pytest.mark.parametrize(
-    ("key", "function"),
-    [
-        (f"{name}.{key}", value)
-        for name in NAMES
-        for key, value in documented(name)
-        if inspect.isfunction(value)
-    ],
-)
+@pytest.mark.parametrize(("key", "function"), [*methods()])
 def test_every_method_is_documented(key: str, function: Any) -> None:
     assert function.__doc__, key
 
 
+def test_a_name_means_one_thing() -> None:
+    """Rooms may offer what the package does, as the same."""
+    found: dict[str, Any] = {}
+    for name, one in NAMES.items():
+        assert found.setdefault(name.rpartition(".")[2], one) is one, name
+    assert len(eq.__all__) <= 40
+
+
+@pytest.mark.parametrize("name", ROOMS)
+def test_the_page_lists_what_a_room_offers(name: str) -> None:
+    """One row of the table a room, with every name and no other."""
+    table = PAGE.read_text(encoding="utf-8").partition("## Every name")[2]
+    head = f"| `eq.{name}` |" if name else "| `eq` |"
+    (row,) = (line for line in table.splitlines() if line.startswith(head))
+    assert sorted(re.findall(r"`(\w+)`", row.removeprefix(head))) == sorted(public(name))
+
+
 def test_all_and_dir_agree() -> None:
-    assert dir(eq) == sorted(eq.__all__)
+    assert sorted(dir(eq)) == sorted(eq.__all__)
     assert len(set(eq.__all__)) == len(eq.__all__)
 
 
@@ -61,7 +87,7 @@ def test_version() -> None:
 
 
 def test_unknown_names() -> None:
-    with pytest.raises(AttributeError, match="module 'equipoise' has no attribute 'analyse'"):
+    with pytest.raises(AttributeError, match="equipoise attribute analyse"):
         _ = eq.analyse
 
 
@@ -86,8 +112,8 @@ def test_values_need_no_numpy(name: str) -> None:
 
 def test_mechanics_need_only_numpy() -> None:
     code = (
-        "import sys, equipoise as eq; eq.analyze; eq.base_parameters; eq.four_bar; "
-        f"print(*(m for m in {HEAVY} if m in sys.modules))"
+        "import sys, equipoise as eq; eq.analyze; eq.mechanism.base_parameters; "
+        f"eq.mechanism.four_bar; print(*(m for m in {HEAVY} if m in sys.modules))"
     )
     assert run(code) == "numpy"
 
@@ -95,4 +121,4 @@ def test_mechanics_need_only_numpy() -> None:
 def test_star_import() -> None:
     names: dict[str, Any] = {}
     exec("from equipoise import *", names)
-    assert set(NAMES) <= names.keys()
+    assert {*eq.__all__} <= names.keys()

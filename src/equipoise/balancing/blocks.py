@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.linear_conditions import Conditions
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
-    from equipoise.balancing.physical_consistency import Verdict
+    from equipoise.balancing.physical_consistency import Feasibility
     from equipoise.balancing.sensitivity import Sensitivities
     from equipoise.mechanism.model import Machine
 
@@ -332,7 +332,7 @@ TIMES = {"kg": 1.0, "kg m": 1e3, "kg m2": 1e6}
 """SI unit of a combination -> how many of the shown units it is."""
 
 
-def conditions_blocks(*found: Conditions, verdict: Verdict | None = None) -> Iterator[Block]:
+def conditions_blocks(*found: Conditions, verdict: Feasibility | None = None) -> Iterator[Block]:
     """Conditions, one table for each kind, and whether they can be met."""
     yield Text(
         say("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.program import Affine, Program
+from equipoise.balancing.program import Affine, Program, stacked
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
@@ -52,39 +52,35 @@ class Square:
 
     def keep_above(self, program: Program) -> None:
         """lift w >= y^2."""
-        program.rotated(Affine.of(self.lift, 1.0), self._over(), Affine.of(self.y, 1.0), self.lift)
+        program.rotated(*self._rows, self.lift)
 
     def keep_between(self, program: Program, low: float, high: float) -> None:
         """y / w in the interval, and the lift below the chord over it."""
-        w = self._over()
+        lift, w, y = self._rows
         for limit, sign in ((low, 1.0), (high, -1.0)):
             if abs(limit) < inf:
-                program.nonnegative(self._sum(w, 0.0, sign, -sign * limit))
+                program.nonnegative(sign * y - sign * limit * w)
         if high - low < inf:
-            program.nonnegative(self._sum(w, -1.0, low + high, -low * high))
+            program.nonnegative((low + high) * y - low * high * w - lift)
 
     def keep_at(self, program: Program, ratio: float) -> None:
         """y / w at a ratio, and the lift with it."""
-        w = self._over()
-        program.zero(self._sum(w, 0.0, 1.0, -ratio))
-        program.zero(self._sum(w, 1.0, 0.0, -(ratio**2)))
+        lift, w, y = self._rows
+        program.zero(y - ratio * w)
+        program.zero(lift - ratio**2 * w)
 
     def keep_tangent(self, program: Program, ratio: float, width: float) -> None:
         """y / w near a ratio, and the lift on the tangent there."""
-        w = self._over()
-        program.zero(self._sum(w, 1.0, -2 * ratio, ratio**2))
+        lift, w, y = self._rows
+        program.zero(lift - 2 * ratio * y + ratio**2 * w)
         for sign in (1.0, -1.0):
-            program.nonnegative(self._sum(w, 0.0, sign, width - sign * ratio))
+            program.nonnegative(sign * y + (width - sign * ratio) * w)
 
-    def _over(self) -> Affine:
-        """w as a row."""
-        return Affine.of([], np.zeros((1, 0)), 1.0) if self.w is None else Affine.of(self.w, 1.0)
-
-    def _sum(self, w: Affine, lift: float, y: float, over: float) -> Affine:
-        """The row lift * lift + y * y + over * w."""
-        columns = np.concatenate([[self.lift, self.y], w.columns])
-        factors = np.concatenate([[lift, y], over * w.factors[0]])
-        return Affine.of(columns, factors, over * w.constant[0])
+    @property
+    def _rows(self) -> tuple[Affine, Affine, Affine]:
+        """lift, w and y."""
+        w = Affine.fixed(1.0) if self.w is None else Affine.of(self.w, 1.0)
+        return Affine.of(self.lift, 1.0), w, Affine.of(self.y, 1.0)
 
 
 @dataclass(frozen=True)
@@ -208,10 +204,9 @@ class MovedCenter(DesignVariables):
             square.keep_between(program, low, high)
             squares.append(square)
         if self.move.center is not None and self.move.radius is not None:
-            rows = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
-            start = np.array([self.move.radius, *(-np.array(self.move.center))]) / self.length
-            slope = Affine(np.zeros((3, 0)), np.zeros(0, int), np.array([1 / self.length, 0, 0]))
-            circle = Affine(rows, places[:2], start)
+            center = Affine.of(places[:2], np.eye(2), -np.array(self.move.center) / self.length)
+            circle = stacked(Affine.fixed(self.move.radius / self.length), center)
+            slope = Affine.fixed([1 / self.length, 0.0, 0.0])
             program.cones(circle, 3, self._room, slope)
         return squares
 
@@ -280,7 +275,7 @@ class FreeSpring(DesignVariables):
 
     def constrain(self, program: Program, places: Array) -> list[Square]:
         k, pull = map(int, places)
-        slope = Affine.of([], np.zeros((1, 0)), 1 / self.choice.stiffness)
+        slope = Affine.fixed(1 / self.choice.stiffness)
         program.nonnegative(Affine.of(k, 1.0))
         program.nonnegative(Affine.of(k, -1.0, 1.0), self._name, slope)
         low, high = self.choice.free_length or (0.0, LONGEST * self.length)

@@ -102,13 +102,13 @@ def bound_measure(
     if measure in {"rms", "ripple"}:
         matrix, vector = mean_square_rows(signal, measure)
         rows = _beside(bound, 1, Affine(matrix, numbers, vector))
-        program.cones(rows, len(vector) + 1, name, _first_of(1, len(vector) + 1))
+        program.cones(rows, len(vector) + 1, name, Affine.fixed(np.eye(1, len(vector) + 1)[0]))
     elif measure == "peak" and np.iscomplexobj(signal.start):
         count = len(signal.start)
         parts = np.stack([signal.columns.real, signal.columns.imag], axis=-1)
         starts = np.stack([signal.start.real, signal.start.imag], axis=-1)
         inner = Affine(parts.reshape(len(parts), -1).T, numbers, starts.ravel())
-        rows, slope = _beside(bound, count, inner), _first_of(count, 3)
+        rows, slope = _beside(bound, count, inner), Affine.fixed(np.tile([1.0, 0.0, 0.0], count))
         program.gradually(Block("second-order", rows, 3, name, slope))
     else:
         _bound_sizes(program, numbers, signal, measure, bound, name)
@@ -121,15 +121,14 @@ def _bound_sizes(
     value = Affine(signal.columns.T, numbers, signal.start)
     if measure == "peak":
         for sign in (1.0, -1.0):
-            rows, slope = _sum(bound, 1.0, value, sign), _ones(len(signal.start))
-            program.gradually(Block("nonnegative", rows, 1, name, slope))
+            slope = Affine.fixed(np.ones(len(signal.start)))
+            program.gradually(Block("nonnegative", bound + sign * value, 1, name, slope))
     elif measure == "peak_to_peak":
         high, low = program.numbers(2)
         for place, sign in ((high, -1.0), (low, 1.0)):
-            rows = _sum(Affine.of(place, 1.0), 1.0, value, sign)
-            program.gradually(Block("nonnegative", rows))
+            program.gradually(Block("nonnegative", Affine.of(place, 1.0) + sign * value))
         width = Affine.of([high, low], [1.0, 1.0])
-        program.nonnegative(_sum(bound, 1.0, width, -1.0), name, _ones(1))
+        program.nonnegative(bound - width, name, Affine.fixed(1.0))
     else:
         from scipy import sparse
 
@@ -139,19 +138,7 @@ def _bound_sizes(
             factors = sparse.hstack([each, sign * value.factors])
             program.nonnegative(Affine(factors, columns, sign * value.constant))
         area = Affine.of(sizes, np.full(len(sizes), 2 * pi / len(sizes)))
-        program.nonnegative(_sum(bound, 1.0, area, -1.0), name, _ones(1))
-
-
-def _ones(count: int) -> Affine:
-    """Slope of rows that all grow with the bound."""
-    return Affine(np.zeros((count, 0)), np.zeros(0, int), np.ones(count))
-
-
-def _first_of(count: int, size: int) -> Affine:
-    """Slope of cones whose first rows grow with the bound."""
-    slope = np.zeros(count * size)
-    slope[::size] = 1.0
-    return Affine(np.zeros((count * size, 0)), np.zeros(0, int), slope)
+        program.nonnegative(bound - area, name, Affine.fixed(1.0))
 
 
 def _beside(bound: Affine, count: int, inner: Affine) -> Affine:
@@ -164,15 +151,3 @@ def _beside(bound: Affine, count: int, inner: Affine) -> Affine:
     factors[:, 1:, split:] = inner.factors.reshape(count, size - 1, -1)
     constant[:, 1:] = inner.constant.reshape(count, size - 1)
     return Affine(factors.reshape(count * size, -1), columns, constant.ravel())
-
-
-def _sum(one: Affine, scale: float, other: Affine, factor: float) -> Affine:
-    """scale * one + factor * other, where either may be a single row."""
-    count = max(len(one.constant), len(other.constant))
-    left = np.broadcast_to(scale * one.factors, (count, one.factors.shape[1]))
-    right = np.broadcast_to(factor * other.factors, (count, other.factors.shape[1]))
-    return Affine(
-        np.concatenate([left, right], axis=1),
-        np.concatenate([one.columns, other.columns]),
-        np.broadcast_to(scale * one.constant + factor * other.constant, (count,)),
-    )

@@ -15,7 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects, Near, gauge_signals
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.gauges import Near, gauge_signals
 from equipoise.balancing.measures import Signal
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective

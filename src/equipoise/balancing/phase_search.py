@@ -274,7 +274,8 @@ def choose_phases(
     found = search.best(search.pool(progress or (lambda done, total: None)))
     present, cost, grid = search.present, search.cost, search.grid
     placed = _placed(search, found)
-    lateral = [Term(wish, search.rows.signals(wish)) for wish in map(_varying, OF_ROWS)]
+    varying = (Objective(output, "ripple") for output in OF_ROWS)
+    lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
         {term.objective.name: term.told(at) for term in cost.terms} for at in (present, found)
     )
@@ -290,10 +291,6 @@ def choose_phases(
         step=search.step if grid is None else grid.step,
         notes=tuple(_notes(search, found)),
     )
-
-
-def _varying(output: str) -> Objective:
-    return Objective(output, "ripple")
 
 
 def _placed(search: PhaseSearch, found: Array) -> Machine:

@@ -187,11 +187,8 @@ class ConsistentMasses:
         unwanted = self.rows[:, gone].T
         unwanted = np.where(np.abs(unwanted) < PIVOT, 0.0, unwanted)  # no inverse of rounding
         tidied = (y - np.linalg.pinv(unwanted, rcond=PIVOT) @ (unwanted @ y)) @ self.rows
-        return (
-            np.where(gone, 0.0, tidied)
-            if np.allclose(tidied[gone], 0.0, atol=1e-12)
-            else combination
-        )
+        gone_too = np.allclose(tidied[gone], 0.0, atol=1e-12)
+        return np.where(gone, 0.0, tidied) if gone_too else combination
 
     def _least(self, combination: Array) -> float:
         """Least value of a combination (P,); minus infinity where it has none.
@@ -201,9 +198,8 @@ class ConsistentMasses:
         """
         total = 0.0
         rounding = PIVOT * float(np.max(np.abs(combination)))
-        for own, mass, inertia in zip(
-            combination.reshape(-1, len(QUANTITIES)), self.mass, self.inertia, strict=True
-        ):
+        of_links = combination.reshape(-1, len(QUANTITIES))
+        for own, mass, inertia in zip(of_links, self.mass, self.inertia, strict=True):
             moments = float(own[X] ** 2 + own[Y] ** 2)
             turning = max(float(own[INERTIA]), 0.0)
             if turning > rounding:
@@ -237,6 +233,9 @@ class Proof:
     least: float
     unit: str
 
+    def to_dict(self) -> dict[str, Any]:
+        return {"text": self.text, "least": self.least, "unit": self.unit}
+
 
 @dataclass(frozen=True, eq=False)
 class Answer:
@@ -268,16 +267,13 @@ class Answer:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units."""
-        proof = None
-        if self.proof is not None:
-            proof = {name: getattr(self.proof, name) for name in ("text", "least", "unit")}
         return {
             "possible": self.possible,
             "masses_kept": self.masses_kept,
             "added_mass": None if self.added_mass is None else dict(self.added_mass),
             "by_points": self.by_points,
             "reason": self.reason,
-            "proof": proof,
+            "proof": None if self.proof is None else self.proof.to_dict(),
         }
 
 

@@ -16,7 +16,8 @@ from equipoise.balancing.design_variables import (
     Square,
     with_parameters,
 )
-from equipoise.balancing.effects import Effects, Near, supports_more
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.gauges import Near, supports_more
 from equipoise.balancing.measures import Signal, bound_measure, measured
 from equipoise.balancing.multi_row import signals_of
 from equipoise.balancing.program import Affine, Program
@@ -221,7 +222,7 @@ class Problem:
             return
         masses, units = self.added_masses(places)
         if len(masses):
-            slope = Affine.of([], np.zeros((1, 0)), 1.0)
+            slope = Affine.fixed(1.0)
             program.nonnegative(Affine.of(masses, -units, self.plan.added_mass), ADDED, slope)
 
     def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
@@ -244,7 +245,7 @@ class Problem:
     def _limit(self, program: Program, numbers: Array, limit: Limit) -> None:
         scale = self.scale(limit.objective)
         at_most = limit.ratio if limit.at_most is None else limit.at_most / scale
-        bound = Affine.of([], np.zeros((1, 0)), at_most)
+        bound = Affine.fixed(at_most)
         for signal in self.signals[limit.name]:
             bound_measure(program, numbers, signal, limit.objective.measure, bound, limit.name)
 

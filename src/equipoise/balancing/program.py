@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -56,6 +56,30 @@ class Affine:
     def of_rows(self, places: Array) -> Affine:
         """Some of the rows."""
         return Affine(self.factors[places], self.columns, self.constant[places])
+
+    __array_ufunc__: ClassVar[None] = None  # NumPy's numbers leave arithmetic to this class
+
+    def __add__(self, other: Affine) -> Affine:
+        """Row by row; one of both may be a single row."""
+        count = max(len(self.constant), len(other.constant))
+        both = [np.broadcast_to(a.factors, (count, len(a.columns))) for a in (self, other)]
+        columns = np.concatenate([self.columns, other.columns])
+        constant = np.broadcast_to(self.constant + other.constant, (count,))
+        return Affine(np.concatenate(both, axis=1), columns, constant)
+
+    def __mul__(self, factor: float) -> Affine:
+        return Affine(factor * self.factors, self.columns, factor * self.constant)
+
+    __rmul__ = __mul__
+
+    def __sub__(self, other: Affine) -> Affine:
+        return self + (-1.0) * other
+
+    @classmethod
+    def fixed(cls, values: Any) -> Affine:
+        """Rows (R,) without numbers; a single one of a number."""
+        constant = np.atleast_1d(np.asarray(values, dtype=float))
+        return cls(np.zeros((len(constant), 0)), np.zeros(0, int), constant)
 
     @classmethod
     def of(cls, columns: Any, factors: Any, constant: Any = 0.0) -> Affine:
@@ -152,7 +176,7 @@ class Program:
 
     def rotated(self, x: Affine, y: Affine, z: Affine, lift: int | None = None) -> None:
         """x y >= |z|^2 with x, y >= 0: one row each of x and y, any number of z."""
-        rows = _stacked([(x, 1.0), (y, 1.0)], [(x, 1.0), (y, -1.0)], (z, 2.0))
+        rows = stacked(x + y, x - y, 2.0 * z)
         self.blocks.append(Block("second-order", rows, len(rows.constant), lift=lift))
 
     def copy(self) -> Program:
@@ -304,18 +328,13 @@ def _entries(factors: Any) -> tuple[Array, Array, Array]:
     return entries.row, entries.col, entries.data
 
 
-def _stacked(*rows: Any) -> Affine:
-    """Rows one under the other, each (rows, factor) or a sum of such."""
-    sums = [row if isinstance(row, list) else [row] for row in rows]
-    columns = np.unique(np.concatenate([part.columns for parts in sums for part, _ in parts]))
-    factors, constants = [], []
-    for parts in sums:
-        count = len(parts[0][0].constant)
-        matrix, constant = np.zeros((count, len(columns))), np.zeros(count)
-        for part, scale in parts:
-            places = np.searchsorted(columns, part.columns)
-            matrix[:, places] += scale * part.factors
-            constant += scale * part.constant
-        factors.append(matrix)
-        constants.append(constant)
-    return Affine(np.concatenate(factors), columns, np.concatenate(constants))
+def stacked(*rows: Affine) -> Affine:
+    """Rows one under the other."""
+    columns = np.concatenate([part.columns for part in rows])
+    constant = np.concatenate([part.constant for part in rows])
+    factors, row, column = np.zeros((len(constant), len(columns))), 0, 0
+    for part in rows:
+        height, width = part.factors.shape
+        factors[row : row + height, column : column + width] = part.factors
+        row, column = row + height, column + width
+    return Affine(factors, columns, constant)

@@ -21,7 +21,7 @@ import numpy as np
 
 from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
 from equipoise.balancing.pieces import SPREAD, pieces_of
-from equipoise.balancing.program import Affine, Block, Program
+from equipoise.balancing.program import Affine, Block, Program, stacked
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
@@ -203,7 +203,7 @@ class AddedWeight(DesignVariables):
             program.nonnegative(Affine.of(m, -1.0, self.cap / self.mass_unit))
         else:
             limit = Affine.of(m, -1.0, self.weight.at_most / self.mass_unit)
-            slope = Affine.of([], np.zeros((1, 0)), 1 / self.mass_unit)
+            slope = Affine.fixed(1 / self.mass_unit)
             program.nonnegative(limit, self.name, slope)
         if isfinite(most := largest_mass(self.weight)):
             program.nonnegative(Affine.of(m, -1.0, most / self.mass_unit))
@@ -224,9 +224,8 @@ class AddedWeight(DesignVariables):
         elif self.weight.shape == "disc":
             self._fit_disc(program, at, moment)
         elif isfinite(self._room):
-            slope = Affine(np.array([[1 / self.reach], [0], [0]]), mass.columns, np.zeros(3))
-            rows = self._cone(at["m"], self._room, 0.0, moment)
-            program.cones(rows, 3, self._radius_name, slope)
+            slope = stacked(1 / self.reach * mass, Affine.fixed([0.0, 0.0]))
+            program.cones(stacked(self._room * mass, moment), 3, self._radius_name, slope)
 
     def _limit_inertia(self, program: Program, at: dict[str, int]) -> None:
         """Nothing is farther out than the room's edge."""
@@ -235,25 +234,15 @@ class AddedWeight(DesignVariables):
         rows = Affine.of(columns, [self._room**2, -1.0])
         program.nonnegative(rows, self._radius_name, slope)
 
-    @staticmethod
-    def _cone(m: int, factor: float, constant: float, moment: Affine) -> Affine:
-        """|moment| <= factor m + constant."""
-        factors = np.zeros((3, 3))
-        factors[0, 0], factors[1:, 1:] = factor, moment.factors
-        start = np.concatenate([[constant], moment.constant])
-        return Affine(factors, np.concatenate([[m], moment.columns]), start)
-
     def _fit_disc(self, program: Program, at: dict[str, int], moment: Affine) -> None:
         """|s| + m^(3/2) / sqrt(pi rho t) <= R m, the power by two cones: m^2 <= w u, u^2 <= m."""
         w, u = program.numbers(2)
-        one = Affine.of([], np.zeros((1, 0)), 1.0)
+        one = Affine.fixed(1.0)
         mass = Affine.of(at["m"], 1.0)
         program.rotated(Affine.of(int(w), 1.0), Affine.of(int(u), 1.0), mass)
         program.rotated(mass, one, Affine.of(int(u), 1.0))
-        factors = np.zeros((3, 4))
-        factors[0, :2], factors[1:, 2:] = (self._room, -self._disc_radius), moment.factors
-        columns = np.concatenate([[at["m"], w], moment.columns])
-        program.cones(Affine(factors, columns, np.zeros(3)), 3)
+        rest = self._room * mass - self._disc_radius * Affine.of(int(w), 1.0)
+        program.cones(stacked(rest, moment), 3)
 
     @property
     def _full(self) -> float:
@@ -269,7 +258,7 @@ class AddedWeight(DesignVariables):
 
     def _add_tangent(self, program: Program, place: int, moment: Affine, m: float) -> None:
         value, slope = self._bound(m)
-        program.cones(self._cone(place, slope, value - slope * m, moment), 3)
+        program.cones(stacked(Affine.of(place, slope, value - slope * m), moment), 3)
 
     def _cuts(self, places: Array, x: Array) -> list[Block]:
         """Tangents that cut off a moment which no sector of its mass has."""

@@ -82,12 +82,12 @@ def analyze(
     """
     from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
     check_belonging("--json", outputs.json, split=split or None)
     if crank_zero is not None and orders is None:
         raise UsageError("--crank-zero belongs to --orders; give both")
-    machine = load(file)
+    machine = load_linkage(file)
     zero = crank_zero or 0.0
     if csv is not None:
         check_result_file("--csv", csv, sources_of(machine, file))

@@ -88,9 +88,9 @@ def balance(
 
 
 def _machine(file: str, speed: float | None) -> Machine:
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     return machine if speed is None else machine.with_drive(speed=speed)
 
 

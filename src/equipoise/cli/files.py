@@ -44,9 +44,9 @@ def check(file: File, /) -> None:
     from equipoise.mechanism.model import Machine
     from equipoise.present import checks, show_blocks
     from equipoise.schema.files import printable
-    from equipoise.schema.tools import load_any
+    from equipoise.schema.models import load
 
-    found = load_any(file)
+    found = load(file)
     if isinstance(found, Tool):
         show_blocks(found.title, checks.tool_blocks(found, printable(file)))
         return
@@ -72,11 +72,8 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     import json
 
     from equipoise.schema.models import json_schema
-    from equipoise.schema.studies import study_schema
-    from equipoise.schema.tools import tool_schema
 
-    schemas = {"linkage": json_schema, "tool": tool_schema, "study": study_schema}
-    print(json.dumps(schemas[_kind(tool, study)](), indent=2))
+    print(json.dumps(json_schema(_kind(tool, study)), indent=2))
 
 
 def new(

@@ -269,7 +269,7 @@ class Asked:
 def _tool(file: str, units: str) -> tuple[Tool, Units]:
     """The tool of a file, and the units in which its vibration is printed."""
     from equipoise.present.units import read_units
-    from equipoise.schema.tools import load_tool
+    from equipoise.schema.models import load_tool
 
     return load_tool(file), read_units(units)
 

@@ -187,23 +187,17 @@ def check_new(model: Machine | Tool, path: str) -> list[Path]:
 
 def files_of(model: Machine | Tool, path: str) -> list[Path]:
     """The files in which a model is saved: its own, and tables beside it."""
-    from equipoise.handheld.model import Tool
-    from equipoise.schema import models, tools
+    from equipoise.schema import models
 
-    if isinstance(model, Tool):
-        return list(tools.files_of_tool(model, path))
-    return list(models.files_of(model, path))
+    return models.files_of(model, path)
 
 
 def sources_of(model: Machine | Tool, file: str) -> list[str]:
     """The files from which a model was read."""
-    from equipoise.handheld.model import Tool
-    from equipoise.schema.models import tables_of
-    from equipoise.schema.tools import parts_of
+    from equipoise.schema.models import parts_of
 
-    parts = parts_of(model) if isinstance(model, Tool) else tables_of(model).values()
     folder = os.path.dirname(file)
-    return [file, *(os.path.join(folder, part.file) for part in parts if part.file)]
+    return [file, *(os.path.join(folder, part.file) for part in parts_of(model) if part.file)]
 
 
 def check_result_file(

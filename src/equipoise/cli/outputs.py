@@ -157,15 +157,13 @@ def write_model(
 
     title : added to its own; origin : sentences in front of its description.
     """
-    from equipoise.handheld.model import Tool
-    from equipoise.schema import models, tools
+    from equipoise.schema import models
     from equipoise.schema.files import printable
 
     start = f"{origin} Started from: " if origin else ""
     description = f"{start}{model.description}".removesuffix(" Started from: ").strip()
     titled = f"{model.title.removesuffix(title)}{title}"
     made: Any = replace(model, title=titled, description=description)
-    save: Any = tools.save_tool if isinstance(made, Tool) else models.save
-    save(made, path)
+    models.save(made, path)
     written = " and ".join(map(printable, files_of(made, path)))
     print(f"wrote {written}{what_next}", file=sys.stderr)

@@ -282,7 +282,7 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.figures.stage import check_seconds, check_width
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.output import write
 
     name = _default(file, ".svg") if out is None else out
@@ -294,7 +294,7 @@ def animate(
     check_belonging("--force", force, speed=speed)
     check_seconds(seconds)
     check_width(width)
-    machine = load(file)
+    machine = load_linkage(file)
     check_result_file("--out", name, sources_of(machine, file))
     if speed is not None:
         machine = machine.with_drive(speed=speed)

@@ -60,10 +60,10 @@ def plant(
     from equipoise.planting.summary import plant as read_off
     from equipoise.planting.summary import table
     from equipoise.present.units import read_units
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
-    machine = load(file)
+    machine = load_linkage(file)
     shown_in = read_units(units)
     outputs.check(sources_of(machine, file))
     with naming(file):
@@ -116,12 +116,12 @@ def fit(
     from equipoise.planting.summary import table
     from equipoise.present.units import read_units
     from equipoise.schema.files import printable
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
     from equipoise.schema.targets import read_targets
 
     if seed is not None and seed < 0:
         raise UsageError(f"--seed: got {seed}; give 0 or more")
-    machine = load(file)
+    machine = load_linkage(file)
     shown_in = read_units(units)
     new = out if out is not None else f"{Path(file).stem}-fit.toml"
     check_new(machine, new)

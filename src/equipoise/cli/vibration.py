@@ -49,12 +49,12 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
     model
         linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
     """
-    from equipoise.schema.models import load
-    from equipoise.vibration.free import vibrate_freely
+    from equipoise.schema.models import load_linkage
+    from equipoise.vibration import free
 
-    machine = load(file)
+    machine = load_linkage(file)
     with naming(file):
-        found = vibrate_freely(machine, model)
+        found = free.modes(machine, model)
 
     def show() -> None:
         from equipoise.present import show as shown
@@ -146,11 +146,11 @@ def simulate(
     drive
         Let the speed follow from the motor in [drive.motor].
     """
-    from equipoise.vibration.transient import from_rest
+    from equipoise.vibration import transient
 
     machine, shown_in = _machine(file, units, outputs)
     with naming(file):
-        found = from_rest(machine, duration, speed, drive)
+        found = transient.simulate(machine, duration, speed, drive)
 
     def show() -> None:
         from equipoise.present import show as shown
@@ -164,9 +164,9 @@ def simulate(
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
     from equipoise.present.units import read_units
-    from equipoise.schema.models import load
+    from equipoise.schema.models import load_linkage
 
-    machine = load(file)
+    machine = load_linkage(file)
     outputs.check(sources_of(machine, file))
     return machine, read_units(units)
 
@@ -201,7 +201,7 @@ def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     """The response by every model that costs little, for comparison; None where there is none."""
     from equipoise.vibration.forced import models_of
     from equipoise.vibration.forced import respond as solve
-    from equipoise.vibration.modes import swings_in_a_turn
+    from equipoise.vibration.mode_shapes import swings_in_a_turn
 
     swings = swings_in_a_turn(found.modes, found.speed)
     others: dict[str, Response | None] = {}

@@ -39,6 +39,8 @@ NOTICE = (
     "Numba is not installed, so designs are computed by NumPy, which takes ten to thirty times as "
     'long; install it by: pip install "equipoise[studies]"'
 )
+AT_A_TIME = 16_384
+"""Designs times crank angles, so that the values of a state stay in the processor's cache."""
 
 
 @cache
@@ -159,10 +161,10 @@ def compiled_functions() -> dict[str, Any]:
     import numba
 
     return {
-        "smallest": _extreme("llvm.minnum"),
-        "greatest": _extreme("llvm.maxnum"),
+        "smallest": _instruction("llvm.minnum", 2, ("fast",)),
+        "greatest": _instruction("llvm.maxnum", 2, ("fast",)),
         "angle_of": numba.njit(**INLINE)(angle_of),
-        "rotation": numba.njit(**INLINE)(_rotation(_nearest())),
+        "rotation": numba.njit(**INLINE)(_rotation(_instruction("llvm.rint", 1))),
     }
 
 
@@ -219,54 +221,36 @@ def _rotation(nearest: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return rotation
 
 
-def _extreme(instruction: str) -> Any:
-    """The smaller or larger of two numbers by one instruction.
+def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
+    """A function of one number or two that is a single instruction.
 
-    A comparison, or `min` and `max`, which look after NaN, would keep the loop from handling
-    several crank angles at once.
+    Of an extreme a comparison, or `min` and `max`, which look after NaN, would keep the loop from
+    handling several crank angles at once.
     """
     from llvmlite import ir
     from numba import types
     from numba.extending import intrinsic
 
     number = ir.DoubleType()
+    kind = ir.FunctionType(number, [number] * count)
 
-    def extreme(context: Any, a: Any, b: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            kind = ir.FunctionType(number, [number, number])
-            function = builder.module.declare_intrinsic(instruction, [number], kind)
-            # What is put aside on the stack lies across lines of the cache otherwise.  llvmlite
-            # tells the alignment only beside another attribute.
-            builder.function.attributes.alignstack = 64
-            builder.function.attributes.add("nounwind")
-            return builder.call(function, arguments, fastmath=("fast",))
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        function = builder.module.declare_intrinsic(name, [number], kind)
+        # What is put aside on the stack lies across lines of the cache otherwise.  llvmlite tells
+        # the alignment only beside another attribute.
+        builder.function.attributes.alignstack = 64
+        builder.function.attributes.add("nounwind")
+        return builder.call(function, arguments, fastmath=fastmath)
 
-        return types.float64(types.float64, types.float64), generate
+    typed = types.float64(*[types.float64] * count), generate
 
-    return intrinsic(extreme)
+    def of_one(context: Any, a: Any) -> Any:
+        return typed
 
+    def of_two(context: Any, a: Any, b: Any) -> Any:
+        return typed
 
-def _nearest() -> Any:
-    """The whole number next to a number, by one instruction."""
-    from llvmlite import ir
-    from numba import types
-    from numba.extending import intrinsic
-
-    number = ir.DoubleType()
-
-    def nearest(context: Any, a: Any) -> Any:
-        def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
-            kind = ir.FunctionType(number, [number])
-            function = builder.module.declare_intrinsic("llvm.rint", [number], kind)
-            return builder.call(function, arguments)
-
-        return types.float64(types.float64), generate
-
-    return intrinsic(nearest)
-
-
-AT_A_TIME = 16_384
-"""Designs times crank angles, so that the values of a state stay in the processor's cache."""
+    return intrinsic(of_one if count == 1 else of_two)
 
 
 def _rotation_of_array(angle: Array) -> Array:

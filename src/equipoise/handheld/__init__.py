@@ -1,6 +1,7 @@
-"""Hand-held tools: a shaft in bending, what sits on it, and the hands that hold it.
+"""Hand-held tools: a shaft in bending, what sits on it, and the hands that hold it."""
 
-Public: the values of `model` (`Tool` and its parts), `modes.vibrate_tool`, `response.respond_tool`
-and `sweep.sweep_tool`, `transmission.transmit`, `exposed.expose_tool` and
-`exposed.tool_sensitivities`, `studies.vary_tool` and `design.design_tool`.
-"""
+from __future__ import annotations
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

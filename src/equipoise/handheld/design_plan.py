@@ -3,20 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.shaft import places
 from equipoise.handheld.station import Station
-from equipoise.keys import Frozen
+from equipoise.keys import (
+    Conditions,
+    Frozen,
+    Listing,
+    Quantity,
+    Table,
+    Tables,
+    Text,
+    Told,
+    declared,
+    told_by,
+)
+from equipoise.keys import key as _key
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities import Dimension, format_exact, parse
 
 Measure = Literal["rms", "peak"]
 MEASURES: tuple[Measure, ...] = ("rms", "peak")
 """Root of the mean square over the speeds of the band, and the largest."""
 
-KEYS = {
+KEYS: dict[str, Dimension] = {
     "position": "length",
     "mass": "mass",
     "stiffness": "stiffness",
@@ -31,27 +43,56 @@ KEYS = {
 }
 """Numbers of a station that a design may change, each with its dimension."""
 
-OUTPUTS = {"acceleration": "acceleration", "force": "force", "added_mass": "mass"}
+OUTPUTS: dict[str, Dimension] = {
+    "acceleration": "acceleration",
+    "force": "force",
+    "added_mass": "mass",
+}
 """What can be limited: the weighted acceleration of a hand's station and the force on the body at a
 station, root of the mean square over time, at the worst speed of the band; mass that is added."""
 
+SPEEDS = Listing(Quantity(dimension="angular speed"), (2,), 'two such as ["6000 rpm", "8000 rpm"]')
 
-@dataclass(frozen=True)
+
+def _size(where: str, text: str, dimension: Dimension) -> float:
+    """A quantity in SI units; a `ModelError` tells what is wrong with its text."""
+    try:
+        return parse(text, dimension)
+    except UsageError as error:
+        raise ModelError(where, str(error)) from error
+
+
+@declared
 class DesignVariable(Frozen):
     """A number of a station that may be anything from `low` to `high`, in SI units.
 
     key : one of `KEYS`; of a pair of numbers both become the same.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("station", "key"), "text"),
-        **dict.fromkeys(("low", "high"), "number"),
-    }
+    conditions: ClassVar[Conditions] = told_by("key", ("from", "to"), KEYS)
 
-    station: str
-    key: str
-    low: float
-    high: float
+    station: str = _key(Text(), "name of the station", example="belt")
+    key: str = _key(
+        Text(suggested=(*KEYS,)),
+        "of the station; those of a part of it with a dot",
+        example="position",
+    )
+    low: float = _key(Told(), "the least", name="from", example="0.1 m")
+    high: float = _key(Told(), "the most", name="to", example="0.5 m")
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> DesignVariable:
+        name = given["key"]
+        if name not in KEYS:
+            raise ModelError("key", unknown(name, KEYS, "key of a station"))
+        low = _size("from", given.pop("low"), KEYS[name])
+        return cls(**given | {"low": low, "high": _size("to", given["high"], KEYS[name])})
+
+    @classmethod
+    def to_table(cls, value: DesignVariable) -> dict[str, Any]:
+        ends = {"from": value.low, "to": value.high}
+        texts = {name: format_exact(end, KEYS[value.key]) for name, end in ends.items()}
+        return {**super().to_table(value), **texts}
 
     @property
     def name(self) -> str:
@@ -59,48 +100,63 @@ class DesignVariable(Frozen):
         return f"{self.station} {self.key}"
 
 
-@dataclass(frozen=True)
+@declared
 class DesignLimit(Frozen):
-    """Something that must not become larger, in SI units.
+    """Something that must not become larger, in SI units."""
 
-    output : one of `OUTPUTS`.
-    station : of an acceleration or force.
-    """
+    file_order = ("output", "station")
+    conditions: ClassVar[Conditions] = told_by("output", ("at_most",), OUTPUTS)
 
-    shapes: ClassVar[dict[str, str]] = {
-        "output": "text",
-        "station": "text?",
-        "at_most": "number",
-    }
+    output: str = _key(
+        Text(suggested=(*OUTPUTS,)),
+        "`acceleration`: weighted, of a station that is held; `force`: on the body, at a station; "
+        "`added_mass`: all that is added",
+        example="acceleration",
+    )
+    at_most: float = _key(Told(), "in a unit of the output", example="5 m/s^2")
+    station: str | None = _key(Text(), "of an acceleration or force", default=None)
 
-    output: str
-    at_most: float
-    station: str | None = None
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> DesignLimit:
+        if given["output"] not in OUTPUTS:
+            raise ModelError("output", unknown(given["output"], OUTPUTS, "output"))
+        at_most = _size("at_most", given["at_most"], OUTPUTS[given["output"]])
+        return cls(**given | {"at_most": at_most})
+
+    @classmethod
+    def to_table(cls, value: DesignLimit) -> dict[str, Any]:
+        text = format_exact(value.at_most, OUTPUTS[value.output])
+        return {**super().to_table(value), "at_most": text}
 
 
-@dataclass(frozen=True)
+@declared
 class DesignPlan(Frozen):
     """The weighted acceleration of the hands over a band of speeds is to be as small as it can be.
 
-    speeds : lowest and highest speed of the engine, rad/s.
-    variables : what may be changed.
-    limits : what must be kept.
-    measure : over the speeds of the band; over several hands it is that of the worst.
-    hands : stations whose acceleration counts; all that are held if empty.
+    Over several hands it is that of the worst.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "speeds": "pair",
-        **dict.fromkeys(("variables", "limits"), "list"),
-        "measure": "text",
-        "hands": "names",
-    }
+    file_order = ("speeds", "measure", "hands")
 
-    speeds: tuple[float, float]
-    variables: tuple[DesignVariable, ...]
-    limits: tuple[DesignLimit, ...] = ()
-    measure: Measure = "rms"
-    hands: tuple[str, ...] = ()
+    speeds: tuple[float, float] = _key(
+        SPEEDS, "lowest and highest speed of the engine", example=["6000 rpm", "8000 rpm"]
+    )
+    variables: tuple[DesignVariable, ...] = _key(
+        Tables(Table(DesignVariable)), "what may be changed", default=()
+    )
+    limits: tuple[DesignLimit, ...] = _key(
+        Tables(Table(DesignLimit)), "what must not become larger", default=()
+    )
+    measure: Measure = _key(
+        Text(MEASURES),
+        "over the speeds: `rms`: root of the mean square; `peak`: the largest",
+        default="rms",
+    )
+    hands: tuple[str, ...] = _key(
+        Listing(Text(), right='a list of names such as ["handle"]'),
+        "stations that count; all that are held if left out",
+        default=(),
+    )
 
 
 def unknown_station(where: str, name: str, stations: Sequence[Station]) -> Iterator[ModelError]:

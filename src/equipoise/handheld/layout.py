@@ -14,8 +14,8 @@ from equipoise.errors import ModelError
 from equipoise.handheld.chain import Chain, Pair
 from equipoise.handheld.duals import Dual, stacked, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
+from equipoise.handheld.section import Section
 from equipoise.handheld.segment import Transfer, longest, shear_transfer, transfer
-from equipoise.handheld.shaft import Section
 
 Array = np.ndarray[Any, Any]
 TOUCHING = 1e-9

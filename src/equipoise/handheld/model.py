@@ -7,17 +7,18 @@ know nothing of each other, vertical and lateral; a pair of numbers is one for e
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import (
+    SPEEDS,
     DesignPlan,
     unknown_station,
     wrong_design,
     wrong_range,
 )
-from equipoise.handheld.shaft import Shaft, negative, places, wrong_shaft
+from equipoise.handheld.shaft import Shaft, places, wrong_shaft
 from equipoise.handheld.station import (
     NOTHING,
     Absorber,
@@ -30,12 +31,31 @@ from equipoise.handheld.station import (
     is_damped,
     wrong_station,
 )
-from equipoise.keys import Frozen, wrong_values
-from equipoise.mechanism.checks import positive, unknown, wrong_text
+from equipoise.keys import (
+    PLANES,
+    SCHEMA_VERSION,
+    VERSION,
+    Conditions,
+    File,
+    Frozen,
+    Key,
+    Keys,
+    Number,
+    Table,
+    Tables,
+    Text,
+    declared,
+    inside,
+    key,
+    keys_of,
+    wrong_values,
+)
+from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.mechanism.model import Machine
 
 __all__ = [
     "NOTHING",
+    "PLANES",
     "Absorber",
     "Both",
     "Excitation",
@@ -48,7 +68,6 @@ __all__ = [
     "Work",
 ]
 
-PLANES = ("vertical", "lateral")
 MOST = 200
 """Far beyond any tool, as in `mechanism.checks`."""
 DAY = 86400.0
@@ -60,91 +79,159 @@ CAUSES = ("force", "unbalance", "linkage")
 Direction = Literal["vertical", "lateral", "rotating"]
 
 
-@dataclass(frozen=True)
+def usual_name(station: str, cause: str) -> str:
+    """Name of an excitation that has none of its own."""
+    return f"{station} {cause}".strip()
+
+
+@declared
 class Excitation(Frozen):
     """What shakes the tool at a station: a force, an unbalance, or a linkage.
 
-    force : amplitude, N, the same at all speeds.
-    unbalance : mass times radius, kg m; its force grows with the square of its speed.
-    linkage : machine whose shaking force acts, its x lateral and its y vertical; `file` is the
-        name of its model file.
-    direction : of a force.
-    phase : rad, by which it is ahead; of an unbalance or linkage, the angle of its shaft.
-    ratio : its speed over that of the engine; negative turns the other way.
+    An unbalance is mass times radius; its force grows with the square of its speed.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("name", "station", "direction", "file"), "text"),
-        **dict.fromkeys(("force", "unbalance"), "number?"),
-        **dict.fromkeys(("phase", "ratio"), "number"),
+    beside: ClassVar[Keys] = {
+        "name": Key(
+            "name", Text(), "if left out, that of the station and what it is", default=None
+        ),
+        "direction": Key(
+            "direction", Text(DIRECTIONS), "of a force", default=None, shown="vertical"
+        ),
+    }
+    file_order = ("name", "station", "force", "unbalance", "linkage", "direction")
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in CAUSES],
+        "dependentRequired": {"direction": ["force"]},
+        "allOf": [{"properties": {"ratio": {"not": {"const": 0}}}}],
     }
 
-    name: str
-    station: str
-    force: float | None = None
-    unbalance: float | None = None
-    linkage: Machine | None = None
-    direction: Direction = "vertical"
-    phase: float = 0.0
-    ratio: float = 1.0
-    file: str = field(default="", compare=False)
+    name: str = inside(Text())
+    station: str = key(Text(), "where it acts", example="engine")
+    force: float | None = key(
+        "force", "amplitude, the same at all speeds", default=None, at_least=0
+    )
+    unbalance: float | None = key(
+        "unbalance", "mass times radius of what turns", default=None, at_least=0
+    )
+    linkage: Machine | None = key(
+        File("linkage", named="file"),
+        "model file beside this one, or name of a bundled linkage, whose shaking force acts: its x "
+        "lateral, its y vertical",
+        default=None,
+        example="engine.toml",
+    )
+    direction: Direction = inside(Text(DIRECTIONS), default="vertical")
+    phase: float = key(
+        "angle",
+        "by which it is ahead; of an unbalance or linkage, the angle of its shaft",
+        default=0.0,
+    )
+    ratio: float = key(
+        Number(),
+        "its speed over that of the engine; negative turns the other way",
+        default=1.0,
+    )
+    file: str = inside(Text(), default="", compare=False)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Excitation:
+        if "direction" in given and "force" not in given:
+            raise ModelError("direction", "goes with a force; leave it out")
+        cause = next((name for name in CAUSES if name in given), "")
+        return cls(**{"name": usual_name(given["station"], cause), **given})
+
+    @classmethod
+    def to_table(cls, value: Excitation) -> dict[str, Any]:
+        cause = next(name for name in CAUSES if getattr(value, name) is not None)
+        usual = {"name": usual_name(value.station, cause), "direction": "vertical"}
+        own = {name: getattr(value, name) for name in usual}
+        unlike = {name: one for name, one in own.items() if one != usual[name]}
+        return {**super().to_table(value), **unlike}
 
 
-@dataclass(frozen=True)
+@declared
 class Operation(Frozen):
-    """Speeds (rad/s) of the engine: at work, the range of it, idling and racing."""
+    """Speeds of the engine."""
 
-    shapes: ClassVar[dict[str, str]] = {
-        "speed": "number",
-        "speeds": "row",
-        **dict.fromkeys(("idling", "racing"), "number?"),
-    }
+    speed: float = key("angular speed", "at work", example="7000 rpm", above=0)
+    speeds: tuple[float, ...] = key(
+        SPEEDS, "lowest and highest at work", default=(), example=["2000 rpm", "9000 rpm"]
+    )
+    idling: float | None = key(
+        "angular speed", "while it idles", default=None, example="2700 rpm", above=0
+    )
+    racing: float | None = key(
+        "angular speed",
+        "at full throttle without load",
+        default=None,
+        example="9500 rpm",
+        above=0,
+    )
 
-    speed: float
-    speeds: tuple[float, ...] = ()
-    idling: float | None = None
-    racing: float | None = None
 
-
-@dataclass(frozen=True)
+@declared
 class Work(Frozen):
-    """A part of the day: so long (s) at that speed of the engine (rad/s)."""
+    """A part of the day."""
 
-    shapes: ClassVar[dict[str, str]] = {"name": "text", "speed": "number", "duration": "number"}
-
-    name: str
-    speed: float
-    duration: float
+    name: str = key(Text(), "of the work", example="mowing")
+    speed: float = key("angular speed", "of the engine", example="7000 rpm", above=0)
+    duration: float = key("time", "of it in a day", example="2 h", above=0)
 
 
-@dataclass(frozen=True)
-class Tool(Frozen):
-    """A hand-held tool.
+@declared
+class ShaftTable(Frozen):
+    """The shaft with what sits on it and holds it; a tool has both apart."""
 
-    Attributes
-    ----------
-    shaft : the beam.
-    stations : what sits on it and holds it.
-    excitations : what shakes it.
-    operation : speeds of the engine.
-    work : the parts of a day.
-    design : what may be changed so that the hands feel less.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        "title": "text",
-        "description": "text",
-        **dict.fromkeys(("stations", "excitations", "work"), "list"),
+    beside: ClassVar[Keys] = {
+        **keys_of(Shaft),
+        "stations": Key(
+            "stations", Tables(Table(Station)), "what sits on it and holds it", default=()
+        ),
     }
+    conditions: ClassVar[Conditions] = Shaft.conditions
 
-    title: str
-    shaft: Shaft
-    stations: tuple[Station, ...] = ()
-    excitations: tuple[Excitation, ...] = ()
-    operation: Operation | None = None
-    work: tuple[Work, ...] = ()
-    design: DesignPlan | None = None
-    description: str = ""
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> tuple[Shaft, tuple[Station, ...]]:
+        stations = given.pop("stations", ())
+        return Shaft.from_table(given), stations
+
+    @classmethod
+    def to_table(cls, value: tuple[Shaft, tuple[Station, ...]]) -> dict[str, Any]:
+        shaft, stations = value
+        return {**Shaft.to_table(shaft), **({"stations": stations} if stations else {})}
+
+
+@declared
+class Tool(Frozen):
+    """A hand-held tool: a shaft in bending, what sits on it and what shakes it."""
+
+    beside: ClassVar[Keys] = {"schema": VERSION}
+    file_order = ("schema", "title", "description")
+
+    title: str = key(Text(), "shown in reports", example="Brush cutter")
+    shaft: Shaft = key(Table(ShaftTable), "the beam")
+    stations: tuple[Station, ...] = inside(Tables(Table(Station)), default=())
+    excitations: tuple[Excitation, ...] = key(
+        Tables(Table(Excitation)), "what shakes the tool", default=()
+    )
+    operation: Operation | None = key(Table(Operation), "speeds of the engine", default=None)
+    work: tuple[Work, ...] = key(Tables(Table(Work)), "the parts of a day", default=())
+    design: DesignPlan | None = key(
+        Table(DesignPlan), "what may be changed so that the hands feel less", default=None
+    )
+    description: str = key(Text(), "further text", default="")
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Tool:
+        del given["schema"]
+        shaft, stations = given.pop("shaft")
+        return cls(**given, shaft=shaft, stations=stations)
+
+    @classmethod
+    def to_table(cls, value: Tool) -> dict[str, Any]:
+        table = super().to_table(value)
+        return {**table, "schema": SCHEMA_VERSION, "shaft": (value.shaft, value.stations)}
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -197,8 +284,8 @@ def _problems(tool: Tool) -> Iterator[ModelError]:
     yield from _wrong_names(tool)
     yield from wrong_values("shaft", tool.shaft)
     yield from wrong_values("shaft.stations", tool.stations)
-    for key in ("excitations", "operation", "work", "design"):
-        yield from wrong_values(key, getattr(tool, key))
+    for part in ("excitations", "operation", "work", "design"):
+        yield from wrong_values(part, getattr(tool, part))
     yield from wrong_shaft(tool.shaft)
     for where, station in places("shaft.stations", tool.stations):
         yield from wrong_station(where, station, tool.shaft.length)
@@ -221,17 +308,17 @@ def _named(tool: Tool) -> Iterable[tuple[str, Sequence[Any]]]:
 def _too_much(tool: Tool) -> Iterator[ModelError]:
     lists = [*_named(tool), ("shaft.segments", tool.shaft.segments)]
     if tool.design is not None:
-        lists += [(f"design.{key}", getattr(tool.design, key)) for key in ("variables", "limits")]
-    for key, items in lists:
+        lists += [(f"design.{one}", getattr(tool.design, one)) for one in ("variables", "limits")]
+    for part, items in lists:
         if len(items) > MOST:
-            yield ModelError(key, f"got {len(items)}; at most {MOST} are computed with")
+            yield ModelError(part, f"got {len(items)}; at most {MOST} are computed with")
 
 
 def _wrong_names(tool: Tool) -> Iterator[ModelError]:
     yield from wrong_text("title", tool.title)
-    for key, items in _named(tool):
+    for part, items in _named(tool):
         seen: set[str] = set()
-        for where, item in places(key, items):
+        for where, item in places(part, items):
             name = item.name
             yield from wrong_text(f"{where}.name", name)
             if not name.strip():
@@ -243,21 +330,15 @@ def _wrong_names(tool: Tool) -> Iterator[ModelError]:
 
 def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterator[ModelError]:
     yield from unknown_station(f"{where}.station", excitation.station, tool.stations)
-    if sum(getattr(excitation, key) is not None for key in CAUSES) != 1:
+    if sum(getattr(excitation, cause) is not None for cause in CAUSES) != 1:
         yield ModelError(where, "give exactly one of force, unbalance and linkage")
-    yield from negative(where, excitation, "force", "unbalance")
-    if excitation.direction not in DIRECTIONS:
-        sentence = unknown(excitation.direction, DIRECTIONS, "direction")
-        yield ModelError(f"{where}.direction", sentence)
-    elif excitation.direction != "vertical" and excitation.force is None:
+    if excitation.direction != "vertical" and excitation.force is None:
         yield ModelError(f"{where}.direction", "goes with a force; leave it out")
     if excitation.ratio == 0:
         yield ModelError(f"{where}.ratio", "got 0; what does not turn shakes nothing, give another")
 
 
 def _wrong_operation(operation: Operation) -> Iterator[ModelError]:
-    for key in ("speed", "idling", "racing"):
-        yield from positive(f"operation.{key}", getattr(operation, key), "rad/s")
     if operation.speeds:
         yield from wrong_range("operation.speeds", operation.speeds)
     idling, racing = operation.idling, operation.racing
@@ -266,9 +347,6 @@ def _wrong_operation(operation: Operation) -> Iterator[ModelError]:
 
 
 def _wrong_work(tool: Tool) -> Iterator[ModelError]:
-    for where, work in places("work", tool.work):
-        yield from positive(f"{where}.speed", work.speed, "rad/s")
-        yield from positive(f"{where}.duration", work.duration, "s")
     total = sum(work.duration for work in tool.work)
     if total > DAY * (1 + 1e-9):
         yield ModelError("work", f"takes {total / 3600:.4g} h together; a day has 24 h")

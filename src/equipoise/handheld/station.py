@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.handheld.shaft import negative
-from equipoise.keys import Frozen
+from equipoise.keys import (
+    PLANES,
+    ROW,
+    Conditions,
+    File,
+    Frozen,
+    Planes,
+    Quantity,
+    Table,
+    Text,
+    Whole,
+    declared,
+    inside,
+    key,
+    keys_of,
+)
+from equipoise.quantities import Dimension
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
@@ -18,18 +32,24 @@ Both = tuple[float, float]
 NOTHING: Both = (0.0, 0.0)
 
 
-@dataclass(frozen=True)
+def both_planes(dimension: Dimension) -> Planes:
+    return Planes(Quantity(dimension=dimension))
+
+
+@declared
 class Absorber(Frozen):
-    """A mass (kg) on a spring (N/m) and damper (N s/m) of its own."""
+    """A mass on a spring and damper of its own."""
 
-    shapes: ClassVar[dict[str, str]] = {"mass": "number", "stiffness": "pair", "damping": "pair"}
+    mass: float = key("mass", "of it", example="150 g", at_least=0)
+    stiffness: Both = key(
+        both_planes("stiffness"), "between it and the shaft", at_least=0, example="50 kN/m"
+    )
+    damping: Both = key(
+        both_planes("damping"), "between it and the shaft", at_least=0, default=NOTHING
+    )
 
-    mass: float
-    stiffness: Both
-    damping: Both = NOTHING
 
-
-@dataclass(frozen=True)
+@declared
 class Impedance(Frozen):
     """Driving-point impedance of a hand against frequency, linear between its rows.
 
@@ -38,83 +58,79 @@ class Impedance(Frozen):
     file : name of the CSV file that it came from.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        **dict.fromkeys(("frequency", "resistance", "reactance"), "row"),
-        "file": "text",
-    }
-
-    frequency: tuple[float, ...]
-    resistance: tuple[float, ...]
-    reactance: tuple[float, ...]
-    file: str = field(default="", compare=False)
+    frequency: tuple[float, ...] = inside(ROW)
+    resistance: tuple[float, ...] = inside(ROW)
+    reactance: tuple[float, ...] = inside(ROW)
+    file: str = inside(Text(), default="", compare=False)
 
 
-@dataclass(frozen=True)
+@declared
 class Hand(Frozen):
     """What a hand with its arm is to the tool: mass, spring and damper, or a measured impedance.
 
-    mass : that moves with the tool, kg.
-    stiffness, damping : to the body, N/m and N s/m.
-    impedance : instead of these, for the vertical and the lateral plane.
     hands : how many hold on here; all else is of one.
     """
 
-    shapes: ClassVar[dict[str, str]] = {
-        "mass": "number",
-        "stiffness": "pair",
-        "damping": "pair",
-        "impedance": "list",
-        "hands": "count",
+    conditions: ClassVar[Conditions] = {
+        "if": {"required": ["impedance"]},
+        "then": {"properties": dict.fromkeys(("mass", "stiffness", "damping"), False)},
+        "else": {"anyOf": [{"required": [one]} for one in ("mass", "stiffness", "damping")]},
     }
 
-    mass: float = 0.0
-    stiffness: Both = NOTHING
-    damping: Both = NOTHING
-    impedance: tuple[Impedance, ...] = ()
-    hands: int = 1
+    mass: float = key("mass", "that moves with the tool", default=0.0, at_least=0)
+    stiffness: Both = key(both_planes("stiffness"), "to the body", at_least=0, default=NOTHING)
+    damping: Both = key(both_planes("damping"), "to the body", at_least=0, default=NOTHING)
+    impedance: tuple[Impedance, ...] = key(
+        Planes(File("impedance")),
+        "CSV file beside this one, instead of these: `frequency [Hz],resistance [N s/m],"
+        "reactance [N s/m]` or `frequency [Hz],magnitude [N s/m],phase [deg]`; a table for unlike "
+        "planes",
+        default=(),
+        example="hand.csv",
+    )
+    hands: int = key(Whole(names=(1, 2)), "that hold on here; all else is of one", default=1)
 
 
-@dataclass(frozen=True)
+@declared
 class Harness(Frozen):
-    """The belt that carries the tool, as a spring (N/m) and damper (N s/m) to the body."""
+    """The belt that carries the tool, as a spring and damper to the body."""
 
-    shapes: ClassVar[dict[str, str]] = {"stiffness": "pair", "damping": "pair"}
-
-    stiffness: Both
-    damping: Both = NOTHING
+    stiffness: Both = key(both_planes("stiffness"), "to the body", at_least=0, example="2 kN/m")
+    damping: Both = key(both_planes("damping"), "to the body", at_least=0, default=NOTHING)
 
 
-@dataclass(frozen=True)
+@declared
 class Station(Frozen):
-    """A place of the shaft and what sits there.
+    """A place of the shaft and what sits there."""
 
-    position : from the left end, m.
-    mass, inertia : kg; kg m2 about the axes across the shaft, through the shaft.
-    stiffness, damping : to the ground, N/m and N s/m.
-    rotational_stiffness, rotational_damping : to the ground, N m/rad and N m s/rad.
-    """
-
-    shapes: ClassVar[dict[str, str]] = {
-        "name": "text",
-        "position": "number",
-        "mass": "number",
-        **dict.fromkeys(
-            ("inertia", "stiffness", "damping", "rotational_stiffness", "rotational_damping"),
-            "pair",
-        ),
-    }
-
-    name: str
-    position: float
-    mass: float = 0.0
-    inertia: Both = NOTHING
-    stiffness: Both = NOTHING
-    damping: Both = NOTHING
-    rotational_stiffness: Both = NOTHING
-    rotational_damping: Both = NOTHING
-    absorber: Absorber | None = None
-    hand: Hand | None = None
-    harness: Harness | None = None
+    name: str = key(Text(), "by which the other tables call it", example="engine")
+    position: float = key("length", "from the left end of the shaft", example="0 mm")
+    mass: float = key("mass", "of a rigid body", default=0.0, at_least=0)
+    inertia: Both = key(
+        both_planes("inertia"),
+        "of it, about the axes across the shaft, through the shaft",
+        at_least=0,
+        default=NOTHING,
+    )
+    stiffness: Both = key(both_planes("stiffness"), "to the ground", at_least=0, default=NOTHING)
+    damping: Both = key(both_planes("damping"), "to the ground", at_least=0, default=NOTHING)
+    rotational_stiffness: Both = key(
+        both_planes("torsional stiffness"),
+        "to the ground, against bending",
+        at_least=0,
+        default=NOTHING,
+    )
+    rotational_damping: Both = key(
+        both_planes("torsional damping"),
+        "to the ground, against bending",
+        at_least=0,
+        default=NOTHING,
+    )
+    absorber: Absorber | None = key(
+        Table(Absorber), "a mass on a spring and damper of its own", default=None
+    )
+    hand: Hand | None = key(Table(Hand), "what a hand with its arm is to the tool", default=None)
+    harness: Harness | None = key(Table(Harness), "the belt that carries the tool", default=None)
 
     def number(self, key: str) -> float | Both:
         """A number by its key, such as ``mass`` or ``harness.stiffness``, in SI units."""
@@ -131,7 +147,8 @@ def alike(part: Station | Hand | Harness | Absorber | None) -> bool:
         return True
     if isinstance(part, Hand) and len(part.impedance) == 2:
         return part.impedance[0] == part.impedance[1]
-    pairs = (getattr(part, name) for name, shape in part.shapes.items() if shape == "pair")
+    of_planes = (one for one in keys_of(type(part)).values() if isinstance(one.kind, Planes))
+    pairs = (value for one in of_planes if len(value := getattr(part, one.field)) == len(PLANES))
     within = (part.absorber, part.hand, part.harness) if isinstance(part, Station) else ()
     return all(one == other for one, other in pairs) and all(map(alike, within))
 
@@ -145,8 +162,6 @@ def is_damped(station: Station) -> bool:
 
 # -- checks ----------------------------------------------------------------------------------------
 
-RATES = ("stiffness", "damping", "rotational_stiffness", "rotational_damping")
-
 
 def wrong_station(where: str, station: Station, length: float) -> Iterator[ModelError]:
     """Everything that is wrong with a station of a shaft that is so long (m)."""
@@ -155,20 +170,13 @@ def wrong_station(where: str, station: Station, length: float) -> Iterator[Model
             f"{where}.position",
             f"got {station.position:g} m, which is off the shaft; give 0 m to {length:g} m",
         )
-    yield from negative(where, station, "mass", "inertia", *RATES)
-    if station.absorber is not None:
-        yield from negative(f"{where}.absorber", station.absorber, "mass", "stiffness", "damping")
-    if station.harness is not None:
-        yield from negative(f"{where}.harness", station.harness, "stiffness", "damping")
     if station.hand is not None:
         yield from _wrong_hand(f"{where}.hand", station.hand)
 
 
 def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
-    yield from negative(where, hand, "mass", "stiffness", "damping")
-    if hand.hands not in (1, 2):
-        yield ModelError(f"{where}.hands", f"got {hand.hands}; give 1 or 2")
-    given = [key for key in ("mass", "stiffness", "damping") if _is_given(getattr(hand, key))]
+    loads = ("mass", "stiffness", "damping")
+    given = [name for name in loads if _is_given(getattr(hand, name))]
     if hand.impedance and given:
         yield ModelError(f"{where}.{given[0]}", "has no place beside an impedance; leave it out")
     elif not hand.impedance and not given:

@@ -1,5 +1,7 @@
-"""Measured signals: what a recorded free decay tells of inertia, damping and friction.
+"""Measured signals: what a recorded free decay tells of inertia, damping and friction."""
 
-Public: `record.Record` (a decay), `record.simulate_decay` (one from known constants) and
-`decay.identify_decay` (constants with confidence intervals, by two methods side by side).
-"""
+from __future__ import annotations
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

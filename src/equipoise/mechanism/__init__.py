@@ -1,7 +1,7 @@
-"""Planar linkages: the machine as frozen values, how it is assembled, its motion and its forces.
+"""Planar linkages: the machine as frozen values, how it is assembled, its motion and its forces."""
 
-Public: `model.Machine` and its parts (also in `field`, `motor`, `spring`, `support`, `balance`),
-`linkage.assemble`, `motion.move`, `dynamics.forces` and `dynamics.split`, `parameters.regressor`
-and `parameters.base_parameters`, `assessment.four_bar`, and `instants` for where signals vanish or
-turn.  NumPy is all that it needs.
-"""
+from __future__ import annotations
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
+    SCHEMA_VERSION,
     VERSION,
     Frozen,
     Keys,
@@ -178,6 +179,15 @@ class Machine(Frozen):
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links and frame", default=()
     )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Machine:
+        del given["schema"]
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: Machine) -> dict[str, Any]:
+        return {**super().to_table(value), "schema": SCHEMA_VERSION}
 
     def __post_init__(self) -> None:
         super().__post_init__()

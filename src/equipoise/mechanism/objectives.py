@@ -9,7 +9,6 @@ from typing import ClassVar
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
-    Anything,
     Frozen,
     Key,
     Keys,
@@ -18,6 +17,7 @@ from equipoise.keys import (
     Quantity,
     Table,
     Text,
+    Told,
     declared,
     inside,
     key,
@@ -26,11 +26,14 @@ from equipoise.mechanism.checks import positive, unknown
 from equipoise.mechanism.declaring import Declared, Measure, matches
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.mechanism.parts import Mechanism
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, pattern
+from equipoise.quantities.units import NUMBER
 
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and
 area under the absolute value over one turn of the crank."""
+MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "energy", "length", "angle")
+"""What measures of outputs can be."""
 OF_ROWS = ("roll_moment", "yaw_moment")
 """About x and y, from linkages side by side."""
 JOINTS, GAUGES = "joints.", "gauges."
@@ -42,6 +45,8 @@ MOST_NUMBERS = 200
 @declared
 class Objective(Frozen):
     """What is to become small: a measure of an output."""
+
+    file_order = ("output", "measure", "orders", "about", "speeds", "weight")
 
     output: str = key(
         Text(),
@@ -61,6 +66,7 @@ class Objective(Frozen):
         "those that count: events in one turn of the crank, 0 for the mean; all if left out",
         default=(),
         example=[1, 2],
+        at_least=0,
     )
     about: str | None = key(
         Text(),
@@ -103,16 +109,17 @@ class Limit(Frozen):
     beside: ClassVar[Keys] = {
         "at_most": Key(
             "at_most",
-            Anything(
-                text='give number and unit in quotes, such as "120 N", or a share of the value '
+            Told(
+                right='give number and unit in quotes, such as "120 N", or a share of the value '
                 'before, such as "80 %"',
+                schema={"pattern": "|".join([rf"^{NUMBER} +%$", *map(pattern, MEASURED_IN)])},
             ),
             '`"120 N"`, in a unit of the output; or a share of the value before, such as `"80 %"`',
             example="120 N",
         )
     }
 
-    objective: Objective = key(Table(Objective, flat=True))
+    objective: Objective = key(Table(Objective, flat=True, without=("weight",)))
     at_most: float | None = inside(Number(), default=None)
     ratio: float | None = inside(Number(), default=None)
 

@@ -1,5 +1,7 @@
-"""Planting: the path of the tip in the ground, its figures, and the geometry that meets targets.
+"""Planting: the path of the tip in the ground, its figures, and the geometry that meets targets."""
 
-Public: `summary.plant` (all figures of a machine), `summary.soil_forces` (with and without the
-soil), `summary.table` (against crank angle) and `search.fit_planting` (geometry for targets).
-"""
+from __future__ import annotations
+
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -228,7 +228,7 @@ def kind_of(out: str | os.PathLike[str]) -> str:
     return KINDS[end.lower()]
 
 
-def write_report(
+def report(
     path_or_name: str | os.PathLike[str],
     *outs: str | os.PathLike[str],
     language: str = "en",
@@ -255,7 +255,7 @@ def write_report(
     write_document(build(found, language, command, together=True), outs)
 
 
-def report(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
+def report_page(found: Findings | ToolFindings, language: str = "en", command: str = "") -> str:
     """A report of findings as HTML, the same text on every run.
 
     Parameters

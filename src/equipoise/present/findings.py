@@ -112,9 +112,9 @@ class Findings(_Found):
         """Free vibration on the support."""
         if self.machine.support is None:
             return None
-        from equipoise.vibration.free import vibrate_freely
+        from equipoise.vibration.free import modes
 
-        return self._tried("natural frequencies", lambda: vibrate_freely(self.machine))
+        return self._tried("natural frequencies", lambda: modes(self.machine))
 
     @cached_property
     def plan(self) -> Balance | None:
@@ -241,16 +241,15 @@ def find(
     ModelError : the file is wrong, or a study.
     UsageError : the tool has no speed that could be another.
     """
-    from equipoise.schema.models import loads
+    from equipoise.schema.models import loads_linkage, loads_tool
     from equipoise.schema.opening import kind_of_text, opened
-    from equipoise.schema.tools import loads_tool
 
     file = opened(path_or_name)
     name = os.path.basename(os.fspath(path_or_name))
     if kind_of_text(file.text) == "tool":
         tool = loads_tool(file.text, file.source, file.folder)
         return ToolFindings(_at_speed(tool, speed), file.text, name)
-    machine = loads(file.text, file.source, file.folder)
+    machine = loads_linkage(file.text, file.source, file.folder)
     if speed is not None:
         machine = machine.with_drive(speed=speed)
     return Findings(machine, file.text, name, angles)

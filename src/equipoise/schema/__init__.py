@@ -1,25 +1,7 @@
-"""The door: model files in TOML, load tables in CSV, units.  Everything inside is SI and radians.
-
-The public names are loaded when they are first used, so that importing the package costs nothing.
-"""
+"""The door: model files in TOML, tables in CSV, units.  Everything inside is SI and radians."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from lazy_loader import attach_stub
 
-if TYPE_CHECKING:
-    from equipoise.schema.models import dumps, examples, json_schema, load, loads, save
-
-SCHEMA_VERSION = 1
-"""Version of the model file that is read and written."""
-
-
-__all__ = ["SCHEMA_VERSION", "dumps", "examples", "json_schema", "load", "loads", "save"]
-
-
-def __getattr__(name: str) -> Any:
-    if name in __all__:
-        from equipoise.schema import models
-
-        return getattr(models, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

@@ -14,13 +14,14 @@ from numbers import Real
 from typing import Any
 
 from equipoise.errors import ModelError
-from equipoise.handheld.model import PLANES
+from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
+from equipoise.keys import Kind as KeyKind
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
-from equipoise.schema.opening import Kind
-from equipoise.schema.problems import written_key
-from equipoise.schema.schema_keys import Place, default_at, is_known, is_whole
+from equipoise.schema.opening import Kind, document_of
+from equipoise.schema.reading import Place, written_place
+from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]
 _STEP = re.compile(r'(?:(?:^|\.)(?:"((?:[^"\\]|\\.)*)"|([^."\[\]]+))|\[([0-9]{1,9})\])')
@@ -127,10 +128,32 @@ def _unquoted(text: str) -> str:
         return text
 
 
-def written_place(steps: Place) -> str:
-    """The path of a place."""
-    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in steps)
-    return text.removeprefix(".")
+# -- what the file can have at a place -------------------------------------------------------------
+
+
+def _key_at(kind: Kind, place: Place) -> Key | None:
+    """The key at the end of a place; None where it is a name of the user's, or unknown."""
+    above = _kind_at(kind, place[:-1])
+    return all_keys(above.type).get(str(place[-1])) if isinstance(above, Table) else None
+
+
+def is_whole(kind: Kind, place: Place) -> bool:
+    """Whether only whole numbers will do at a place."""
+    return isinstance(_kind_at(kind, place), Whole)
+
+
+def _kind_at(kind: Kind, place: Place) -> KeyKind | None:
+    """What stands at a place; None where nothing is known of it."""
+    found: KeyKind | None = Table(document_of(kind))
+    for step in place:
+        if isinstance(found, Table):
+            one = all_keys(found.type).get(str(step))
+            found = None if one is None else one.kind
+        elif isinstance(found, Named | Tables | Listing | OneOr):
+            found = found.item
+        else:
+            return None
+    return found
 
 
 # -- one step --------------------------------------------------------------------------------------
@@ -144,10 +167,11 @@ def _below(content: Content, kind: Kind, path: str, place: Place, here: Any) -> 
     if isinstance(here, dict):
         if step in here:
             return here[step]
-        default = default_at(kind, place)
+        one = _key_at(kind, place)
+        default = None if one is None else plain_default(one)
         if default is not None:
             return default
-        if is_known(kind, place):
+        if one is not None:
             missing = written_place(place)
             raise ModelError(
                 path, f"{missing} is not written in the model; add it there to vary it"

@@ -11,11 +11,11 @@ from math import atan2, hypot
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.handheld.model import PLANES
+from equipoise.keys import PLANES
 from equipoise.quantities import parse
 from equipoise.quantities.problems import too_far
 from equipoise.quantities.units import HUGE, KINDS, NUMBER, TINY, Dimension, plain_unit
-from equipoise.schema.points import from_polar
+from equipoise.schema.reading import from_polar
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60

@@ -10,19 +10,13 @@ from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, TypeVar
+from typing import Any, Literal
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.handheld.model import PLANES
+from equipoise.keys import SCHEMA_VERSION, Frozen
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.field import SoilTable
-from equipoise.mechanism.force_elements import MotorTable
-from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.schema import SCHEMA_VERSION
+from equipoise.mechanism.model import Machine
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
-
-if TYPE_CHECKING:
-    from equipoise.handheld.model import Impedance
 
 Kind = Literal["linkage", "tool"]
 FileKind = Literal["linkage", "tool", "study"]
@@ -117,7 +111,22 @@ def kind_of_text(text: str) -> FileKind | None:
         return None
 
 
-def content_of(text: str, wanted: Kind) -> dict[str, Any]:
+def document_of(kind: FileKind) -> type[Frozen]:
+    """The class whose keys are those of a kind of file."""
+    if kind == "tool":
+        from equipoise.handheld.model import Tool
+
+        return Tool
+    if kind == "study":
+        from equipoise.schema.studies import StudyTable
+
+        return StudyTable
+    from equipoise.mechanism.model import Machine
+
+    return Machine
+
+
+def content_of(text: str, wanted: FileKind) -> dict[str, Any]:
     """Content of a model file that has to be of one kind.
 
     Raises
@@ -192,9 +201,6 @@ def _check_version(content: dict[str, Any]) -> None:
         )
 
 
-Value = TypeVar("Value")
-
-
 class Beside:
     """Reads tables by the names of their files, which are relative to the model file's folder.
 
@@ -204,35 +210,24 @@ class Beside:
     def __init__(self, folder: Path | None) -> None:
         self.folder = folder
 
-    def load(self, file: str) -> LoadTable:
-        from equipoise.schema.tables import read_load
+    def read(self, sort: str, file: str) -> Any:
+        """What lies in a file, of a sort such as ``load``."""
+        if sort == "linkage":
+            return self.linkage(file)
+        from equipoise.schema import tables
 
-        return read_load(file, self._folder(file))
-
-    def soil(self, file: str) -> SoilTable:
-        from equipoise.schema.tables import read_soil
-
-        return read_soil(file, self._folder(file))
-
-    def motor(self, file: str) -> MotorTable:
-        from equipoise.schema.tables import read_motor
-
-        return read_motor(file, self._folder(file))
-
-    def impedance(self, file: str) -> Impedance:
-        from equipoise.schema.tables import read_impedance
-
-        return read_impedance(file, self._folder(file))
+        read: Callable[[str, Path], Any] = getattr(tables, f"read_{sort}")
+        return read(file, self._folder(file))
 
     def linkage(self, file: str) -> Machine:
         """The linkage of another model file, or a bundled one; it has masses and turns fully."""
         from equipoise.mechanism.dynamics import massless
         from equipoise.mechanism.linkage import assemble
-        from equipoise.schema.models import loads
+        from equipoise.schema.models import loads_linkage
 
         found = self._opened(file)
         try:
-            machine = loads(found.text, folder=found.folder)
+            machine = loads_linkage(found.text, folder=found.folder)
             _ = assemble(machine).cycle
         except EquipoiseError as error:
             where = f"{error.where}: " if isinstance(error, ModelError) and error.where else ""
@@ -262,17 +257,3 @@ class Beside:
         if self.folder is None:
             raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
         return self.folder
-
-
-def table_at(where: str, file: str | None, read: Callable[[str], Value]) -> Value | None:
-    """Read the table that the key `where` names, if it names one; errors tell the key."""
-    try:
-        return None if file is None else read(file)
-    except ModelError as error:
-        raise ModelError(where, error.what) from error
-
-
-def impedance_keys(where: str, count: int) -> list[str]:
-    """Keys that name the tables of impedance of a hand: one for both planes, or one for each."""
-    key = f"{where}.impedance"
-    return [f"{key}.{plane}" for plane in PLANES] if count == len(PLANES) else [key] * count

@@ -16,6 +16,7 @@ from typing import Any
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys import (
+    PLANES,
     Anything,
     Direction,
     File,
@@ -33,6 +34,7 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Told,
     Whole,
     all_keys,
     choice,
@@ -47,7 +49,6 @@ Place = tuple[str | int, ...]
 """Keys, and numbers in lists from 0."""
 WRONG = object()
 """Instead of a value that could not be read."""
-PLANES = ("vertical", "lateral")
 LONGEST_KEY = 60
 
 
@@ -261,9 +262,11 @@ def _flag(kind: Flag, given: Any, place: Place, context: Context) -> Any:
 
 
 def _anything(kind: Anything, given: Any, place: Place, context: Context) -> Any:
-    if kind.text and not isinstance(given, str):
-        return context.wrong(place, given, kind.text)
     return given
+
+
+def _told(kind: Told, given: Any, place: Place, context: Context) -> Any:
+    return given if isinstance(given, str) else context.wrong(place, given, kind.right)
 
 
 def _file(kind: File, given: Any, place: Place, context: Context) -> Any:
@@ -415,5 +418,6 @@ READERS: dict[type[Kind], Callable[[Any, Any, Place, Context], Any]] = {
     Table: _table,
     Tables: _tables,
     Text: _text,
+    Told: _told,
     Whole: _whole,
 }

@@ -1,7 +1,4 @@
-"""Study files: reading them, and having a study again from its texts.
-
-pydantic is imported when the first file is read, not before.
-"""
+"""Study files: reading them, and having a study again from its texts."""
 
 from __future__ import annotations
 
@@ -9,12 +6,33 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.keys import (
+    SCHEMA_VERSION,
+    VERSION,
+    Anything,
+    Conditions,
+    Frozen,
+    Keys,
+    Listing,
+    Number,
+    Table,
+    Tables,
+    Text,
+    Whole,
+    declared,
+    key,
+)
+from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.problems import described
+from equipoise.quantities.units import NUMBER
 from equipoise.schema.files import printable
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
+from equipoise.schema.reading import Context, read_table
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.studies.checks import COMMANDS, METHODS
 from equipoise.studies.design_space import (
     Choices,
     Correlation,
@@ -30,12 +48,145 @@ from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.study import Study, from_plain
 
 if TYPE_CHECKING:
-    from equipoise.schema import document_study
     from equipoise.schema.template import Template
 
 SPREADS = ("range", "list", "normal", "uniform")
 MODEL = "model "
 """Begins the names of the model's texts among those of a study."""
+
+# -- keys ------------------------------------------------------------------------------------------
+
+VALUE = Anything(
+    schema={
+        "anyOf": [{"type": "number"}, {"type": "string", "pattern": rf"^{NUMBER} +\S"}],
+        "examples": ["60 mm"],
+    }
+)
+"""Number and unit in quotes, or a plain number: which, is told by what it is a value of."""
+LIMITS = Listing(VALUE, (2,), 'two limits, such as ["60 mm", "80 mm"]')
+ANY_WHOLE = Whole(most=10**18)
+PATHS = Listing(Text(), (2,), "a list of two paths")
+
+
+@declared
+class NormalTable(Frozen):
+    """A normal spread."""
+
+    deviation: Any = key(VALUE, "standard deviation", example="2 g")
+    mean: Any = key(VALUE, "that of the model if left out", default=None)
+    cut: float | None = key(Number(), "deviations beyond which nothing lies", default=None)
+
+
+@declared
+class UniformTable(Frozen):
+    """A uniform spread."""
+
+    half_width: Any = key(VALUE, "to either side of the centre", example="0.1 mm")
+    centre: Any = key(VALUE, "that of the model if left out", default=None)
+
+
+@declared
+class VaryTable(Frozen):
+    """A number of the model that varies: over a range or a list, or by a tolerance."""
+
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in SPREADS],
+        "dependentRequired": {"steps": ["range"]},
+    }
+
+    path: str = key(Text(), "of it in the model file", example="links.crank.mass")
+    range: Any = key(LIMITS, "lowest and highest", default=None)
+    steps: int | None = key(ANY_WHOLE, "of a range on a grid", default=None)
+    list: Any = key(
+        Listing(VALUE, right='a list such as ["100 g", "200 g"]'),
+        "all that it can be",
+        default=None,
+    )
+    normal: NormalTable | None = key(Table(NormalTable), "a normal spread", default=None)
+    uniform: UniformTable | None = key(Table(UniformTable), "a uniform spread", default=None)
+
+
+@declared
+class CorrelationTable(Frozen):
+    """Two numbers that go together."""
+
+    between: tuple[str, str] = key(PATHS, "paths of both", example=["links.a.mass", "links.b.mass"])
+    coefficient: float = key(Number(), "between -1 and 1", example=0.9)
+
+
+@declared
+class SamplingTable(Frozen):
+    """Which designs are computed."""
+
+    method: str = key(Text(suggested=(*METHODS,)), "how designs are spread", example="sobol")
+    designs: int | None = key(ANY_WHOLE, "their number; not of a grid", default=None)
+    seed: int | None = key(
+        ANY_WHOLE, "of random numbers; not of a grid", default=None, shown=Sampling.seed
+    )
+
+
+@declared
+class OutputTable(Frozen):
+    """A figure that is computed of every design."""
+
+    value: str = key(
+        Text(), "place in the JSON object of the command", example="shaking_force.y.rms"
+    )
+    name: str | None = key(Text(), "of its column; its place if left out", default=None)
+    of: str | None = key(Text(suggested=(*COMMANDS,)), "the command that has it", default=None)
+    at_least: Any = key(VALUE, "designs below are not kept", default=None)
+    at_most: Any = key(VALUE, "designs above are not kept", default=None)
+    make: str | None = key(
+        Text(("smallest", "largest")), "whether it is to become small or large", default=None
+    )
+
+
+@declared
+class AccuracyTable(Frozen):
+    """How exactly figures of an analysis are computed."""
+
+    conditions: ClassVar[Conditions] = {"maxProperties": 1}
+
+    angles: int | None = key(ANY_WHOLE, "crank angles in a turn", default=None)
+    tolerance: float | None = key(Number(), "to which figures stand still", default=None)
+
+
+@declared
+class StudyTable(Frozen):
+    """Many designs of one model."""
+
+    beside: ClassVar[Keys] = {"schema": VERSION}
+    file_order = ("schema", "title", "model", "vary", "correlations")
+
+    model: str = key(
+        Text(),
+        "model file beside this one, or name of a bundled example",
+        example="yamashita-1",
+    )
+    vary: tuple[VaryTable, ...] = key(Tables(Table(VaryTable)), "what varies")
+    sampling: SamplingTable = key(
+        Table(SamplingTable), "which designs are computed", example={"method": "sobol"}
+    )
+    outputs: tuple[OutputTable, ...] = key(Tables(Table(OutputTable)), "what is computed")
+    title: str | None = key(Text(), "that of the model if left out", default=None)
+    correlations: tuple[CorrelationTable, ...] = key(
+        Tables(Table(CorrelationTable)), "what goes together", default=()
+    )
+    accuracy: AccuracyTable | None = key(
+        Table(AccuracyTable), "how exactly figures are computed", default=None
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> StudyTable:
+        del given["schema"]
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: StudyTable) -> dict[str, Any]:
+        return {**super().to_table(value), "schema": SCHEMA_VERSION}
+
+
+# -- files -----------------------------------------------------------------------------------------
 
 
 def load_study(path_or_name: str | os.PathLike[str]) -> Study:
@@ -83,29 +234,19 @@ def restore(texts: Mapping[str, str]) -> Study:
         ) from error
 
 
-def study_schema() -> dict[str, Any]:
-    """JSON Schema (draft 2020-12) of the study file, for editors."""
-    from equipoise.schema.schema import study_schema
-
-    return study_schema()
-
-
 # -- reading ---------------------------------------------------------------------------------------
 
 
 def _study(text: str, folder: Path) -> Study:
-    from equipoise.schema.document_study import StudyDocument
-    from equipoise.schema.problems import validated
-
     content = toml_content(text)
     if kind_of(content) in {"linkage", "tool"}:
         raise ModelError(
             "", "this is a model file; give a study file, which names it by a key model"
         )
-    for key, least in (("vary", "[[vary]]"), ("outputs", "[[outputs]]")):
-        if key not in content and "model" in content:
-            raise ModelError(key, f"missing; add at least one table {least}")
-    document = validated(StudyDocument, content)
+    for name, least in (("vary", "[[vary]]"), ("outputs", "[[outputs]]")):
+        if name not in content and "model" in content:
+            raise ModelError(name, f"missing; add at least one table {least}")
+    document = read_table(StudyTable, content, Context())
     template = _template(document.model, folder)
     numbered = enumerate(document.vary, 1)
     angles, tolerance = _accuracy(document.accuracy)
@@ -143,7 +284,7 @@ def _template(name: str, folder: Path) -> Template:
 # -- what varies -----------------------------------------------------------------------------------
 
 
-def _vary(where: str, given: document_study.Vary, template: Template) -> Vary:
+def _vary(where: str, given: VaryTable, template: Template) -> Vary:
     forms = [key for key in SPREADS if getattr(given, key) is not None]
     if len(forms) != 1:
         got = " and ".join(forms) or "none"
@@ -162,7 +303,7 @@ def _vary(where: str, given: document_study.Vary, template: Template) -> Vary:
     return Vary(given.path, spread, dimension)
 
 
-def _spread(where: str, given: document_study.Vary, value: float, dimension: str | None) -> Spread:
+def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> Spread:
     def read(key: str, one: Any) -> float:
         return value if one is None else _value(f"{where}{key}", one, dimension)
 
@@ -199,13 +340,14 @@ def _value(where: str, given: Any, dimension: str | None) -> float:
 # -- which designs, and what is computed of them ---------------------------------------------------
 
 
-def _sampling(given: document_study.Sampling) -> Sampling:
-    if given.method == "grid" and "seed" in given.model_fields_set:
+def _sampling(given: SamplingTable) -> Sampling:
+    if given.method == "grid" and given.seed is not None:
         raise ModelError("sampling.seed", "a grid has no random numbers; leave it out")
-    return Sampling(given.method, given.designs, given.seed)  # type: ignore[arg-type]
+    seed = Sampling.seed if given.seed is None else given.seed
+    return Sampling(given.method, given.designs, seed)  # type: ignore[arg-type]
 
 
-def _accuracy(given: document_study.Accuracy | None) -> tuple[int | None, float]:
+def _accuracy(given: AccuracyTable | None) -> tuple[int | None, float]:
     angles = None if given is None else given.angles
     tolerance = None if given is None else given.tolerance
     if angles is not None and tolerance is not None:
@@ -213,7 +355,7 @@ def _accuracy(given: document_study.Accuracy | None) -> tuple[int | None, float]
     return angles, Study.tolerance if tolerance is None else tolerance
 
 
-def _output(where: str, given: document_study.Output, template: Template) -> Output:
+def _output(where: str, given: OutputTable, template: Template) -> Output:
     of = given.of or ("tool" if template.kind == "tool" else "analyze")
     dimension = dimension_of(template.base(), of, given.value)
     limits = {
@@ -237,3 +379,72 @@ def _limit(where: str, given: Any, dimension: str | None) -> float:
             where, f"got {described(given)}; give a number in SI units, or one with its unit"
         )
     return number.value
+
+
+# -- writing ---------------------------------------------------------------------------------------
+
+
+def study_text(study: Study) -> str:
+    """The text of a study file: that which it was read from, or one that is read as the same.
+
+    Raises
+    ------
+    ModelError : its model has no file.
+    """
+    if study.file:
+        return study.file
+    source = getattr(study.model, "source", "")
+    name = source.removesuffix(".toml")
+    if name not in bundled() and not source.endswith(".toml"):
+        raise ModelError("model", "has no file; save the model, and load it from there")
+    table = StudyTable(
+        title=study.title,
+        model=name if name in bundled() else source,
+        vary=tuple(_vary_table(one) for one in study.vary),
+        outputs=tuple(_output_table(one) for one in study.outputs),
+        sampling=_sampling_table(study.sampling),
+        correlations=tuple(
+            CorrelationTable((one.first, one.second), one.coefficient) for one in study.correlations
+        ),
+        accuracy=_accuracy_table(study),
+    )
+    return toml_text(StudyTable, Writer({}).content(StudyTable, table))
+
+
+def _written(value: float | None, dimension: str | None) -> Any:
+    """A value as it stands in a study file: with its unit, where its dimension is known."""
+    if value is None or dimension not in KINDS:
+        return value
+    return format_exact(value, dimension)  # type: ignore[arg-type]
+
+
+def _vary_table(one: Vary) -> VaryTable:
+    spread, dimension = one.spread, one.dimension
+    if isinstance(spread, Range):
+        limits = tuple(_written(limit, dimension) for limit in (spread.low, spread.high))
+        return VaryTable(one.path, range=limits, steps=spread.steps)
+    if isinstance(spread, Choices):
+        return VaryTable(one.path, list=tuple(_written(v, dimension) for v in spread.values))
+    if isinstance(spread, Normal):
+        mean, deviation = (_written(v, dimension) for v in (spread.mean, spread.deviation))
+        return VaryTable(one.path, normal=NormalTable(deviation, mean, spread.cut))
+    centre, half = (_written(v, dimension) for v in (spread.centre, spread.half_width))
+    return VaryTable(one.path, uniform=UniformTable(half, centre))
+
+
+def _output_table(one: Output) -> OutputTable:
+    limits = (_written(limit, one.dimension) for limit in (one.at_least, one.at_most))
+    name = None if one.name == one.value else one.name
+    return OutputTable(one.value, name, one.of, *limits, make=one.make)
+
+
+def _sampling_table(given: Sampling) -> SamplingTable:
+    seed = None if given.method == "grid" or given.seed == Sampling.seed else given.seed
+    return SamplingTable(given.method, given.designs, seed)
+
+
+def _accuracy_table(study: Study) -> AccuracyTable | None:
+    if study.angles is not None:
+        return AccuracyTable(angles=study.angles)
+    usual = study.tolerance == Study.tolerance
+    return None if usual else AccuracyTable(tolerance=study.tolerance)

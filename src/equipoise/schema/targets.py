@@ -1,7 +1,6 @@
 """Target files: what a search of geometry has to reach, and what it may change.
 
-Like the model file, pydantic stands at the door only; values with units are read once the figures
-they belong to are known to exist.
+Values with units are read once the figures that they belong to are known to exist.
 """
 
 from __future__ import annotations
@@ -9,51 +8,75 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
-
-from pydantic import Field
+from typing import Any, ClassVar, Literal, get_args
 
 from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
+from equipoise.keys import (
+    VERSION,
+    Anything,
+    Frozen,
+    Keys,
+    Table,
+    Tables,
+    Text,
+    Whole,
+    declared,
+    key,
+)
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal, dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
-from equipoise.schema.fields import PAIR, Table
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.opening import toml_content
-from equipoise.schema.problems import validated
+from equipoise.schema.reading import Context, read_table
 
 Quantity = str | float
+VALUE = Anything()
+"""Of a figure: its dimension is known later."""
 
 
-class _Search(Table):
+@declared
+class SearchTable(Frozen):
     """How to search."""
 
-    seed: Annotated[int, Field(ge=0, le=2**32 - 1)] = 1
-    generations: Annotated[int, Field(ge=1, le=100_000)] = GENERATIONS
-    population: Annotated[int, Field(ge=5, le=10_000)] = POPULATION
-    crank: Sense = "as given"
+    seed: int = key(Whole(0, 2**32 - 1), "of random numbers", default=1)
+    generations: int = key(Whole(1, 100_000), "at most so many", default=GENERATIONS)
+    population: int = key(Whole(5, 10_000), "designs of a generation", default=POPULATION)
+    crank: Sense = key(Text(get_args(Sense)), "sense in which it turns", default="as given")
 
 
-class _Goal(Table):
+@declared
+class GoalTable(Frozen):
     """What one figure has to be."""
 
-    figure: str = Field(examples=["curve.height"])
-    target: Quantity | None = None
-    at_least: Quantity | None = None
-    at_most: Quantity | None = None
-    tolerance: Quantity | None = None
-    make: Literal["smallest", "largest"] | None = None
+    figure: str = key(Text(), "that `equipoise plant` tells", example="curve.height")
+    target: Quantity | None = key(VALUE, "what it has to be", default=None)
+    at_least: Quantity | None = key(VALUE, "lower limit", default=None)
+    at_most: Quantity | None = key(VALUE, "upper limit", default=None)
+    tolerance: Quantity | None = key(VALUE, "of the target", default=None)
+    make: Literal["smallest", "largest"] | None = key(
+        Text(("smallest", "largest")), "whether it is to become small or large", default=None
+    )
 
 
-class _Document(Table):
+@declared
+class TargetTable(Frozen):
     """A target file."""
 
-    version: Literal[1] = Field(alias="schema", examples=[1])
-    search: _Search = _Search()
-    vary: dict[str, Any] | None = None
-    goals: Annotated[list[_Goal], PAIR] = Field(examples=[[]])
+    beside: ClassVar[Keys] = {"schema": VERSION}
+
+    goals: tuple[GoalTable, ...] = key(
+        Tables(Table(GoalTable)), "what figures have to be", example=[]
+    )
+    search: SearchTable = key(Table(SearchTable), "how to search", default=SearchTable())
+    vary: Mapping[str, Any] | None = key(VALUE, "numbers with their limits", default=None)
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> TargetTable:
+        del given["schema"]
+        return cls(**given)
 
 
 @dataclass(frozen=True)
@@ -90,14 +113,14 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
         raise ModelError(printable(error.where), error.what, printable(path)) from error
 
 
-def _document(text: str) -> _Document:
+def _document(text: str) -> TargetTable:
     content = toml_content(text)
     if "goals" not in content:
         raise ModelError("goals", "missing; add at least one table [[goals]]")
-    return validated(_Document, content)
+    return read_table(TargetTable, content, Context())
 
 
-def _targets(document: _Document, figures: Collection[str]) -> Targets:
+def _targets(document: TargetTable, figures: Collection[str]) -> Targets:
     if not document.goals:
         raise ModelError("goals", "there is none; give at least one [[goals]]")
     search = document.search
@@ -111,7 +134,7 @@ def _targets(document: _Document, figures: Collection[str]) -> Targets:
     )
 
 
-def _goal(where: str, goal: _Goal, figures: Collection[str]) -> Goal:
+def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Goal:
     if goal.figure.startswith("pick_up.") and goal.figure not in figures:
         raise ModelError(
             f"{where}.figure", f"got {goal.figure!r}; the machine has no planting.tray"
@@ -120,9 +143,9 @@ def _goal(where: str, goal: _Goal, figures: Collection[str]) -> Goal:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
     keys = ("target", "at_least", "at_most", "tolerance")
     given = {
-        key: _value(f"{where}.{key}", getattr(goal, key), dimension_of(goal.figure))
-        for key in keys
-        if getattr(goal, key) is not None
+        one: _value(f"{where}.{one}", getattr(goal, one), dimension_of(goal.figure))
+        for one in keys
+        if getattr(goal, one) is not None
     }
     try:
         return Goal(goal.figure, make=goal.make, **given)
@@ -145,8 +168,8 @@ def _limits(
     table: Mapping[str, Any], prefix: str = ""
 ) -> Iterator[tuple[str, tuple[float, float]]]:
     """Numbers to vary with their limits, by dotted name."""
-    for key, value in table.items():
-        name = f"{prefix}{key}"
+    for one, value in table.items():
+        name = f"{prefix}{one}"
         if isinstance(value, Mapping):
             yield from _limits(value, f"{name}.")
             continue

@@ -9,10 +9,10 @@ from __future__ import annotations
 import json
 import os
 from collections import defaultdict
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.handheld.model import Impedance, Tool
@@ -20,21 +20,14 @@ from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.schema.document import Document
-from equipoise.schema.document_tool import ToolDocument
 from equipoise.schema.files import printable
 from equipoise.schema.finding import Found, all_numbers, find, replaced, with_changes, written_place
 from equipoise.schema.given_units import unit_in
-from equipoise.schema.models import tables_of
+from equipoise.schema.models import machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
-from equipoise.schema.problems import validated
-from equipoise.schema.tools import parts_of
+from equipoise.schema.reading import Place
 
-if TYPE_CHECKING:
-    from equipoise.schema.schema_keys import Place
-
-Value = TypeVar("Value")
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
 TABLES: dict[str, Any] = {
@@ -97,15 +90,8 @@ class Template:
         ------
         ModelError : a tool has what no file can tell.
         """
-        from equipoise.schema.old_writing import document_of, toml_text
-        from equipoise.schema.writing_tool import tool_document
-
         names, known = _named(model)
-        if isinstance(model, Tool):
-            document = tool_document(model, names)
-        else:
-            document = document_of(model, names)
-        return cls(toml_text(document), model.title, known=known)
+        return cls(text_of(model, names), model.title, known=known)
 
     @property
     def kind(self) -> Kind:
@@ -235,9 +221,7 @@ class Template:
         return linkages
 
     def _read(self, content: Mapping[str, Any], reader: Beside) -> Machine | Tool:
-        if self.kind == "tool":
-            return validated(ToolDocument, content).to_tool(reader)
-        return validated(Document, content).to_machine(reader)
+        return (tool_of if self.kind == "tool" else machine_of)(content, reader)
 
 
 class _Carried(Beside):
@@ -247,17 +231,10 @@ class _Carried(Beside):
         super().__init__(folder)
         self.known = known
 
-    def load(self, file: str) -> LoadTable:
-        return self._once("load", file, super().load)
-
-    def soil(self, file: str) -> SoilTable:
-        return self._once("soil", file, super().soil)
-
-    def motor(self, file: str) -> MotorTable:
-        return self._once("motor", file, super().motor)
-
-    def impedance(self, file: str) -> Impedance:
-        return self._once("impedance", file, super().impedance)
+    def read(self, sort: str, file: str) -> Any:
+        if sort != "linkage" and (sort, file) not in self.known:
+            self.known[sort, file] = super().read(sort, file)
+        return self.linkage(file) if sort == "linkage" else self.known[sort, file]
 
     def linkage(self, file: str) -> Machine:
         if ("linkage", file) not in self.known:
@@ -268,31 +245,19 @@ class _Carried(Beside):
         assert isinstance(machine, Machine)
         return machine
 
-    def _once(self, sort: str, file: str, read: Callable[[str], Value]) -> Value:
-        if (sort, file) not in self.known:
-            self.known[sort, file] = read(file)
-        value: Value = self.known[sort, file]
-        return value
-
 
 # -- what lies beside ------------------------------------------------------------------------------
 
 
 def _named(model: Machine | Tool) -> tuple[dict[str, str], Known]:
     """A name for each table and linkage of a model, by its key, and what has that name."""
-    parts: list[tuple[str, Any, str]]
-    if isinstance(model, Tool):
-        parts = [(part.where, part.value, part.file) for part in parts_of(model)]
-    else:
-        parts = [(where, table, table.file) for where, table in tables_of(model).items()]
-    sorts = {kind: sort for sort, kind in TABLES.items()}
     names: dict[str, str] = {}
     known: Known = {}
-    for where, value, file in parts:
-        sort = sorts.get(type(value), "linkage")
-        one = Template.of(value) if sort == "linkage" else value
-        name = file if file and known.get((sort, file), one) == one else where
-        names[where], known[sort, name] = name, one
+    for part in parts_of(model):
+        one = Template.of(part.value) if part.sort == "linkage" else part.value
+        same = part.file and known.get((part.sort, part.file), one) == one
+        name = part.file if same else part.where
+        names[part.where], known[part.sort, name] = name, one
     return names, known
 
 

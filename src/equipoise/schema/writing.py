@@ -8,6 +8,7 @@ from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
+    PLANES,
     Anything,
     Direction,
     File,
@@ -25,12 +26,13 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    Told,
     Whole,
     all_keys,
     keys_of,
 )
 from equipoise.quantities import format_exact
-from equipoise.schema.reading import PLANES, Place, written_place, written_point
+from equipoise.schema.reading import Place, written_place, written_point
 
 Namer = Callable[[str, str, Any], str]
 """Name of the file for the key at a place: takes the place, its sort and what lies in it."""
@@ -49,10 +51,7 @@ class Writer:
 
     def content(self, of: type[Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
         """Content of the table of an object as plain values."""
-        try:
-            given = self.makers.get(of, of.to_table)(value)
-        except ModelError as error:
-            raise ModelError(f"{written_place(place)}{error.where}", error.what) from error
+        given = _given(self.makers.get(of, of.to_table), value, place)
         table: dict[str, Any] = {}
         for name, one in keys_of(of).items():
             if name not in given:
@@ -68,13 +67,24 @@ class Writer:
         return WRITERS[type(kind)](kind, value, place, self)
 
 
+def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: Place) -> dict[str, Any]:
+    """What the file says of an object; errors tell its place."""
+    try:
+        return to_table(value)
+    except ModelError as error:
+        within = written_place(place)
+        inner = "." if within and error.where else ""
+        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
+
+
 def plain_default(one: Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
-    if one.shown is not None or one.required or one.default is None:
+    if one.shown is not None or one.required or one.default is None or one.endless:
         return one.shown
     if isinstance(one.kind, Table | Tables | File):
         return None
-    return Writer({}).plain(one.kind, one.default, ())
+    default = Writer({}).plain(one.kind, one.default, ())
+    return None if isinstance(default, list | dict) and not default else default
 
 
 def beside(of: type[Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
@@ -95,7 +105,7 @@ def _beside(kind: Kind, value: Any, place: Place) -> Iterator[tuple[str, str, An
         for name, item in value.items():
             yield from _beside(kind.item, item, (*place, name))
     elif isinstance(kind, Table):
-        for name, item in kind.type.to_table(value).items():
+        for name, item in _given(kind.type.to_table, value, place).items():
             one = keys_of(kind.type)[name]
             inner = place if isinstance(one.kind, Table) and one.kind.flat else (*place, name)
             for where, sort, found, file in _beside(one.kind, item, inner):
@@ -192,6 +202,7 @@ WRITERS: dict[type[Kind], Callable[[Any, Any, Place, Writer], Any]] = {
     Table: _table,
     Tables: _tables,
     Text: _same,
+    Told: _same,
     Whole: _same,
 }
 
@@ -213,10 +224,11 @@ def _headed(name: str, kind: Kind, value: Any) -> Iterator[str]:
     if isinstance(kind, Tables):
         for item in value:
             yield from _blocks(f"[[{name}]]", name, kind.item.type, item)
+    elif isinstance(kind, Named) and not isinstance(kind.item, Table):
+        yield "".join([f"[{name}]\n", *_lines(value)])
     elif isinstance(kind, Named):
-        assert isinstance(kind.item, Table)
         for key, item in value.items():
-            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)
+            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)  # type: ignore[attr-defined]
     elif isinstance(kind, Table):
         yield from _blocks(f"[{name}]", name, kind.type, value)
 
@@ -247,7 +259,7 @@ def _lines(table: Mapping[str, Any], prefix: str = "") -> Iterable[str]:
         if isinstance(value, dict) and not _is_polar(value):
             yield from _lines(value, f"{prefix}{_key(key)}.")
         else:
-            yield f"{prefix}{_key(key)} = {_value(value)}\n"
+            yield f"{prefix}{_key(key)} = {value_text(value)}\n"
 
 
 def _is_polar(table: Mapping[str, Any]) -> bool:
@@ -255,13 +267,14 @@ def _is_polar(table: Mapping[str, Any]) -> bool:
     return set(table) == {"distance", "direction"} and isinstance(table["distance"], str)
 
 
-def _value(value: Any) -> str:
+def value_text(value: Any) -> str:
+    """A plain value as it stands in TOML, on one line."""
     import tomli_w
 
     if isinstance(value, list):  # tomli_w spreads lists over several lines
-        return f"[{', '.join(map(_value, value))}]"
+        return f"[{', '.join(map(value_text, value))}]"
     if isinstance(value, dict):
-        items = ", ".join(f"{_key(name)} = {_value(item)}" for name, item in value.items())
+        items = ", ".join(f"{_key(name)} = {value_text(item)}" for name, item in value.items())
         return f"{{ {items} }}"
     return tomli_w.dumps({"k": value}).removeprefix("k = ").removesuffix("\n")
 

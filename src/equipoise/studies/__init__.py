@@ -1,12 +1,7 @@
-"""Many designs of one model: ranges, tolerances, searches.  Zarr, Dask and pymoo are known here.
+"""Many designs of one model: ranges, tolerances, searches.  Zarr, Dask and pymoo are known here."""
 
-Public are, each in the module that its name is followed by:
+from __future__ import annotations
 
-- `Study` (`study`) with `Vary`, `Range`, `Choices`, `Normal`, `Uniform`, `Output`, `Sampling` and
-  `Correlation` (`design_space`): what varies of a model, and what is computed.
-- `run_study`, `resume` (`run`): all designs into a `Store`; `open_store` (`store`) opens one.
-- `best` (`selection`), `export` (`table_files`): what is chosen from a store, and tables of it.
-- `tolerance` (`tolerances`): what manufacturing tolerances do, and which to tighten first.
-- `search_designs` (`search`): global search for one objective or several.
-- `landscape` (`objective_map`): an objective of balancing over two numbers.
-"""
+from lazy_loader import attach_stub
+
+__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)

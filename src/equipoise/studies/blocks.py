@@ -226,7 +226,7 @@ class Summary:
     @property
     def limited(self) -> bool:
         """Whether there are limits to keep."""
-        return any((one.at_least, one.at_most) != (None, None) for one in self.outputs)
+        return any(one.limited for one in self.outputs)
 
 
 def summary_blocks(summary: Summary, units: Units | None = None, run: str = "") -> Iterator[Block]:

@@ -246,6 +246,11 @@ class Output:
     def __post_init__(self) -> None:
         object.__setattr__(self, "value", self.value or self.name)
 
+    @property
+    def limited(self) -> bool:
+        """Whether it has a limit."""
+        return (self.at_least, self.at_most) != (None, None)
+
 
 @dataclass(frozen=True)
 class Correlation:

@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.studies.design_space import Choices
 from equipoise.studies.extras import needed
-from equipoise.studies.outcomes import Evaluator, Outcome
+from equipoise.studies.outcomes import Evaluator, Outcome, signs_of
 from equipoise.studies.sampling import values_at
 from equipoise.studies.selection import far_apart, non_dominated
 from equipoise.studies.study import Study
@@ -148,8 +148,7 @@ class Archive:
         self.values = np.empty((0, len(study.vary)))
         self.outcome = Outcome(np.empty((0, len(study.outputs))), np.empty(0, np.uint8))
         self.makes = [k for k, output in enumerate(study.outputs) if output.make]
-        ways = [study.outputs[k].make for k in self.makes]
-        self.signs = np.array([1.0 if way == "smallest" else -1.0 for way in ways])
+        self.signs = signs_of(study.outputs[k].make for k in self.makes)
         self.costs = np.empty((0, len(self.makes)))
         self.violations = np.empty((0, 1))
         self.front = np.empty(0, np.intp)
@@ -191,12 +190,8 @@ class Archive:
         found = self.compute(values)
         begin = self.count
         self.values = np.concatenate([self.values, values])
-        self.outcome = Outcome(
-            np.concatenate([self.outcome.figures, found.figures]),
-            np.concatenate([self.outcome.reason, found.reason]),
-        )
-        good = found.reason == COMPUTED
-        costs = np.where(good[:, None], found.figures[:, self.makes] * self.signs, 0.0)
+        self.outcome = Outcome.joined([self.outcome, found])
+        costs = np.where(found.computed[:, None], found.figures[:, self.makes] * self.signs, 0.0)
         self.costs = np.concatenate([self.costs, costs])
         violations = np.column_stack([_graded(found.reason), *self.beyond(found)])
         self.violations = np.concatenate(
@@ -208,20 +203,19 @@ class Archive:
 
     def beyond(self, found: Outcome) -> list[Array]:
         """By how much each limit is exceeded (P,), over the range of the first figures."""
-        good = found.reason == COMPUTED
         sides = []
         for k, output in enumerate(self.study.outputs):
             figures = found.figures[:, k]
             for limit, sign in ((output.at_least, -1.0), (output.at_most, 1.0)):
                 if limit is not None:
                     over = sign * (figures - limit) / self.ranges[k]
-                    sides.append(np.where(good, over, 0.0))
+                    sides.append(np.where(found.computed, over, 0.0))
         return sides
 
     @property
     def ranges(self) -> Array:
         """Range of each figure (m,) in the first generation that has any; 1 where there is none."""
-        good = self.outcome.figures[self.outcome.reason == COMPUTED]
+        good = self.outcome.figures[self.outcome.computed]
         if self._ranges is None and len(good):
             wide = np.ptp(good, axis=0)
             self._ranges = np.where(wide > 0, wide, 1.0)

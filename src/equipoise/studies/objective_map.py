@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
-from equipoise.balancing.effects import Effects, Near
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.gauges import Near
 from equipoise.balancing.measures import measured, unit_of
 from equipoise.balancing.multi_row import signals_of
 from equipoise.balancing.optimisation import pin_of

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections import Counter, deque
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from time import monotonic
 from typing import TYPE_CHECKING, Any, Protocol
@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 
 if TYPE_CHECKING:
-    from equipoise.studies.design_space import Output
+    from equipoise.studies.design_space import Make, Output
 
 Array = np.ndarray[Any, Any]
 
@@ -31,6 +31,32 @@ class Outcome:
 
     figures: Array
     reason: Array
+
+    @property
+    def computed(self) -> Array:
+        """Whether each design (P,) has figures."""
+        return np.asarray(self.reason == COMPUTED)
+
+    @property
+    def counts(self) -> Array:
+        """Number of designs by reason, (256,)."""
+        return np.bincount(self.reason, minlength=256)
+
+    @classmethod
+    def joined(cls, parts: Sequence[Outcome]) -> Outcome:
+        """What came of all parts, one after the other."""
+        figures, reasons = zip(*((one.figures, one.reason) for one in parts), strict=True)
+        return cls(np.concatenate(figures), np.concatenate(reasons))
+
+
+def failures(counts: Array) -> dict[str, int]:
+    """How many designs failed, by why, of numbers by reason (256,)."""
+    return {REASONS[k]: int(n) for k, n in enumerate(counts) if n and k != COMPUTED}
+
+
+def signs_of(makes: Iterable[Make | None]) -> Array:
+    """By what figures are multiplied so that all are to become small, (M,)."""
+    return np.array([1.0 if make == "smallest" else -1.0 for make in makes])
 
 
 class Evaluator(Protocol):
@@ -87,7 +113,7 @@ class Tally:
     def __init__(self, outputs: Sequence[Output], total: int) -> None:
         self.outputs, self.total = outputs, total
         self.done = self.computed = 0
-        self.reasons: Counter[int] = Counter()
+        self.reasons = np.zeros(256, np.int64)
         self.best: dict[str, float] = {}
         self.start = monotonic()
         self.of_late = deque([(self.start, 0)])
@@ -96,9 +122,7 @@ class Tally:
         """Count a chunk in: one that was stored before, or one that was computed just now."""
         count = len(block.values)
         self.done += count
-        for reason, times in enumerate(np.bincount(block.outcome.reason).tolist()):
-            if times:
-                self.reasons[reason] += times
+        self.reasons += block.outcome.counts
         self._compare(block.outcome)
         if computed:
             self.computed += count
@@ -107,7 +131,7 @@ class Tally:
                 self.of_late.popleft()
 
     def _compare(self, outcome: Outcome) -> None:
-        good = (outcome.reason == COMPUTED) & kept(self.outputs, outcome.figures).all(axis=1)
+        good = outcome.computed & kept(self.outputs, outcome.figures).all(axis=1)
         for column, output in enumerate(self.outputs):
             if output.make and good.any():
                 best = np.fmin if output.make == "smallest" else np.fmax
@@ -124,10 +148,6 @@ class Tally:
             computed=self.computed,
             seconds=now - self.start,
             rate=since_then / max(now - since, 1e-9) if since_then else None,
-            failures={
-                REASONS[reason]: count
-                for reason, count in self.reasons.most_common()
-                if reason != COMPUTED
-            },
+            failures=dict(sorted(failures(self.reasons).items(), key=lambda one: -one[1])),
             best=dict(self.best),
         )

@@ -13,7 +13,7 @@ from functools import lru_cache
 from json import dumps
 from math import nan
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
@@ -47,6 +47,7 @@ from equipoise.studies.store import (
 from equipoise.studies.study import SLOW_CHUNK
 
 if TYPE_CHECKING:
+    from equipoise.quantities import Dimension
     from equipoise.studies.study import Study
 
 OnProgress = Callable[[Progress], None]
@@ -306,7 +307,7 @@ def _make_arrays(folder: Path, study: Study, chunk: int, engine: str) -> None:
 
 
 def _unit(dimension: str | None) -> dict[str, str]:
-    return {"units": SI[dimension]} if dimension else {}
+    return {"units": SI[cast("Dimension", dimension)]} if dimension else {}
 
 
 def _about(study: Study, chunk: int, engine: str) -> dict[str, Any]:

@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution
-from equipoise.studies.outcomes import Evaluator, kept
+from equipoise.studies.outcomes import Evaluator, failures, kept
 from equipoise.studies.sampling import values_at
 from equipoise.studies.selection import why_none
 from equipoise.studies.study import Study
@@ -175,9 +174,9 @@ def _check_size(population: int, generations: int) -> None:
 def _result(
     study: Study, seen: Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
 ) -> Searched:
-    counts = np.bincount(seen.outcome.reason, minlength=256)
+    counts = seen.outcome.counts
     if not len(seen.front):
-        good = seen.outcome.figures[seen.outcome.reason == COMPUTED]
+        good = seen.outcome.figures[seen.outcome.computed]
         limits = np.sum(kept(study.outputs, good), axis=0)
         raise UsageError(why_none(study.outputs, counts, limits))
     order = told[np.lexsort(seen.costs[told].T[::-1])]
@@ -189,7 +188,7 @@ def _result(
         values=seen.values[order],
         figures=seen.outcome.figures[order],
         computed=seen.count,
-        failures={REASONS[k]: int(n) for k, n in enumerate(counts) if n and k},
+        failures=failures(counts),
         generations=len(volumes.fronts),
         stood_still=still,
         volumes=volumes.all * (seen.signs[0] if len(seen.signs) == 1 else 1),

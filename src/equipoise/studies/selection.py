@@ -15,7 +15,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.extras import needed
-from equipoise.studies.outcomes import kept
+from equipoise.studies.outcomes import kept, signs_of
 
 if TYPE_CHECKING:
     from equipoise.studies.outcomes import Block
@@ -125,7 +125,7 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     outputs = outputs_of(store)
     ways = _ways(store, outputs, by)
     search = _Choice(store, outputs, ways, count)
-    for start, block in store.blocks():
+    for start, block in store.in_blocks():
         search.add(start, block)
     search.check()
     return search.result()
@@ -163,7 +163,7 @@ class _Choice:
         self.store, self.outputs, self.ways, self.count = store, outputs, ways, count
         columns = [*store.numbers, *store.outputs]
         self.places = [columns.index(name) for name in ways]
-        self.signs = np.array([1.0 if way == "smallest" else -1.0 for way in ways.values()])
+        self.signs = signs_of(ways.values())
         self.reasons = np.zeros(256, np.int64)
         self.limits = np.zeros(len(outputs), np.int64)
         self.kept = 0
@@ -172,9 +172,8 @@ class _Choice:
 
     def add(self, start: int, block: Block) -> None:
         """Take in designs that follow each other from a number on."""
-        reason = block.outcome.reason
-        self.reasons += np.bincount(reason, minlength=256)
-        computed = np.flatnonzero(reason == COMPUTED)
+        self.reasons += block.outcome.counts
+        computed = np.flatnonzero(block.outcome.computed)
         figures = block.outcome.figures[computed]
         inside = kept(self.outputs, figures)
         self.limits += np.sum(inside, axis=0)
@@ -247,11 +246,7 @@ def why_none(
             "of the model"
         )
     named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
-    told = [
-        f"{_limit(one, unit)} by {n}"
-        for one, unit, n in named
-        if (one.at_least, one.at_most) != (None, None)
-    ]
+    told = [f"{_limit(one, unit)} by {n}" for one, unit, n in named if one.limited]
     return (
         f"none of {computed} designs keeps every limit; kept is {', '.join(told)}; loosen a limit, "
         "or let more vary"

@@ -100,7 +100,7 @@ class Store(Result):
             reason = np.asarray(self.arrays[REASON][part])
         return Block(values, Outcome(figures, reason))
 
-    def blocks(self) -> Iterator[tuple[int, Block]]:
+    def in_blocks(self) -> Iterator[tuple[int, Block]]:
         """All designs, some ten thousand at a time, each time with the number of the first."""
         most = min(BLOCK, NUMBERS // len(self.arrays))
         step = self.chunk * max(1, most // self.chunk)

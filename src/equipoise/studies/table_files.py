@@ -54,7 +54,7 @@ def export(store: Store, path: str | os.PathLike[str], *, kept: bool = False) ->
         _replaced(target) as file,
         writers[target.suffix.lower()](file, schema, store) as write,
     ):
-        for start, block in store.blocks():
+        for start, block in store.in_blocks():
             wanted = block.outcome.reason != UNKNOWN
             if kept:
                 wanted = keep(outputs, block.outcome.figures).all(axis=1)

@@ -14,11 +14,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Evaluator, Outcome, kept
+from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept
 from equipoise.studies.selection import why_none
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
@@ -138,7 +138,7 @@ def tolerance(
     run = _Run(compute or evaluator(study), min(study.chunk, SLOW_CHUNK), study.chunk, progress)
     run.total = study.size + rows * (2 + 3 * len(causes))
     drawn = run.joined(_drawn(study))
-    reasons = np.bincount(drawn.reason, minlength=256)
+    reasons = drawn.counts
     there = np.sum(np.isfinite(drawn.figures), axis=0)
     if not reasons[COMPUTED] or not np.all(there):
         raise UsageError(why_none(study.outputs, reasons, np.zeros(len(there))))
@@ -149,7 +149,7 @@ def tolerance(
     return Tolerances(
         study=study,
         designs=study.size,
-        failures={REASONS[k]: int(n) for k, n in enumerate(reasons) if n and k},
+        failures=failures(reasons),
         within=share_of(_kept_all(study, drawn)) if _limited(study) else None,
         scatters={
             output.name: scatter_of(output, base[k], drawn.figures[:, k])
@@ -213,10 +213,7 @@ class _Run:
                 self.done += len(found[-1].reason)
                 if self.progress is not None:
                     self.progress(self.done, self.total)
-        return Outcome(
-            np.concatenate([one.figures for one in found]),
-            np.concatenate([one.reason for one in found]),
-        )
+        return Outcome.joined(found)
 
     def timed(self, values: Array) -> Outcome:
         """What came of some machines."""
@@ -240,8 +237,7 @@ def _drawn(study: Study) -> Iterator[Array]:
 
 def _limited(study: Study) -> list[int]:
     """Columns of outputs with limits."""
-    given = [(one.at_least, one.at_most) != (None, None) for one in study.outputs]
-    return [k for k, limited in enumerate(given) if limited]
+    return [k for k, output in enumerate(study.outputs) if output.limited]
 
 
 def _kept_all(study: Study, outcome: Outcome) -> Array:
@@ -283,7 +279,7 @@ def _notes(study: Study, told: Sequence[Cause], found: Sequence[Outcome]) -> Ite
             there = [bool(np.any(np.isfinite(one.figures[:, k]))) for one in found]
             what = "does not vary" if all(there) else "fails too often"
             yield f"{output.name} {what}, so that no tolerance is named as its cause"
-    failed = float(np.mean([np.mean(one.reason != COMPUTED) for one in found]))
+    failed = float(np.mean([np.mean(~one.computed) for one in found]))
     if failed > 0:
         yield (
             f"{100 * failed:.2g} % of the machines cannot be computed; causes are told apart by "

@@ -224,7 +224,6 @@ def scatter_of(output: Output, base: float, figures: Array) -> Scatter:
     bins = int(np.clip(np.sqrt(there.size), 5, BINS)) if varies else 1
     counts, edges = np.histogram(there, bins)
     enough = [p for p in PERCENTILES if min(p, 100 - p) / 100 * there.size >= BEYOND]
-    limited = (output.at_least, output.at_most) != (None, None)
     below = -np.inf if output.at_least is None else output.at_least
     above = np.inf if output.at_most is None else output.at_most
     return Scatter(
@@ -239,7 +238,7 @@ def scatter_of(output: Output, base: float, figures: Array) -> Scatter:
         counts=counts,
         below=float(np.sum(there < below)) / len(figures),
         above=float(np.sum(there > above)) / len(figures),
-        within=share_of(kept([output], figures[:, None])[:, 0]) if limited else None,
+        within=share_of(kept([output], figures[:, None])[:, 0]) if output.limited else None,
     )
 
 

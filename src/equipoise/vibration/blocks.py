@@ -27,7 +27,7 @@ from equipoise.results.tables import driven, loud
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.modes import Mode
+    from equipoise.vibration.mode_shapes import Mode
     from equipoise.vibration.response import GaugeSignals, Response
     from equipoise.vibration.sweep import Sweep
     from equipoise.vibration.transient import Transient

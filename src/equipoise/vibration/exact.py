@@ -25,7 +25,7 @@ from equipoise.vibration.body import PITCH, Body, Reading
 from equipoise.vibration.coupled import Coupled, settled
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
-from equipoise.vibration.modes import swings_in_a_turn
+from equipoise.vibration.mode_shapes import swings_in_a_turn
 from equipoise.vibration.response import (
     NEUTRAL,
     DriveSignals,

@@ -17,7 +17,7 @@ from equipoise.results.result import Result
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 from equipoise.vibration.response import Values, mode_values
 
 Array = np.ndarray[Any, Any]
@@ -159,7 +159,7 @@ class FreeVibration(Result):
         }
 
 
-def vibrate_freely(machine: Machine, model: str | None = None) -> FreeVibration:
+def modes(machine: Machine, model: str | None = None) -> FreeVibration:
     """Natural frequencies, damping and shapes of a machine on its support.
 
     Parameters

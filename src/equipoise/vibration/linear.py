@@ -27,7 +27,7 @@ from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.body import Body, Rest, at_rest, moved, rigid_mass
 from equipoise.vibration.linkages import rows_of, spread
-from equipoise.vibration.modes import Mode, find_modes
+from equipoise.vibration.mode_shapes import Mode, find_modes
 
 Array = np.ndarray[Any, Any]
 Step = Literal["linear", "torque", "moment"]

@@ -13,7 +13,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Periodic
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 
 Array = np.ndarray[Any, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]

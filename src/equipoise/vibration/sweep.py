@@ -26,7 +26,7 @@ from equipoise.vibration.forced import (
 )
 from equipoise.vibration.free import Resonance, resonances
 from equipoise.vibration.linear import Linear, Step
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 from equipoise.vibration.response import Model, Response, Values, mode_values, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 

@@ -95,7 +95,7 @@ class Transient(Result):
         }
 
 
-def from_rest(
+def simulate(
     machine: Machine,
     duration: float,
     speed: float | None = None,

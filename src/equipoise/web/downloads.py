@@ -48,11 +48,11 @@ def downloaded(found: Solved, what: str, language: str) -> tuple[dict[str, Any],
 
 
 def _report(found: Solved, file: str, language: str) -> str:
-    from equipoise.present.composition import report
+    from equipoise.present.composition import report_page
     from equipoise.present.findings import Findings
 
     if language not in LANGUAGES:
         raise UsageError(unknown(language, LANGUAGES, "language of reports"))
     machine = found.design.machine
     with _drawing:
-        return report(Findings(machine, dumps(machine), file), language)
+        return report_page(Findings(machine, dumps(machine), file), language)

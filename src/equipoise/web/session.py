@@ -12,7 +12,7 @@ from typing import Any
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.schema.files import LARGEST, printable
-from equipoise.schema.models import examples, load, loads
+from equipoise.schema.models import examples, load_linkage, loads_linkage
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design
@@ -245,7 +245,7 @@ def opened_example(name: str) -> Design:
     """A bundled machine."""
     if name not in titles():
         raise UsageError(f"there is no example of the name {printable(name)!r}")
-    return Design(name, load(name))
+    return Design(name, load_linkage(name))
 
 
 def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
@@ -253,7 +253,7 @@ def opened_file(path_or_name: str | os.PathLike[str]) -> Design:
     file = opened(path_or_name)
     if kind_of_text(file.text) == "tool":
         raise ModelError("", TOOLS, file.source)
-    machine = loads(file.text, file.source, file.folder)
+    machine = loads_linkage(file.text, file.source, file.folder)
     return Design(printable(os.path.basename(path_or_name)), machine)
 
 
@@ -262,4 +262,4 @@ def opened_text(name: str, text: str) -> Design:
     shown = printable(name)
     if kind_of_text(text) == "tool":
         raise ModelError("", TOOLS, shown)
-    return Design(shown, loads(text.removeprefix("\ufeff"), shown))
+    return Design(shown, loads_linkage(text.removeprefix("\ufeff"), shown))

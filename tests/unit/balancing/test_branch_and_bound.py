@@ -132,7 +132,7 @@ def test_a_ratio_without_limits() -> None:
 def test_price_of_a_limit_that_moves_the_ratio() -> None:
     """Least -y^2 with y <= 1.5: a unit more of the limit gains 2 y = 3."""
     program, square = toy(-1.0, 4.0)
-    slope = Affine.of([], np.zeros((1, 0)), 1.0)
+    slope = Affine.fixed(1.0)
     program.nonnegative(Affine.of(1, -1.0, 1.5), "most", slope)
     program.cost = {0: -1.0}
     found = minimise(program, [square])

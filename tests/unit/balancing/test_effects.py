@@ -11,14 +11,8 @@ import pytest
 from scipy.optimize import minimize
 
 import equipoise as eq
-from equipoise.balancing.effects import (
-    ANGLES,
-    Effects,
-    Near,
-    _by_numbers,
-    gauge_signals,
-    supports_more,
-)
+from equipoise.balancing.effects import ANGLES, Effects
+from equipoise.balancing.gauges import Near, _by_numbers, gauge_signals, supports_more
 from equipoise.balancing.measures import measured
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, UsageError

@@ -172,7 +172,7 @@ def test_the_best_of_all_teeth() -> None:
         machine, part = Gearing(MACHINE, free).added(mesh)
         alone = eq.balance(
             machine,
-            Balance(masses=(eq.AddedMass(part.link, part.at, ROOM),), objectives=wish),
+            Balance(masses=(eq.balancing.AddedMass(part.link, part.at, ROOM),), objectives=wish),
         )
         costs[mesh.teeth] = alone.objectives[wish[0].name][1]
     gears, _ = found.changes
@@ -214,17 +214,17 @@ def test_shafts_turn_against_each_other(order: int) -> None:
 def test_lanchester_shafts_take_the_second_order_of_an_engine() -> None:
     """Each has half of A2 / (2 w)^2, where A2 is the second harmonic of the force."""
     engine = slider_crank().with_link("rod", center_of_mass=(0.4, 0.0))  # on its line
-    before = np.abs(eq.harmonics(eq.forces(eq.move(engine, 720)).shaking_force.x, 4))
+    before = np.abs(eq.signals.harmonics(eq.forces(eq.move(engine, 720)).shaking_force.x, 4))
     plan = Balance(
         shafts=(shafts(2),),
         objectives=(Objective("shaking_force", orders=(2.0,)),),
     )
     found = eq.balance(engine, plan)
     force = eq.forces(eq.move(found.machine, 720)).shaking_force
-    after = np.abs(eq.harmonics(force.x, 4))
+    after = np.abs(eq.signals.harmonics(force.x, 4))
     assert before[2] > 0
     assert after[2] < 1e-7 * before[2]
-    assert np.abs(eq.harmonics(force.y, 4))[2] < 1e-7 * before[2]
+    assert np.abs(eq.signals.harmonics(force.y, 4))[2] < 1e-7 * before[2]
     assert after[[1, 4]] == pytest.approx(before[[1, 4]], rel=1e-7)
     wanted = before[2] / 2 / (2 * engine.drive.speed) ** 2
     assert [change.values["moment"] for change in found.changes] == pytest.approx(

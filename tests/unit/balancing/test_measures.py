@@ -73,7 +73,7 @@ def test_a_limit_is_kept_and_has_its_price(measure: Measure, is_vector: bool) ->
     def at(limit: float) -> tuple[float, float, float]:
         program = Program()
         numbers = program.numbers(3)
-        bound = Affine.of([], np.zeros((1, 0)), limit)
+        bound = Affine.fixed(limit)
         bound_measure(program, numbers, signal, measure, bound, "it")
         program.cost = {int(numbers[0]): -1.0}
         found = program.solve()

@@ -179,7 +179,7 @@ def test_the_ends_of_a_front() -> None:
     crank = AddedMass("crank", "A", Weight("any", 0.05, at_most=0.5))
     first, second = Objective("shaking_force", "peak"), Objective("joints.D")
     plan = Balance(masses=(rocker, crank))
-    front = eq.trade_off(MACHINE, first, second, plan, points=4)
+    front = eq.balancing.trade_off(MACHINE, first, second, plan, points=4)
     alone = eq.balance(MACHINE, replace(plan, objectives=(second,)))
     least = alone.objectives[second.name][1]
     assert front.values[-1, 1] == pytest.approx(least, rel=1e-7)

@@ -117,9 +117,12 @@ def test_rooms() -> None:
 def test_the_pose_is_that_of_the_linkages_picture() -> None:
     """Of a machine that has gears already, which are told apart from new ones."""
     machine = eq.load("geared-counterweight")
-    weight = eq.AddedMass("crank", "O2", eq.Weight("point", 0.03))
+    weight = eq.balancing.AddedMass("crank", "O2", eq.balancing.Weight("point", 0.03))
     result = eq.balance(
-        machine, eq.Balance(masses=(weight,), objectives=(eq.Objective("shaking_force"),))
+        machine,
+        eq.balancing.Balance(
+            masses=(weight,), objectives=(eq.balancing.Objective("shaking_force"),)
+        ),
     )
     chart = changes(result)
     angle = re.search(r"in the frame: [0-9.]+°", words(chart))

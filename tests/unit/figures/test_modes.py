@@ -13,8 +13,7 @@ from equipoise.figures.modes import described
 from equipoise.figures.pictures import pictures_of
 from equipoise.results.charts import Chart
 from equipoise.symbols.scene import Scene
-from equipoise.vibration.free import vibrate_freely
-from equipoise.vibration.modes import Mode
+from equipoise.vibration.mode_shapes import Mode
 from unit.figures.samples import words
 from unit.figures.test_pictures import views
 from unit.figures.vibration_samples import (
@@ -29,22 +28,22 @@ from unit.figures.vibration_samples import (
 
 @cache
 def modes_of(kind: str) -> dict[str, Chart]:
-    return pictures_of(vibrate_freely(MACHINES[kind]()))
+    return pictures_of(eq.modes(MACHINES[kind]()))
 
 
 def test_modes_are_told() -> None:
-    mode = vibrate_freely(rig()).modes[0]
+    mode = eq.modes(rig()).modes[0]
     shown = words(modes_of("rig")["mode-1"])
     assert f"{mode.cycles_per_second:.4g} Hz, {mode.natural_frequency:.4g} rad/s" in shown
     assert f"damping ratio {mode.damping_ratio:.4g}" in shown and "pitch 1 rad" in shown
-    kinds = [described(mode) for mode in vibrate_freely(falling()).modes]
+    kinds = [described(mode) for mode in eq.modes(falling()).modes]
     assert kinds[0] == "free, without a spring"
     assert "falls over" in kinds[2] and "overdamped" in kinds[3]
     assert described(Mode(complex(1e-15, 20.0), np.array([1 + 0j]))).endswith("damping ratio 0")
 
 
 def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
-    free = vibrate_freely(rig())
+    free = eq.modes(rig())
     shape = ModeShape(free, free.modes[0])
     pivot = np.array([[-1.34, 0.0, 0.0]])
     np.testing.assert_array_equal(shape.displaced(pivot, 1), pivot)
@@ -58,7 +57,7 @@ def test_the_pivot_stands_still_and_the_largest_displacement_shows() -> None:
 
 
 def test_gauges_swing_as_the_shape_says() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     for number, mode in enumerate(free.modes):
         shape = ModeShape(free, mode)
         scale = abs(shape.motion[1] / mode.shape[0])
@@ -88,7 +87,7 @@ def test_three_views_to_one_scale() -> None:
 
 
 def test_what_lies_to_the_right_is_below_from_above() -> None:
-    free = vibrate_freely(space())
+    free = eq.modes(space())
     shape = ModeShape(free, free.modes[0])
     rest = shape.outline("top")
     assert np.min(rest.imag) < -0.3 < 0.3 < np.max(rest.imag)
@@ -98,7 +97,7 @@ def test_what_lies_to_the_right_is_below_from_above() -> None:
 
 def test_each_of_six_ways() -> None:
     freedoms = ("surge", "heave", "sway", "roll", "yaw", "pitch")
-    free = vibrate_freely(eq.load("riding-transplanter"))
+    free = eq.modes(eq.load("riding-transplanter"))
     assert free.coordinates == freedoms and len(pictures_of(free)) == 6
 
 
@@ -109,10 +108,10 @@ def linkage_on_springs() -> eq.Machine:
 def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
     machine = eq.load("exudyn-slider-crank")
     low, high = Scene.of(eq.move(machine, 72)).linkage_box
-    (view,) = views(pictures_of(vibrate_freely(machine))["mode-1"])
+    (view,) = views(pictures_of(eq.modes(machine))["mode-1"])
     assert 0.1 < (view.x.high - view.x.low) / 1e3 / abs(high - low) < 1
 
 
 def test_what_is_at_one_place_shares_a_name() -> None:
-    (panel,) = pictures_of(vibrate_freely(eq.load("exudyn-slider-crank")))["mode-1"].panels
+    (panel,) = pictures_of(eq.modes(eq.load("exudyn-slider-crank")))["mode-1"].panels
     assert [mark.text for mark in panel.marks] == ["x\ny\nalong\nacross"]

@@ -15,7 +15,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
 from equipoise.handheld.transmission import transmit
 from equipoise.results.charts import Chart
-from equipoise.schema.tools import load_tool
+from equipoise.schema.models import load_tool
 
 Drawn = dict[str, Chart]
 SPEEDS = np.linspace(105.0, 942.0, 60)

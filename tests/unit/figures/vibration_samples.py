@@ -15,7 +15,6 @@ from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
 from equipoise.vibration.sweep import Sweep, sweep_speed
-from equipoise.vibration.transient import from_rest
 
 RPM = 30 / pi
 G = 9.80665
@@ -156,7 +155,7 @@ def pictures(kind: str) -> Drawn:
             drawn |= named("lost", pictures_of(dashed_and_lost(sweep)))
     if support.planar and kind in {"plane", "crowded", "walking-transplanter"}:
         driven = machine.drive.motor is not None
-        transient = from_rest(machine, 0.5, drive=driven, samples=300)
+        transient = eq.simulate(machine, 0.5, drive=driven, samples=300)
         drawn |= named("rest", pictures_of(transient))
         if kind != "crowded":
             exact = respond(machine, model="exact", drive=driven)

@@ -22,7 +22,8 @@ from equipoise.handheld.model import (
     Tool,
     Work,
 )
-from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
+from equipoise.handheld.section import Section, Tube
+from equipoise.handheld.shaft import Segment, Shaft
 
 SECTION = Section(980.0, 2.3)
 TUBE = Tube(0.026, 0.023, 70e9, 2700.0)
@@ -82,10 +83,10 @@ SHAFTS: dict[str, tuple[dict[str, Any], str]] = {
     "length": ({"length": 0.0}, "shaft.length: got 0 m; give more than 0"),
     "loss": ({"loss_factor": -0.1}, "shaft.loss_factor: got -0.1; give 0 or more"),
     "all loss": ({"loss_factor": 1.0}, "shaft.loss_factor: got 1; give less than 1"),
-    "theory": ({"theory": "timosenko"}, "shaft.theory: no theory is called 'timosenko'; did you"),
+    "theory": ({"theory": "timosenko"}, "shaft.theory: got 'timosenko'; give 'euler-bernoulli'"),
     "stiffness": ({"profile": Section(0.0, 1.0)}, "shaft.bending_stiffness: got 0 N m^2; give mo"),
     "mass": ({"profile": Section(1.0, -1.0)}, "shaft.mass_per_length: got -1 kg/m; give more"),
-    "rotary": ({"profile": Section(1.0, 1.0, inf, -1.0)}, "shaft.rotary_inertia: got -1 kg m;"),
+    "rotary": ({"profile": Section(1.0, 1.0, inf, -1.0)}, "shaft.rotary_inertia: got -1; give 0"),
     "shear": ({"profile": Section(1.0, 1.0, 0.0)}, "shaft.shear_stiffness: got 0 N; give more"),
     "no shear": ({"theory": "timoshenko"}, "shaft.bending_stiffness: does not tell what shear"),
     "wall": ({"profile": Tube(0.02, 0.02, 7e10, 2700)}, "shaft.inner_diameter: got 20 mm inside"),
@@ -121,13 +122,13 @@ STATIONS: dict[str, tuple[Station, str]] = {
     "long": (replace(ENGINE, name="x" * 201), "name: 201 characters; give at most 200"),
     "control": (replace(ENGINE, name="a\x1b"), "name: got 'a\\x1b'; give printable characters"),
     "mass": (replace(ENGINE, mass=-1.0), "mass: got -1 kg; give 0 or more"),
-    "inertia": (replace(ENGINE, inertia=(0.0, -1.0)), "inertia: got -1 kg m^2; give 0 or more"),
-    "stiffness": (replace(ENGINE, stiffness=(-1.0, 0.0)), "stiffness: got -1 N/m; give 0 or"),
-    "damping": (replace(ENGINE, damping=(-1.0, 0.0)), "damping: got -1 N s/m; give 0 or more"),
-    "turning": (replace(ENGINE, rotational_stiffness=(-1.0, 0.0)), "rotational_stiffness: got -1"),
-    "infinite": (replace(ENGINE, stiffness=(inf, 0.0)), "stiffness[1]: got inf; give a finite"),
+    "inertia": (replace(ENGINE, inertia=(0.0, -1.0)), "inertia.lateral: got -1 kg m^2; give"),
+    "stiffness": (replace(ENGINE, stiffness=(-1.0, 0.0)), "stiffness.vertical: got -1 N/m; "),
+    "damping": (replace(ENGINE, damping=(-1.0, 0.0)), "damping.vertical: got -1 N s/m; gi"),
+    "turning": (replace(ENGINE, rotational_stiffness=(-1.0, 0.0)), "rotational_stiffness.vert"),
+    "infinite": (replace(ENGINE, stiffness=(inf, 0.0)), "stiffness.vertical: got inf; give a"),
     "absorber": (replace(ENGINE, absorber=Absorber(-1.0, (1, 1))), "absorber.mass: got -1 kg; gi"),
-    "harness": (replace(ENGINE, harness=Harness((1, -1))), "harness.stiffness: got -1 N/m; give"),
+    "harness": (replace(ENGINE, harness=Harness((1, -1))), "harness.stiffness.lateral: got -1 N/"),
     "hand": (replace(ENGINE, hand=Hand(-1.0)), "hand.mass: got -1 kg; give 0 or more"),
     "no hand": (replace(ENGINE, hand=Hand()), "hand: nothing is said of the hand; give mass, st"),
     "hands": (replace(ENGINE, hand=replace(HAND, hands=3)), "hand.hands: got 3; give 1 or 2"),
@@ -157,7 +158,7 @@ EXCITATIONS: dict[str, tuple[Excitation, str]] = {
     "two": (replace(FORCE, linkage=YOKE), ": give exactly one of force, unbalance and linkage"),
     "force": (replace(FORCE, force=-1.0), ".force: got -1 N; give 0 or more"),
     "unbalance": (Excitation("x", "engine", unbalance=-1e-3), ".unbalance: got -0.001 kg m; give"),
-    "direction": (replace(FORCE, direction="up"), ".direction: no direction is called 'up'; "),  # type: ignore[arg-type]
+    "direction": (replace(FORCE, direction="up"), ".direction: got 'up'; give 'vertical', "),  # type: ignore[arg-type]
     "turned": (Excitation("x", "engine", unbalance=1.0, direction="lateral"),
                ".direction: goes with a force; leave it out"),
     "ratio": (replace(FORCE, ratio=0.0), ".ratio: got 0; what does not turn shakes nothing"),
@@ -196,7 +197,7 @@ REST: dict[str, tuple[dict[str, Any], str]] = {
     "two works": ({"work": (MOWING, MOWING)}, "work[2].name: 'mowing' is given twice; give an"),
     "long day": ({"work": (replace(MOWING, duration=90000.0),)}, "work: takes 25 h together; a "),
     "band": ({"design": replace(DESIGN, speeds=(2.0, 2.0))}, "design.speeds: got 2 to 2 rad/s; gi"),
-    "measure": ({"design": replace(DESIGN, measure="mean")}, "design.measure: no measure is calle"),
+    "measure": ({"design": replace(DESIGN, measure="mean")}, "design.measure: got 'mean'; give 'r"),
     "no change": ({"design": replace(DESIGN, variables=())}, "design.variables: there is nothing"),
     "silence": ({"excitations": ()}, "design: nothing shakes the tool; give [[excitations]]"),
     "no hand": ({"stations": (ENGINE, BELT)}, "design: no hand holds the tool; give a station a"),

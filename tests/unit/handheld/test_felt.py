@@ -15,7 +15,7 @@ from equipoise.handheld.duals import Dual
 from equipoise.handheld.exposed import Band, grips, mean_over_band, tool_sensitivities, values_of
 from equipoise.handheld.model import Excitation, Hand, Impedance, Station, Tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.shaft import Section
+from equipoise.handheld.section import Section
 from equipoise.handheld.studies import changed, has, number_of
 from unit.handheld.samples import THEORIES, bare, both, random_tool
 

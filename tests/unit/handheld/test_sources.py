@@ -202,7 +202,7 @@ def test_a_phase_moves_each_order_by_its_own_angle() -> None:
 def test_orders_of_a_linkage_of_several_turns() -> None:
     """Orders of the crank, not of the period: thirds where the gears meet again after three."""
     machine = make("geared_five_bar", 0).machine
-    assert eq.assemble(machine).cycle.turns == 3
+    assert eq.mechanism.assemble(machine).cycle.turns == 3
     orders = np.array([shake.order for shake in of(linkage=machine)])
     np.testing.assert_allclose(3 * orders, np.round(3 * orders), atol=1e-12)
     assert np.any(np.abs(orders - np.round(orders)) > 0.1)

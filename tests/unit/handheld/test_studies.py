@@ -45,7 +45,7 @@ def test_one_number_is_changed_and_nothing_else(key: str) -> None:
     assert value == (both(0.37) if isinstance(getattr(before, last), tuple) else 0.37)
     back = changed(found, "full", key, 1.0)
     assert number_of(back, "full", key) == 1.0
-    for name in after.shapes:
+    for name in vars(after):
         if name != last:
             assert getattr(after, name) == getattr(before, name)
     assert found.station("other") == tool.station("other")

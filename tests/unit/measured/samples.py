@@ -20,10 +20,10 @@ def simulated(
     ratio: float = 0.03,
     coulomb: float = 0.02,
     **more: Any,
-) -> eq.Record:
+) -> eq.measured.Record:
     """A decay from 1 m; without friction about 60 samples in a half-swing."""
     time = np.linspace(0.0, duration, count)
-    return eq.simulate_decay(
+    return eq.measured.simulate_decay(
         time, natural_frequency=OMEGA, damping_ratio=ratio, coulomb=coulomb, **more
     )
 
@@ -34,13 +34,13 @@ def held(time: Array, release: float, **more: Any) -> Array:
     free = time > release
     moved = np.ones(len(time))
     since = np.concatenate([[release], time[free]])
-    moved[free] = eq.simulate_decay(since, **values).displacement[1:]
+    moved[free] = eq.measured.simulate_decay(since, **values).displacement[1:]
     return moved
 
 
-def noisy(time: Array, values: Array, noise: float = 0.01, seed: int = 1) -> eq.Record:
+def noisy(time: Array, values: Array, noise: float = 0.01, seed: int = 1) -> eq.measured.Record:
     added = np.random.default_rng(seed).normal(0.0, noise, len(time))
-    return eq.Record(time, values + added)
+    return eq.measured.Record(time, values + added)
 
 
 def integrated(

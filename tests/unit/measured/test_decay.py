@@ -31,7 +31,7 @@ NAMES = [
 def test_quantities_follow_60_to_62() -> None:
     """From slope n, intercept m and beta alone, by both methods."""
     stiffness = 1000.0
-    found = eq.identify_decay(simulated(noise=0.005), stiffness)
+    found = eq.measured.identify_decay(simulated(noise=0.005), stiffness)
     for method in (found.by_line, found.by_record):
         beta = method["damped_angular_frequency"].value
         n = np.exp(-method["logarithmic_decrement"].value / 2)
@@ -50,18 +50,18 @@ def test_quantities_follow_60_to_62() -> None:
 
 def test_names_by_kind() -> None:
     record = simulated(noise=0.005)
-    assert list(eq.identify_decay(record).by_record) == NAMES
-    lengths = eq.identify_decay(record, 1.0)
+    assert list(eq.measured.identify_decay(record).by_record) == NAMES
+    lengths = eq.measured.identify_decay(record, 1.0)
     assert list(lengths.by_line)[8:] == ["mass", "viscous_damping", "coulomb_force"]
-    angles = eq.identify_decay(record, 1.0, arm=2.0)
+    angles = eq.measured.identify_decay(record, 1.0, arm=2.0)
     assert list(angles.by_line)[8:] == ["inertia", "viscous_damping", "coulomb_torque"]
 
 
 def test_an_arm_makes_angles_of_lengths() -> None:
     record = simulated(noise=0.005)
-    turned = eq.Record(record.time, record.displacement / 1.5, "angle")
-    by_arm = eq.identify_decay(record, 200.0, arm=1.5, spring_arm=2.0)
-    by_angle = eq.identify_decay(turned, 800.0)
+    turned = eq.measured.Record(record.time, record.displacement / 1.5, "angle")
+    by_arm = eq.measured.identify_decay(record, 200.0, arm=1.5, spring_arm=2.0)
+    by_angle = eq.measured.identify_decay(turned, 800.0)
     assert by_arm.stiffness == 800
     assert by_arm.kind == by_angle.kind == "angle"
     assert by_arm.record.unit == "rad"
@@ -71,7 +71,7 @@ def test_an_arm_makes_angles_of_lengths() -> None:
 
 def test_intervals_of_what_follows_from_others() -> None:
     """Twice the decrement has twice the interval; inertia is as uncertain as frequency squared."""
-    found = eq.identify_decay(simulated(noise=0.005), 1000.0)
+    found = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
     for method in (found.by_line, found.by_record):
         relative = {name: (q.high - q.low) / q.value for name, q in method.items() if q.low}
         assert relative["mass"] == pytest.approx(2 * relative["natural_frequency"], rel=1e-6)
@@ -81,7 +81,7 @@ def test_intervals_of_what_follows_from_others() -> None:
 
 
 def test_to_dict() -> None:
-    found = eq.identify_decay(simulated(noise=0.005), 1000.0)
+    found = eq.measured.identify_decay(simulated(noise=0.005), 1000.0)
     plain = found.to_dict()
     assert plain["kind"] == "length"
     assert plain["samples"] == 1000
@@ -96,7 +96,7 @@ def test_to_dict() -> None:
 
 def test_the_fitted_motion() -> None:
     record = simulated(noise=0.01, center=2.0)
-    found = eq.identify_decay(record)
+    found = eq.measured.identify_decay(record)
     exact = simulated(center=2.0).displacement
     part = record.time < found.turns.time[-1]
     assert np.max(np.abs(found.fitted(record.time) - exact)[part]) < 0.003
@@ -108,8 +108,8 @@ def test_the_fitted_motion() -> None:
 # -- notes -----------------------------------------------------------------------------------------
 
 
-def notes(record: eq.Record) -> str:
-    return "\n".join(eq.identify_decay(record).notes)
+def notes(record: eq.measured.Record) -> str:
+    return "\n".join(eq.measured.identify_decay(record).notes)
 
 
 def test_a_good_record_has_no_note() -> None:
@@ -144,7 +144,7 @@ def test_parts_that_are_left_out() -> None:
 
 def test_three_half_swings() -> None:
     """One line, no interval; the whole record has them all the same."""
-    found = eq.identify_decay(simulated(duration=0.8, count=100, noise=0.002))
+    found = eq.measured.identify_decay(simulated(duration=0.8, count=100, noise=0.002))
     assert len(found.turns.heights) == 3
     assert found.by_line["damping_ratio"].low is None
     assert not found.by_line["decay_rate"].includes_zero
@@ -155,7 +155,7 @@ def test_three_half_swings() -> None:
 def test_a_vibration_that_is_fed() -> None:
     """Growing by 1 % in all, which hardly shows."""
     time = np.linspace(0.0, 6.0, 3000)
-    record = eq.Record(time, np.exp(0.002 * time) * np.sin(OMEGA * time))
+    record = eq.measured.Record(time, np.exp(0.002 * time) * np.sin(OMEGA * time))
     told = notes(record)
     assert "viscous damping comes out negative: something feeds the vibration" in told
     assert "slope of 1 or more" in told
@@ -175,7 +175,7 @@ def test_a_damping_that_is_neither() -> None:
 
 
 def test_methods_that_contradict_each_other() -> None:
-    found = eq.identify_decay(simulated(noise=0.005))
+    found = eq.measured.identify_decay(simulated(noise=0.005))
     frequency = found.by_record["natural_frequency"]
     assert not list(_on_methods(found.by_line, found.by_record))
     moved = Quantity(*(1.1 * value for value in astuple(frequency)))
@@ -204,9 +204,9 @@ def test_methods_that_contradict_each_other() -> None:
 )
 def test_arguments_that_cannot_be_used(arguments: dict[str, Any], said: str) -> None:
     with pytest.raises(eq.EquipoiseError, match=said):
-        eq.identify_decay(simulated(), **arguments)
+        eq.measured.identify_decay(simulated(), **arguments)
 
 
 def test_angles_need_no_arm() -> None:
     with pytest.raises(eq.EquipoiseError, match="arm: the record is one of angles, which need no"):
-        eq.identify_decay(simulated(kind="angle"), arm=1.0)
+        eq.measured.identify_decay(simulated(kind="angle"), arm=1.0)

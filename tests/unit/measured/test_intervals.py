@@ -41,7 +41,7 @@ def identified(ratio: float, coulomb: float, noise: float, colour: float = 0.0) 
         white = rng.normal(0.0, noise * (1 - colour**2) ** 0.5, 900)
         added = lfilter([1.0], [1.0, -colour], white)[-600:]
         record = simulated(4.0, 600, ratio, coulomb, center=0.2, start=1.2)
-        found.append(identify_decay(eq.Record(record.time, record.displacement + added)))
+        found.append(identify_decay(eq.measured.Record(record.time, record.displacement + added)))
     return found
 
 

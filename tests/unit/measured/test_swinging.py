@@ -30,7 +30,7 @@ def test_an_integrator_goes_the_same_way(case: tuple[float, float, float, float]
     """To 1e-8, which is what the integrator's tolerance leaves after a dozen half-swings."""
     ratio, coulomb, start, velocity = case
     time = np.linspace(0.3, 4.3, 801)
-    record = eq.simulate_decay(
+    record = eq.measured.simulate_decay(
         time,
         natural_frequency=OMEGA,
         damping_ratio=ratio,
@@ -46,7 +46,7 @@ def test_an_integrator_goes_the_same_way(case: tuple[float, float, float, float]
 def turning_points(ratio: float, coulomb: float) -> tuple[Any, float]:
     """Exact displacements at turning points, and the ratio of amplitudes without friction."""
     half = pi / (OMEGA * sqrt(1 - ratio**2))
-    record = eq.simulate_decay(
+    record = eq.measured.simulate_decay(
         half * np.arange(12), natural_frequency=OMEGA, damping_ratio=ratio, coulomb=coulomb
     )
     return record.displacement, exp(-pi * ratio / sqrt(1 - ratio**2))
@@ -94,17 +94,17 @@ def test_noise_is_the_same_for_the_same_seed() -> None:
 def test_what_cannot_be_simulated(change: dict[str, Any], said: str) -> None:
     values = {"time": np.arange(20.0), "natural_frequency": 1.0, **change}
     with pytest.raises(eq.EquipoiseError, match=said.replace("(", r"\(")):
-        eq.simulate_decay(values.pop("time"), **values)
+        eq.measured.simulate_decay(values.pop("time"), **values)
 
 
 def test_a_record_needs_as_many_displacements_as_times() -> None:
     with pytest.raises(eq.EquipoiseError, match="got 20 times and 19 displacements; give as many"):
-        eq.Record(np.arange(20.0), np.zeros(19))
+        eq.measured.Record(np.arange(20.0), np.zeros(19))
 
 
 def test_a_record_cannot_be_changed() -> None:
     values = np.arange(20.0)
-    record = eq.Record(values, values)
+    record = eq.measured.Record(values, values)
     values[0] = 7
     assert record.time[0] == 0
     with pytest.raises(ValueError, match="read-only"):

@@ -30,7 +30,7 @@ def check(turns: Turns, release: float, count: tuple[int, ...], tolerance: float
 
 def test_a_clean_record() -> None:
     """To 3e-4, by which polynomials of fourth order miss a cosine at most."""
-    turns = find_turns(eq.Record(TIME, held(TIME, -1e-9)))
+    turns = find_turns(eq.measured.Record(TIME, held(TIME, -1e-9)))
     check(turns, 0.0, (13,), 3e-4)
     assert turns.noise < 1e-4
 
@@ -94,7 +94,7 @@ def test_a_gap_that_hides_turning_points_ends_the_decay() -> None:
 def test_a_record_turned_over_and_in_other_units() -> None:
     values = held(TIME, 0.5)
     one = find_turns(noisy(TIME, values))
-    other = find_turns(eq.Record(TIME, -1e-3 * noisy(TIME, values).displacement))
+    other = find_turns(eq.measured.Record(TIME, -1e-3 * noisy(TIME, values).displacement))
     np.testing.assert_allclose(other.heights, 1e-3 * one.heights, rtol=1e-9)
     np.testing.assert_allclose(other.passed, one.passed, rtol=1e-9)
     assert other.side == -1
@@ -122,13 +122,13 @@ REFUSED = {
 @pytest.mark.parametrize(("values", "said"), REFUSED.values(), ids=REFUSED)
 def test_what_is_no_free_decay(values: np.ndarray, said: str) -> None:
     with pytest.raises(eq.EquipoiseError, match=said):
-        find_turns(eq.Record(TIME, values))
+        find_turns(eq.measured.Record(TIME, values))
 
 
 def test_too_few_samples_in_a_half_swing() -> None:
     time = np.linspace(0.0, 6.0, 100)
     with pytest.raises(eq.EquipoiseError, match="about 4 samples each; take 6 or more"):
-        find_turns(eq.Record(time, held(time, 0.0)))
+        find_turns(eq.measured.Record(time, held(time, 0.0)))
 
 
 def test_two_half_swings_are_too_few() -> None:

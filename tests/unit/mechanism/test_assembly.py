@@ -31,7 +31,7 @@ ANGLES = np.array([0.2, 1.3, 2.9, 4.4])
 def kernels_of(given: eq.Machine) -> list[str]:
     """Dyads, in order of solution."""
     dyads = {kernels.rrr, kernels.rrp, kernels.rpr, kernels.prp, kernels.rpp, kernels.gear}
-    steps = [step for step in eq.assemble(given).motion if isinstance(step, Call)]
+    steps = [step for step in eq.mechanism.assemble(given).motion if isinstance(step, Call)]
     return [step.kernel.__name__ for step in steps if step.kernel in dyads]
 
 
@@ -68,7 +68,7 @@ def test_kinds_of_dyads_on_moving_bodies(kind: str, dyads: list[str]) -> None:
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_link_is_solved_once(kind: str) -> None:
-    linkage = eq.assemble(make(kind, 0).machine)
+    linkage = eq.mechanism.assemble(make(kind, 0).machine)
     solved = [link for group in linkage.groups for link in group.links]
     assert sorted([*solved, linkage.machine.drive.link]) == sorted(linkage.machine.links)
     assert linkage.anchors.keys() == {FRAME, *linkage.machine.links}
@@ -79,7 +79,7 @@ def test_order_does_not_depend_on_the_file() -> None:
     names = ["output", "link", "rocker", "coupler", "crank"]
     moved = replace(given, links={name: given.links[name] for name in names},
                     assembly={"C": "right", "F": "left"})  # fmt: skip
-    assert [group.links for group in eq.assemble(moved).groups] == [
+    assert [group.links for group in eq.mechanism.assemble(moved).groups] == [
         ("rocker", "coupler"), ("output", "link")
     ]  # fmt: skip
 
@@ -144,16 +144,16 @@ def test_sides_of_a_swinging_guide(side: str, turn: float) -> None:
 )
 def test_missing_sides(given: eq.Machine, joint: str, words: str) -> None:
     with pytest.raises(ModelError) as caught:
-        eq.assemble(replace(given, assembly={}))
+        eq.mechanism.assemble(replace(given, assembly={}))
     assert caught.value.where == f"assembly.{joint}"
     assert words in caught.value.what
 
 
 def test_a_side_of_the_wrong_kind() -> None:
     with pytest.raises(ModelError, match='got \'left\'; give "forward" or "backward"'):
-        eq.assemble(slider_crank(assembly={"C": "left"}))
+        eq.mechanism.assemble(slider_crank(assembly={"C": "left"}))
     with pytest.raises(ModelError, match='got \'forward\'; give "left" or "right"'):
-        eq.assemble(four_bar(1.0, 0.35, 0.9, 0.8, "forward"))
+        eq.mechanism.assemble(four_bar(1.0, 0.35, 0.9, 0.8, "forward"))
 
 
 @pytest.mark.parametrize(
@@ -166,7 +166,7 @@ def test_a_side_of_the_wrong_kind() -> None:
 )
 def test_idle_sides(given: eq.Machine, joint: str, words: str) -> None:
     with pytest.raises(ModelError) as caught:
-        eq.assemble(replace(given, assembly={**given.assembly, joint: "left"}))
+        eq.mechanism.assemble(replace(given, assembly={**given.assembly, joint: "left"}))
     assert caught.value.where == f"assembly.{joint}"
     assert words in caught.value.what
 
@@ -240,7 +240,7 @@ def test_parallel_guides_are_refused() -> None:
     given = eq.load("scotch-yoke")
     slot, rail = given.sliders
     with pytest.raises(ModelError) as caught:
-        eq.assemble(replace(given, sliders=(replace(slot, direction=0.0), rail)))
+        eq.mechanism.assemble(replace(given, sliders=(replace(slot, direction=0.0), rail)))
     assert caught.value.where == "sliders[1]"
     assert "its line is parallel to that of 'yoke on frame'" in caught.value.what
 
@@ -256,7 +256,7 @@ def test_three_sliding_joints_in_a_row_are_refused() -> None:
         ),
     )
     with pytest.raises(MobilityError, match="three sliding joints in a row cannot position"):
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
 
 
 # -- pins that coincide ----------------------------------------------------------------------------
@@ -265,6 +265,6 @@ def test_three_sliding_joints_in_a_row_are_refused() -> None:
 def test_a_link_of_no_length() -> None:
     given = four_bar(1.0, 0.35, 0.9, 0.8)
     with pytest.raises(ModelError) as caught:
-        eq.assemble(given.with_link("rocker", points={"D": ORIGIN, "C": ORIGIN}))
+        eq.mechanism.assemble(given.with_link("rocker", points={"D": ORIGIN, "C": ORIGIN}))
     assert caught.value.where == "links.rocker.points"
     assert "D and C lie at the same place" in caught.value.what

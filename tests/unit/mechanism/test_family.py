@@ -44,7 +44,7 @@ def rows(count: int) -> np.ndarray:
 
 def same_as_alone(designs: Sequence[eq.Machine]) -> Family:
     """Compare every point and link of a stack with each machine by itself."""
-    family = Family([eq.assemble(design) for design in designs])
+    family = Family([eq.mechanism.assemble(design) for design in designs])
     theta = rows(len(designs))
     state = family.solve(theta)
     alone = [eq.move(design, row) for design, row in zip(designs, theta, strict=True)]
@@ -98,7 +98,7 @@ def test_a_crank_alone() -> None:
 
 def test_numbers_are_squared_sines_of_transmission_angles() -> None:
     designs = designs_of(eq.load("kim-chung-a"), 4)
-    family = Family([eq.assemble(design) for design in designs])
+    family = Family([eq.mechanism.assemble(design) for design in designs])
     theta = rows(4)
     found = family.margins(family.solve(theta))
     for row, design, angles in zip(found, designs, theta, strict=True):
@@ -111,7 +111,7 @@ def test_numbers_are_squared_sines_of_transmission_angles() -> None:
 def test_a_design_that_stays_open_has_negative_numbers() -> None:
     """Frame 1, crank 0.35, coupler 0.9: a rocker of 0.3 is too short for parts of the turn."""
     good, bad = four_bar(1.0, 0.35, 0.9, 0.8), four_bar(1.0, 0.35, 0.9, 0.3)
-    family = Family([eq.assemble(good), eq.assemble(bad)])
+    family = Family([eq.mechanism.assemble(good), eq.mechanism.assemble(bad)])
     theta = np.broadcast_to(np.linspace(0, 2 * np.pi, 90), (2, 90))
     numbers = family.margins(family.solve(theta))
     gap = np.abs(1.0 - 0.35 * np.exp(1j * theta[1]))
@@ -124,6 +124,6 @@ def test_a_design_that_stays_open_has_negative_numbers() -> None:
 def test_points_of_the_frame_may_differ_from_design_to_design() -> None:
     given = eq.load("kim-chung-a")
     shifted = replace(given, frame={p: (x + 1.0, y - 2.0) for p, (x, y) in given.frame.items()})
-    family = Family([eq.assemble(given), eq.assemble(shifted)])
+    family = Family([eq.mechanism.assemble(given), eq.mechanism.assemble(shifted)])
     place = family.point(family.solve(np.broadcast_to(THETA, (2, 17))), "coupler", "P")[0]
     np.testing.assert_allclose(place[1] - place[0], 1 - 2j, atol=1e-14)

@@ -194,12 +194,12 @@ def test_forward_is_signed_and_may_follow_the_crank() -> None:
 
 def test_planting_is_changed_key_by_key() -> None:
     machine = planted()
-    cycle = eq.assemble(machine).cycle
+    cycle = eq.mechanism.assemble(machine).cycle
     deeper = machine.with_planting(depth=0.2)
     assert deeper.planting == replace(PLANTING, depth=0.2)
     assert machine.planting == PLANTING
     assert FOUR.with_planting(tip="C", forward_speed=0.6, depth=0.1).planting == PLANTING
-    assert eq.assemble(deeper).cycle is cycle
+    assert eq.mechanism.assemble(deeper).cycle is cycle
     with pytest.raises(ModelError, match=r"planting.depth: got -1 m"):
         machine.with_planting(depth=-1.0)
 

@@ -20,7 +20,7 @@ from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine,
 THETA = np.array([0.3, 1.9, 4.0])
 
 
-def forces(given: eq.Machine, **more: Any) -> eq.Forces:
+def forces(given: eq.Machine, **more: Any) -> eq.mechanism.Forces:
     return eq.analyze(given, THETA, **more).forces
 
 
@@ -163,21 +163,21 @@ def test_windows(start: float, stop: float) -> None:
 
 
 def test_tables_are_closed_polygons() -> None:
-    table = eq.LoadTable((pi / 2, pi), ((2.0, 6.0),))
+    table = eq.mechanism.LoadTable((pi / 2, pi), ((2.0, 6.0),))
     want = np.interp(CIRCLE, [-pi, pi / 2, pi, 5 * pi / 2], [6.0, 2.0, 6.0, 2.0])
     np.testing.assert_allclose(torque_of(eq.Load("crank", table=table)), want)
 
 
 def test_tables_may_begin_before_0() -> None:
-    one = eq.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
-    other = eq.LoadTable((1.0, 2.0, 2 * pi - 1.0), ((5.0, -3.0, 1.0),))
+    one = eq.mechanism.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
+    other = eq.mechanism.LoadTable((1.0, 2.0, 2 * pi - 1.0), ((5.0, -3.0, 1.0),))
     np.testing.assert_allclose(
         torque_of(eq.Load("crank", table=one)), torque_of(eq.Load("crank", table=other))
     )
 
 
 def test_tables_in_a_window() -> None:
-    load = eq.Load("crank", table=eq.LoadTable((0.0,), ((4.0,),)), start=1.0, stop=2.0)
+    load = eq.Load("crank", table=eq.mechanism.LoadTable((0.0,), ((4.0,),)), start=1.0, stop=2.0)
     np.testing.assert_allclose(torque_of(load), np.where((CIRCLE >= 1) & (CIRCLE < 2), 4.0, 0.0))
 
 
@@ -202,7 +202,7 @@ def test_force_at_a_point_of_the_crank() -> None:
 
 
 def remarked(given: eq.Machine) -> list[str]:
-    return list(remarks(eq.assemble(given)))
+    return list(remarks(eq.mechanism.assemble(given)))
 
 
 def test_a_good_machine_gives_no_remark() -> None:
@@ -233,7 +233,7 @@ def test_remarks(given: eq.Machine, words: str) -> None:
 
 def table(degrees_: tuple[float, ...], torques: tuple[float, ...]) -> eq.Load:
     angles = tuple(float(np.radians(d)) for d in degrees_)
-    return eq.Load("coupler", table=eq.LoadTable(angles, (torques,)))
+    return eq.Load("coupler", table=eq.mechanism.LoadTable(angles, (torques,)))
 
 
 @pytest.mark.parametrize(

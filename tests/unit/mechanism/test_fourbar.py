@@ -13,8 +13,8 @@ from support.machines import make
 from unit.mechanism.build import crank_rocker, four_bar, two_gears
 
 
-def describe(*lengths: float) -> eq.FourBar:
-    found = eq.four_bar(four_bar(*lengths))
+def describe(*lengths: float) -> eq.mechanism.FourBar:
+    found = eq.mechanism.four_bar(four_bar(*lengths))
     assert found is not None
     return found
 
@@ -44,7 +44,7 @@ def test_types(lengths: tuple[float, ...], grashof: str, name: str) -> None:
      ("drag-link", "double-crank (drag link)"), ("stephenson-six-bar", "crank-rocker")],
 )  # fmt: skip
 def test_examples(name: str, kind: str) -> None:
-    found = eq.four_bar(eq.load(name))
+    found = eq.mechanism.four_bar(eq.load(name))
     assert found is not None
     assert found.type == kind
     assert found.condition_5
@@ -54,12 +54,12 @@ def test_examples(name: str, kind: str) -> None:
 @pytest.mark.parametrize("name", ["slider-crank-engine", "scotch-yoke", "class-three",
                                   "planetary-planting-arm", "quick-return"])  # fmt: skip
 def test_machines_without_a_four_bar(name: str) -> None:
-    assert eq.four_bar(eq.load(name)) is None
+    assert eq.mechanism.four_bar(eq.load(name)) is None
 
 
 def test_gears_alone_are_no_four_bar() -> None:
-    assert eq.four_bar(two_gears(eq.Gear("crank", "wheel", ratio=-1.0))) is None
-    assert eq.four_bar(make("geared_five_bar", 0).machine) is None
+    assert eq.mechanism.four_bar(two_gears(eq.Gear("crank", "wheel", ratio=-1.0))) is None
+    assert eq.mechanism.four_bar(make("geared_five_bar", 0).machine) is None
 
 
 def test_links_in_another_order() -> None:
@@ -67,7 +67,7 @@ def test_links_in_another_order() -> None:
     names = ["rocker", "coupler", "crank"]
     turned = replace(given, links={name: given.links[name] for name in names},
                      assembly={"C": "right"})  # fmt: skip
-    assert eq.four_bar(turned) == eq.four_bar(given)
+    assert eq.mechanism.four_bar(turned) == eq.mechanism.four_bar(given)
 
 
 TURNING = [
@@ -154,7 +154,7 @@ def test_the_drive_pivot_need_not_be_the_origin() -> None:
     given = crank_rocker()
     shifted = replace(given, frame={"A": (3.0, 1.0), "D": (3.0, 2.0)})
     moved = shifted.with_link("crank", points={"A": (1.0, 1.0), "B": (1.0, 1.35)})
-    found, plain = eq.four_bar(moved), eq.four_bar(given)
+    found, plain = eq.mechanism.four_bar(moved), eq.mechanism.four_bar(given)
     assert found is not None
     assert plain is not None
     assert (found.a, found.b, found.swing) == pytest.approx((plain.a, plain.b, plain.swing))

@@ -117,7 +117,7 @@ def test_gears_on_one_centre() -> None:
         gears=(eq.Gear("crank", "wheel", ratio=-2.0),),
     )
     with pytest.raises(ModelError) as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "gears[1]"
     assert "both gears turn about A; set their centres apart" in caught.value.what
 

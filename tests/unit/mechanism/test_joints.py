@@ -45,7 +45,7 @@ def test_a_pin_of_three_bodies_counts_twice() -> None:
 
 def refused(given: eq.Machine) -> str:
     with pytest.raises(MobilityError) as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     return str(caught.value)
 
 
@@ -125,7 +125,7 @@ def test_the_drive_turns_about_one_point_of_the_frame() -> None:
         {"crank": body(A=ORIGIN, D=(1.0, 0.0)), "one": body(E=ORIGIN), "other": body(E=ORIGIN)},
     )
     with pytest.raises(ModelError, match="'crank' shares 2 points with the frame") as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "drive.link"
 
 
@@ -137,14 +137,14 @@ def test_the_drive_needs_a_pivot() -> None:
         sliders=(eq.Slider("crank", "B", FRAME, "A", 0.0),),
     )
     with pytest.raises(ModelError, match="'crank' shares 0 points with the frame") as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "drive.link"
 
 
 def test_two_pins_at_one_place() -> None:
     four = crank_rocker()
     with pytest.raises(ModelError) as caught:
-        eq.assemble(four.with_link("coupler", points={"B": (0.1, 0.2), "C": (0.1, 0.2)}))
+        eq.mechanism.assemble(four.with_link("coupler", points={"B": (0.1, 0.2), "C": (0.1, 0.2)}))
     assert caught.value.where == "links.coupler.points"
     assert "B and C lie at the same place" in caught.value.what
 
@@ -164,6 +164,6 @@ def test_gears_turn_on_their_carrier() -> None:
         ),
     )
     with pytest.raises(ModelError) as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "gears[2]"
     assert "'crank' shares 0 points with the carrier 'wheel2'" in caught.value.what

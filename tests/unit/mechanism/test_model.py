@@ -20,7 +20,7 @@ FOUR = crank_rocker()
 PISTON = eq.Slider("piston", "C", FRAME, "A", 0.0)
 GEAR = eq.Gear("crank", "wheel", ratio=-2.0)
 FORCE = eq.Load("coupler", "C", force=(1.0, 0.0))
-TABLE = eq.LoadTable((0.0, 1.0), ((1.0, 2.0),))
+TABLE = eq.mechanism.LoadTable((0.0, 1.0), ((1.0, 2.0),))
 
 
 def refused(where: str, words: str, make: Any) -> None:
@@ -50,7 +50,7 @@ def refused(where: str, words: str, make: Any) -> None:
          lambda x: slider_crank(sliders=(replace(PISTON, direction=x),))),
         ("gears[1].start", lambda x: two_gears(replace(GEAR, start=x))),
         ("loads[1].force[1]", lambda x: replace(FOUR, loads=(replace(FORCE, force=(x, 0.0)),))),
-        ("position.crank_angle", lambda x: replace(FOUR, position=eq.Position(x))),
+        ("position.crank_angle", lambda x: replace(FOUR, position=eq.mechanism.Position(x))),
     ],
 )  # fmt: skip
 def test_numbers_must_be_finite(where: str, make: Any, value: float) -> None:
@@ -222,7 +222,7 @@ def test_loads(changes: dict[str, Any], key: str, words: str) -> None:
 
 
 def test_a_table_of_forces_acts_at_a_point() -> None:
-    table = eq.LoadTable((0.0,), ((1.0,), (2.0,)))
+    table = eq.mechanism.LoadTable((0.0,), ((1.0,), (2.0,)))
     words = "missing; a force acts at a point of the link"
     refused("loads[1].point", words, lambda: loaded(eq.Load("coupler", table=table)))
 
@@ -242,7 +242,7 @@ def loaded(load: eq.Load) -> eq.Machine:
     ],
 )
 def test_tables(angles: Any, values: Any, words: str) -> None:
-    load = eq.Load("coupler", table=eq.LoadTable(angles, values))
+    load = eq.Load("coupler", table=eq.mechanism.LoadTable(angles, values))
     refused("loads[1].table", words, lambda: loaded(load))
 
 
@@ -256,10 +256,11 @@ def test_sides_are_words() -> None:
 
 def test_positions_are_of_points_and_links() -> None:
     words = "no point is called 'X'"
+    off, misspelt = ({"points": {"X": ORIGIN}}, {"angles": {"rokker": 0.0}})
     refused("position.points.X", words,
-            lambda: replace(FOUR, position=eq.Position(points={"X": ORIGIN})))  # fmt: skip
+            lambda: replace(FOUR, position=eq.mechanism.Position(**off)))  # fmt: skip
     refused("position.angles.rokker", "did you mean 'rocker'?",
-            lambda: replace(FOUR, position=eq.Position(angles={"rokker": 0.0})))  # fmt: skip
+            lambda: replace(FOUR, position=eq.mechanism.Position(**misspelt)))  # fmt: skip
 
 
 # -- changing and keeping --------------------------------------------------------------------------
@@ -280,14 +281,14 @@ def test_changes_leave_the_old_machine() -> None:
 def test_a_changed_machine_is_assembled_anew() -> None:
     before = eq.move(FOUR, 4).points["C"].place
     after = eq.move(four_bar(1.0, 0.35, 0.9, 0.75), 4).points["C"].place
-    assert eq.assemble(FOUR) is eq.assemble(FOUR)
+    assert eq.mechanism.assemble(FOUR) is eq.mechanism.assemble(FOUR)
     changed = FOUR.with_link("rocker", points={"D": ORIGIN, "C": (0.75, 0.0)})
     assert abs(eq.move(changed, 4).points["C"].place - after).max() == 0
     assert abs(before - after).max() > 0.01
 
 
 def test_machines_travel_between_processes() -> None:
-    eq.assemble(FOUR)
+    eq.mechanism.assemble(FOUR)
     again = pickle.loads(pickle.dumps(FOUR))
     assert again == FOUR
     assert "_linkage" not in vars(again)
@@ -368,7 +369,7 @@ def test_a_changed_mass_keeps_the_solved_linkage() -> None:
     heavier, faster = FOUR.with_link("crank", mass=9.0), FOUR.with_drive(speed=3.0)
     for given in (heavier, faster):
         assert "_linkage" in vars(given)
-        assert eq.assemble(given).machine is given
+        assert eq.mechanism.assemble(given).machine is given
     longer = FOUR.with_link("crank", points={"A": ORIGIN, "B": (0.3, 0.0)})
     assert "_linkage" not in vars(longer)
     anew = replace(heavier)
@@ -396,4 +397,4 @@ def test_joints_of_one_name_are_refused() -> None:
         },
     )
     with pytest.raises(ModelError, match="two joints would be called 'piston on frame'"):
-        eq.assemble(renamed)
+        eq.mechanism.assemble(renamed)

@@ -98,5 +98,5 @@ def test_what_is_right_is_kept() -> None:
 
 
 def test_a_motor_does_not_touch_how_the_linkage_is_solved() -> None:
-    cycle = eq.assemble(FOUR).cycle
-    assert eq.assemble(FOUR.with_drive(motor=LINE, flywheel=0.2)).cycle is cycle
+    cycle = eq.mechanism.assemble(FOUR).cycle
+    assert eq.mechanism.assemble(FOUR.with_drive(motor=LINE, flywheel=0.2)).cycle is cycle

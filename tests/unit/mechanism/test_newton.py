@@ -47,7 +47,7 @@ def with_position(given: eq.Machine, angle: float = 0.0, off: float = 0.01) -> e
         if name not in given.frame
     }
     angles = {name: float(link.angle[0]) + off for name, link in motion.links.items()}
-    return replace(given, assembly={}, position=eq.Position(angle, points, angles))
+    return replace(given, assembly={}, position=eq.mechanism.Position(angle, points, angles))
 
 
 DYADS = [
@@ -75,7 +75,7 @@ def test_loops_give_what_dyads_give(name: str) -> None:
     compare(by_loops, by_dyads)
 
 
-def compare(by_loops: eq.Forces, by_dyads: eq.Forces) -> None:
+def compare(by_loops: eq.mechanism.Forces, by_dyads: eq.mechanism.Forces) -> None:
     """Compare motion and every output."""
     force, moment = sizes(by_dyads)
     for name, point in by_dyads.motion.points.items():
@@ -93,7 +93,7 @@ def compare(by_loops: eq.Forces, by_dyads: eq.Forces) -> None:
         np.testing.assert_allclose(value, want[name], rtol=0, atol=1e-9 * scale, err_msg=name)
 
 
-def other_hub(name: str, one: eq.Forces, other: eq.Forces) -> bool:
+def other_hub(name: str, one: eq.mechanism.Forces, other: eq.mechanism.Forces) -> bool:
     """Tell whether a joint belongs to a pin of three bodies that another of them holds."""
     family, _, rest = name.partition("/")
     pin = rest.partition("/")[0]
@@ -124,7 +124,7 @@ def test_all_joints_stay_together() -> None:
             np.testing.assert_allclose(motion.points[point].place, place, atol=1e-13)
 
 
-def link_axes(motion: eq.Motion, name: str) -> tuple[np.ndarray, np.ndarray]:
+def link_axes(motion: eq.mechanism.Motion, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Origin of a link's axes, told by its first point, and its rotation."""
     point, local = next(iter(motion.machine.links[name].points.items()))
     turn = np.exp(1j * motion.links[name].angle)
@@ -145,7 +145,7 @@ def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
     whole = eq.move(TRIAD, [angle])
     points = {name: (float(whole.points[name].x[0]), float(whole.points[name].y[0]))
               for name in "BCPQ"}  # fmt: skip
-    moved = replace(TRIAD, position=eq.Position(angle, points))
+    moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))
     np.testing.assert_allclose(
         eq.move(moved, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
     )
@@ -156,7 +156,7 @@ def test_the_position_may_be_told_by_angles() -> None:
     points = {name: (float(at_zero.points[name].x[0]), float(at_zero.points[name].y[0]))
               for name in "PQ"}  # fmt: skip
     angles = {name: float(at_zero.links[name].angle[0]) for name in TRIAD.links}
-    told = replace(TRIAD, position=eq.Position(0.0, points, angles))
+    told = replace(TRIAD, position=eq.mechanism.Position(0.0, points, angles))
     np.testing.assert_allclose(
         eq.move(told, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
     )
@@ -190,7 +190,7 @@ def test_far_from_the_origin() -> None:
 
 def test_position_missing() -> None:
     with pytest.raises(ModelError) as caught:
-        eq.assemble(replace(TRIAD, position=None))
+        eq.mechanism.assemble(replace(TRIAD, position=None))
     assert caught.value.where == "position"
     assert "no dyad solves rod, plate, front-link, rear-link" in caught.value.what
 
@@ -200,7 +200,7 @@ def test_position_incomplete(missing: str, link: str) -> None:
     assert TRIAD.position is not None
     points = {name: place for name, place in TRIAD.position.points.items() if name != missing}
     with pytest.raises(ModelError) as caught:
-        eq.assemble(replace(TRIAD, position=eq.Position(0.0, points)))
+        eq.mechanism.assemble(replace(TRIAD, position=eq.mechanism.Position(0.0, points)))
     assert caught.value.where == "position"
     assert f"does not place '{link}" in caught.value.what
     assert "at crank angle 0 deg; give two of its points" in caught.value.what
@@ -217,14 +217,16 @@ def stuck() -> eq.Machine:
     """The triad with a crank so long that it cannot turn."""
     points = {"A": ORIGIN, "B": (0.1, 0.0)}
     place = {"C": (0.192, -0.051), "P": (0.155, -0.015), "Q": (0.095, -0.068)}
-    return replace(TRIAD, position=eq.Position(0.0, place)).with_link("crank", points=points)
+    return replace(TRIAD, position=eq.mechanism.Position(0.0, place)).with_link(
+        "crank", points=points
+    )
 
 
 def test_a_position_far_from_any_solution() -> None:
     """Newton's method may land in another assembly; that must not pass unseen."""
     points = {"C": (0.3, -0.2), "P": (0.1, 0.2), "Q": (-0.2, 0.1)}
     with pytest.raises(EquipoiseError) as caught:
-        eq.assemble(replace(TRIAD, position=eq.Position(0.0, points)))
+        eq.mechanism.assemble(replace(TRIAD, position=eq.mechanism.Position(0.0, points)))
     assert "too rough" in str(caught.value) or "no solution nearby" in str(caught.value)
 
 
@@ -261,10 +263,10 @@ def test_gears_need_the_position_at_0() -> None:
         {"A": ORIGIN, "E": (0.5, 0.0)},
         {"crank": body(A=ORIGIN), "wheel": body(E=ORIGIN)},
         gears=(eq.Gear("crank", "wheel", ratio=-1.0),),
-        position=eq.Position(0.2, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
+        position=eq.mechanism.Position(0.2, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
     )
     with only_loops(), pytest.raises(ModelError) as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "position.crank_angle"
 
 
@@ -273,7 +275,7 @@ def geared_loop(gear: eq.Gear) -> eq.Machine:
         {"A": ORIGIN, "E": (0.5, 0.0)},
         {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN)},
         gears=(gear,),
-        position=eq.Position(0.0, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
+        position=eq.mechanism.Position(0.0, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
     )
 
 
@@ -297,7 +299,7 @@ def test_the_driver_comes_first() -> None:
         gears=(eq.Gear("wheel", "crank", ratio=-1.0),),
     )
     with pytest.raises(ModelError) as caught:
-        eq.assemble(given)
+        eq.mechanism.assemble(given)
     assert caught.value.where == "gears[1]"
     assert "name the gear that is moved already first in between" in caught.value.what
 
@@ -305,8 +307,8 @@ def test_the_driver_comes_first() -> None:
 def test_split_and_regressor_go_through_loops() -> None:
     found = eq.analyze(TRIAD, ANGLES).forces
     force, _ = sizes(found)
-    rows = dict(family_of("joints", eq.regressor(found.motion).joints))
-    values = eq.regressor(found.motion).values
+    rows = dict(family_of("joints", eq.mechanism.regressor(found.motion).joints))
+    values = eq.mechanism.regressor(found.motion).values
     for name, joint in found.joints.items():
         got = values @ rows[f"joints/{name}/value"]
         np.testing.assert_allclose(got, joint.value, rtol=0, atol=1e-12 * force)

@@ -25,7 +25,7 @@ def lone() -> eq.Machine:
 
 
 def test_parameters_are_those_of_each_link_about_its_origin() -> None:
-    found = eq.regressor(eq.move(lone(), 4))
+    found = eq.mechanism.regressor(eq.move(lone(), 4))
     link = lone().links["crank"]
     assert link.mass is not None
     assert link.center_of_mass is not None
@@ -42,7 +42,7 @@ def test_parameters_are_those_of_each_link_about_its_origin() -> None:
 
 def test_shapes() -> None:
     machine_ = eq.load("geared-counterweight")
-    found = eq.regressor(eq.move(machine_, 5))
+    found = eq.mechanism.regressor(eq.move(machine_, 5))
     for output in OUTPUTS:
         assert getattr(found, output).shape == (16, 5)
     assert {joint.value.shape for joint in found.joints.values()} == {(16, 5)}
@@ -52,7 +52,7 @@ def test_shapes() -> None:
 def test_regressor_of_one_crank() -> None:
     """What each parameter of a lone crank does, in closed form."""
     theta, speed, acceleration, g = np.array([0.4, 2.0]), 3.0, 5.0, 9.80665
-    found = eq.regressor(eq.move(lone(), theta, speed, acceleration))
+    found = eq.mechanism.regressor(eq.move(lone(), theta, speed, acceleration))
     outwards = np.exp(1j * theta)
     inertial = (speed**2 - 1j * acceleration) * outwards
     np.testing.assert_allclose(found.shaking_force, [0 * inertial, inertial, 1j * inertial, [0, 0]],
@@ -64,7 +64,7 @@ def test_regressor_of_one_crank() -> None:
 
 def test_about_another_point() -> None:
     motion = eq.move(crank_rocker(), 12)
-    about = eq.regressor(motion, (0.3, 0.4))
+    about = eq.mechanism.regressor(motion, (0.3, 0.4))
     want = eq.forces(motion, (0.3, 0.4))
     np.testing.assert_allclose(about.values @ about.shaking_moment, want.shaking_moment)
     np.testing.assert_allclose(about.values @ about.frame_moment, want.frame_moment)
@@ -73,7 +73,7 @@ def test_about_another_point() -> None:
 def test_unknown_masses() -> None:
     given = crank_rocker().with_link("rocker", mass=None, center_of_mass=None, inertia=None)
     with pytest.raises(MassError, match="missing for rocker"):
-        eq.regressor(eq.move(given, 4))
+        eq.mechanism.regressor(eq.move(given, 4))
 
 
 # -- base parameters -------------------------------------------------------------------------------
@@ -94,15 +94,15 @@ def test_unknown_masses() -> None:
 )
 def test_counts(name: str, outputs: list[str], count: int) -> None:
     """Each loop of pins leaves two moments of its last link undetermined, and so on."""
-    assert eq.base_parameters(eq.load(name), outputs).count == count
+    assert eq.mechanism.base_parameters(eq.load(name), outputs).count == count
 
 
 def test_a_lone_crank() -> None:
     """Mass shows in weight alone; the shaking moment about the pivot tells inertia."""
-    assert eq.base_parameters(lone(), ["shaking_force"]).count == 2
-    assert eq.base_parameters(lone(), ["frame_force"]).count == 3
-    assert eq.base_parameters(lone(), ["shaking_moment"]).count == 1
-    assert eq.base_parameters(lone()).count == 3
+    assert eq.mechanism.base_parameters(lone(), ["shaking_force"]).count == 2
+    assert eq.mechanism.base_parameters(lone(), ["frame_force"]).count == 3
+    assert eq.mechanism.base_parameters(lone(), ["shaking_moment"]).count == 1
+    assert eq.mechanism.base_parameters(lone()).count == 3
 
 
 def with_values(given: eq.Machine, values: Any) -> eq.Machine:
@@ -121,10 +121,10 @@ def with_values(given: eq.Machine, values: Any) -> eq.Machine:
 def test_base_parameters_decide_the_outputs(name: str) -> None:
     """Two mass distributions with the same base parameters cannot be told apart."""
     given = replace(eq.load(name), loads=())
-    found = eq.base_parameters(given)
+    found = eq.mechanism.base_parameters(given)
     assert found.values is not None
     before = eq.analyze(given, 24, acceleration=30.0).forces
-    values = eq.regressor(before.motion).values
+    values = eq.mechanism.regressor(before.motion).values
     hidden = null_space(found.combinations)
     change = hidden @ np.random.default_rng(6).normal(size=hidden.shape[1])
     moved = values + change * lightest(values, change)
@@ -161,12 +161,12 @@ def lightest(values: np.ndarray, change: np.ndarray) -> float:
 def test_outputs_follow_from_the_base_parameters(name: str) -> None:
     """Columns of the kept parameters times the base parameters give the outputs."""
     given = replace(eq.load(name), loads=())
-    found = eq.base_parameters(given)
+    found = eq.mechanism.base_parameters(given)
     assert found.values is not None
     kept = [int(np.flatnonzero(row)[0]) for row in found.combinations]
     np.testing.assert_allclose(found.combinations[:, kept], np.eye(found.count), atol=1e-9)
     forces = eq.analyze(given, 30, acceleration=-11.0).forces
-    rows = eq.regressor(forces.motion)
+    rows = eq.mechanism.regressor(forces.motion)
     got = found.values @ rows.drive_torque[kept]
     scale = float(np.max(np.abs(forces.drive_torque)))
     np.testing.assert_allclose(got, forces.drive_torque, rtol=0, atol=1e-8 * scale)
@@ -178,9 +178,9 @@ def test_outputs_follow_from_the_base_parameters(name: str) -> None:
 def test_base_parameters_need_no_masses() -> None:
     given = crank_rocker()
     bare = replace(given, links={name: eq.Link(link.points) for name, link in given.links.items()})
-    found = eq.base_parameters(bare)
+    found = eq.mechanism.base_parameters(bare)
     assert found.values is None
-    np.testing.assert_allclose(found.combinations, eq.base_parameters(given).combinations)
+    np.testing.assert_allclose(found.combinations, eq.mechanism.base_parameters(given).combinations)
 
 
 @pytest.mark.parametrize("size", [1e-3, 1e3])
@@ -194,13 +194,13 @@ def test_size_does_not_matter(size: float) -> None:
             for name, link in given.links.items()
         },
     )
-    found, plain = eq.base_parameters(grown), eq.base_parameters(given)
+    found, plain = eq.mechanism.base_parameters(grown), eq.mechanism.base_parameters(given)
     assert found.count == plain.count
     assert np.array_equal(found.combinations != 0, plain.combinations != 0)
 
 
 def test_combinations_can_be_read() -> None:
-    lines = str(eq.base_parameters(eq.load("slider-crank-engine"))).splitlines()
+    lines = str(eq.mechanism.base_parameters(eq.load("slider-crank-engine"))).splitlines()
     assert lines[0] == "+1 crank.moment_x +0.025 rod.mass +0.025 piston.mass"
     assert lines[1] == "+1 crank.moment_y"
     assert lines[-1] == "+1 piston.moment_y"
@@ -208,6 +208,6 @@ def test_combinations_can_be_read() -> None:
 
 def test_unknown_outputs() -> None:
     with pytest.raises(UsageError, match="no output is called 'torque'"):
-        eq.base_parameters(crank_rocker(), ["torque"])
+        eq.mechanism.base_parameters(crank_rocker(), ["torque"])
     with pytest.raises(UsageError, match="did you mean 'shaking_force'"):
-        eq.base_parameters(crank_rocker(), ["shaking_forces"])
+        eq.mechanism.base_parameters(crank_rocker(), ["shaking_forces"])

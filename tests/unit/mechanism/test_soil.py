@@ -43,12 +43,12 @@ def planted(name: str, soil: Soil, **more: Any) -> eq.Machine:
     return eq.load(name).with_planting(soil=soil, **more)
 
 
-def below(motion: eq.Motion) -> Any:
+def below(motion: eq.mechanism.Motion) -> Any:
     """Depth of the tip, m."""
     return surface_of(motion.machine) - motion.points["P"].y
 
 
-def over_ground(motion: eq.Motion) -> Any:
+def over_ground(motion: eq.mechanism.Motion) -> Any:
     planting = motion.machine.planting
     assert planting is not None
     return motion.points["P"].velocity + planting.forward(motion.speed)

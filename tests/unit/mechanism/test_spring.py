@@ -59,10 +59,10 @@ def test_at_most_200() -> None:
 
 def test_springs_leave_the_motion_as_it_is() -> None:
     """Nothing is solved again, and the frame's point is in use."""
-    linkage = eq.assemble(FOUR)
-    assert eq.assemble(sprung()).groups is linkage.groups
+    linkage = eq.mechanism.assemble(FOUR)
+    assert eq.mechanism.assemble(sprung()).groups is linkage.groups
     assert list(remarks(linkage)) == ["frame.points.S is not used by any joint or spring"]
-    assert not list(remarks(eq.assemble(sprung())))
+    assert not list(remarks(eq.mechanism.assemble(sprung())))
 
 
 # -- force -----------------------------------------------------------------------------------------

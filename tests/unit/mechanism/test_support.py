@@ -250,15 +250,15 @@ def test_directions_as_vectors() -> None:
 
 def test_a_support_is_changed_key_by_key() -> None:
     machine = replace(FOUR, support=SUPPORT)
-    cycle = eq.assemble(machine).cycle
+    cycle = eq.mechanism.assemble(machine).cycle
     heavier = machine.with_support(mass=80.0)
     assert heavier.support == replace(SUPPORT, mass=80.0)
     assert machine.support == SUPPORT
     given = FOUR.with_support(mass=60.0, center_of_mass=(0.0, 0.3), inertia=(4.0,))
     assert given == machine
-    assert eq.assemble(heavier).cycle is cycle
+    assert eq.mechanism.assemble(heavier).cycle is cycle
     rows = machine.with_rows([Row(), Row(pi)])
     assert rows.rows == (Row(), Row(pi))
-    assert eq.assemble(rows).cycle is cycle
+    assert eq.mechanism.assemble(rows).cycle is cycle
     with pytest.raises(ModelError, match=r"^support.mass: got -1 kg; give more than 0$"):
         machine.with_support(mass=-1.0)

@@ -96,7 +96,7 @@ def block() -> eq.Machine:
 
 def cycle(machine: eq.Machine, count: int = 20_000) -> Array:
     """Many crank angles over one cycle in the sense of time, (N + 1,)."""
-    turns = eq.assemble(machine).cycle.turns
+    turns = eq.mechanism.assemble(machine).cycle.turns
     way = np.linspace(0.0, TURN * turns, count * turns + 1)
     return np.asarray(np.sign(machine.drive.speed) * way)
 

@@ -99,7 +99,7 @@ def test_ratios_of_angular_velocities(name: str) -> None:
 def test_transmission_angle(name: str) -> None:
     """The nearer of the extremes of the four-bar to 0 or 180 deg."""
     figures = found(name)
-    bar = eq.four_bar(figures.machine)
+    bar = eq.mechanism.four_bar(figures.machine)
     assert bar is not None
     assert bar.transmission_min is not None
     assert bar.transmission_max is not None

@@ -31,11 +31,13 @@ FIGURES_OF_A = (
 
 
 @pytest.fixture(scope="module")
-def figures_of_a() -> eq.PlantingFigures:
+def figures_of_a() -> eq.planting.PlantingFigures:
     return eq.plant(eq.load("kim-chung-a"))
 
 
-def test_mechanism_a_is_recovered_from_its_figures(figures_of_a: eq.PlantingFigures) -> None:
+def test_mechanism_a_is_recovered_from_its_figures(
+    figures_of_a: eq.planting.PlantingFigures,
+) -> None:
     """Started from mechanism B, which is another machine and turns the other way."""
     goals = [Goal(name, target=figures_of_a[name]) for name in FIGURES_OF_A]
     fit = fit_planting(eq.load("kim-chung-b"), goals, sense="either", seed=1)
@@ -52,7 +54,7 @@ def test_mechanism_a_is_recovered_from_its_figures(figures_of_a: eq.PlantingFigu
 
 
 @pytest.fixture(scope="module")
-def calmer(figures_of_a: eq.PlantingFigures) -> tuple[Fit, list[Goal]]:
+def calmer(figures_of_a: eq.planting.PlantingFigures) -> tuple[Fit, list[Goal]]:
     """A with a smaller largest acceleration, while what planting needs stays within limits."""
     a = figures_of_a
     goals = [
@@ -87,7 +89,7 @@ def test_the_result_is_a_machine_that_turns(calmer: tuple[Fit, list[Goal]]) -> N
     fit, _ = calmer
     again = eq.plant(eq.loads(eq.dumps(fit.machine)))
     assert again["max_acceleration.value"] == fit.after["max_acceleration.value"]
-    assert eq.assemble(fit.machine).cycle.turns == 1
+    assert eq.mechanism.assemble(fit.machine).cycle.turns == 1
     assert fit.machine.assembly == eq.load("kim-chung-a").assembly
 
 

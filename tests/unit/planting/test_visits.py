@@ -93,7 +93,7 @@ def test_ends_lie_on_the_surface_and_the_deepest_point_between(name: str) -> Non
 
 def period_of(machine: eq.Machine, inside: Array, visit: Visit) -> Any:
     """Whole cycles from the deepest point, told within one, to each crank angle of the stay."""
-    period = TURN * eq.assemble(machine).cycle.turns
+    period = TURN * eq.mechanism.assemble(machine).cycle.turns
     return period * np.round((inside - visit.deepest) / period)
 
 

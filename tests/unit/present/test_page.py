@@ -11,7 +11,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.present import pdf as pdf_module
-from equipoise.present.composition import build, write_report
+from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
 from equipoise.present.html import page
 from equipoise.present.pdf import pdf
@@ -118,17 +118,17 @@ def test_missing_fonts_and_a_missing_extra_are_told(monkeypatch, tmp_path):
 
     monkeypatch.setattr(pdf_module, "_fonts", Latin)
     with pytest.raises(UsageError, match="no font with 한국어 letters, so that a PDF would"):
-        write_report("scotch-yoke", tmp_path / "report.pdf", language="ko")
+        eq.report("scotch-yoke", tmp_path / "report.pdf", language="ko")
     monkeypatch.undo()
     pdf_module._fonts.cache_clear()
     monkeypatch.setitem(sys.modules, "typst", None)
     with pytest.raises(EquipoiseError, match=r'pip install "equipoise\[report\]"'):
-        write_report("scotch-yoke", tmp_path / "report.pdf")
+        eq.report("scotch-yoke", tmp_path / "report.pdf")
     assert not list(tmp_path.iterdir())
 
 
 def test_other_names_and_languages_are_refused(tmp_path):
     with pytest.raises(UsageError, match=r"ends in \.html or \.pdf"):
-        write_report("scotch-yoke", tmp_path / "report.docx")
+        eq.report("scotch-yoke", tmp_path / "report.docx")
     with pytest.raises(UsageError, match="give one of en, ja, ko"):
-        write_report("scotch-yoke", tmp_path / "report.html", language="fr")
+        eq.report("scotch-yoke", tmp_path / "report.html", language="fr")

@@ -10,16 +10,17 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import unit_of
 
 NAMES = sorted(eq.examples("linkage"))
 
 
-def analysis(name: str = "geared-counterweight", angles: Any = 12) -> eq.Analysis:
+def analysis(name: str = "geared-counterweight", angles: Any = 12) -> Analysis:
     return eq.analyze(eq.load(name), angles)
 
 
-def bare() -> eq.Analysis:
+def bare() -> Analysis:
     machine = eq.load("yamashita-1")
     given = machine.with_link("rocker", mass=None, center_of_mass=None, inertia=None)
     return eq.analyze(given, 8)
@@ -198,4 +199,4 @@ def test_machine_and_four_bar_of_an_analysis() -> None:
     found = analysis("yamashita-1")
     assert found.machine is found.motion.machine
     assert found.four_bar is not None
-    assert found.four_bar == eq.four_bar(found.machine)
+    assert found.four_bar == eq.mechanism.four_bar(found.machine)

@@ -16,7 +16,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.model import Load, LoadTable, Machine
 from equipoise.schema import dumps, json_schema, load, loads, save
-from equipoise.schema.models import files_of, tables_of
+from equipoise.schema.models import files_of, parts_of
 from equipoise.schema.tables import format_motor, read_motor
 from unit.schema.samples import FOUR_BAR
 
@@ -171,7 +171,7 @@ def test_bad_tables(text: str | None, said: str, tmp_path: Path) -> None:
 def test_tables_are_saved_beside_the_model(tmp_path: Path) -> None:
     crank = Load("crank", table=LoadTable((0.0, pi), ((1.0, 2.0),)))
     machine = replace(loads(FOUR_BAR), loads=(crank,)).with_drive(motor=Motor(table=TABLE))
-    assert list(tables_of(machine)) == ["loads[1].table", "drive.motor.table"]
+    assert [part.where for part in parts_of(machine)] == ["drive.motor.table", "loads[1].table"]
     save(machine, tmp_path / "a.toml")
     written = sorted(tmp_path.iterdir())
     assert [file.name for file in written] == ["a.load-1.csv", "a.motor.csv", "a.toml"]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from functools import partial
 from importlib.resources import files
 from pathlib import Path
 
@@ -13,18 +14,17 @@ from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
 from equipoise.schema import dumps, examples, json_schema, load, loads
-from equipoise.schema.studies import load_study, study_schema
-from equipoise.schema.tools import tool_schema
+from equipoise.schema.studies import load_study
 from unit.schema.samples import EVERYTHING, FOUR_BAR
 
 FOLDER = files("equipoise.schema")
 SHIPPED = {
-    "model.schema.json": json_schema,
-    "study.schema.json": study_schema,
-    "tool.schema.json": tool_schema,
+    "model.schema.json": partial(json_schema, "linkage"),
+    "study.schema.json": partial(json_schema, "study"),
+    "tool.schema.json": partial(json_schema, "tool"),
 }
 VALIDATOR = Draft202012Validator(json_schema())
-OF_STUDIES = Draft202012Validator(study_schema())
+OF_STUDIES = Draft202012Validator(json_schema("study"))
 GEAR = '[[gears]]\nbetween = ["crank", "rocker"]\n'
 
 

@@ -19,10 +19,10 @@ from equipoise.errors import ModelError, MotionError
 from equipoise.handheld.model import Tool
 from equipoise.mechanism.model import Machine
 from equipoise.quantities.units import KINDS
+from equipoise.schema.finding import is_whole
 from equipoise.schema.models import examples
 from equipoise.schema.numbers import OF_UNIT
-from equipoise.schema.points import from_polar
-from equipoise.schema.schema_keys import is_whole
+from equipoise.schema.reading import from_polar
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL
@@ -44,7 +44,7 @@ def test_every_number_of_a_file(name: str) -> None:
     """Put back as it is it changes nothing; everything goes to another machine and back."""
     template = example(name)
     base = template.base()
-    assert base == (eq.load_tool if template.kind == "tool" else eq.load)(name)
+    assert base == (eq.schema.load_tool if template.kind == "tool" else eq.load)(name)
     numbers = template.numbers()
     assert len(numbers) > 30
     for path, number in numbers.items():
@@ -368,7 +368,7 @@ def test_tables_go_along(tmp_path: Path) -> None:
 
 def test_tables_of_python_need_no_names() -> None:
     """Two of the same name, and one without, stay what they are."""
-    tables = [eq.LoadTable((0.0, 1.0), ((0.1, n), (0.0, 0.0)), name)
+    tables = [eq.mechanism.LoadTable((0.0, 1.0), ((0.1, n), (0.0, 0.0)), name)
               for n, name in enumerate(("a.csv", "a.csv", ""))]  # fmt: skip
     loads = tuple(eq.Load("coupler", "C", table=table) for table in tables)
     machine = eq.loads(FOUR_BAR)
@@ -387,7 +387,7 @@ def test_tools_with_all_that_they_name(tmp_path: Path) -> None:
     (tmp_path / "hand.csv").write_text(impedance, encoding="utf-8")
     (tmp_path / "tool.toml").write_text(text, encoding="utf-8")
     template = Template.load(tmp_path / "tool.toml")
-    base = eq.load_tool(tmp_path / "tool.toml")
+    base = eq.schema.load_tool(tmp_path / "tool.toml")
     texts = template.texts()
     for name in ("engine.toml", "hand.csv", "tool.toml"):
         os.remove(tmp_path / name)

@@ -13,13 +13,13 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
-from equipoise.handheld.shaft import Section, Tube
+from equipoise.handheld.section import Section, Tube
 from equipoise.schema import examples, load, loads
-from equipoise.schema.tools import dumps_tool, load_any, load_tool, loads_tool, tool_schema
+from equipoise.schema.models import dumps, json_schema, load_linkage, load_tool, loads_tool
 from unit.schema.samples import FOUR_BAR
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 
-VALIDATOR = Draft202012Validator(tool_schema())
+VALIDATOR = Draft202012Validator(json_schema("tool"))
 RPM = 2 * pi / 60
 
 
@@ -80,14 +80,14 @@ def test_materials(material: str) -> None:
     tube = f'outer_diameter = "26 mm"\nmaterial = "{material}"'
     old = 'mass_per_length = "2.3 kg/m"\nbending_stiffness = "980 N m^2"'
     text = changed(old, tube)
-    assert f'material = "{material}"\n' in dumps_tool(loads_tool(text))
+    assert f'material = "{material}"\n' in dumps(loads_tool(text))
     VALIDATOR.validate(tomllib.loads(text))
 
 
 @pytest.mark.parametrize("text", [TOOL, EVERY_TOOL], ids=["tool", "everything"])
 def test_schema_accepts(text: str) -> None:
     VALIDATOR.validate(tomllib.loads(text))
-    VALIDATOR.validate(tomllib.loads(dumps_tool(loads_tool(text))))
+    VALIDATOR.validate(tomllib.loads(dumps(loads_tool(text))))
 
 
 def test_examples_of_tools() -> None:
@@ -97,7 +97,7 @@ def test_examples_of_tools() -> None:
     for name, title in names.items():
         tool = load_tool(name)
         assert tool.title == title
-        VALIDATOR.validate(tomllib.loads(dumps_tool(tool)))
+        VALIDATOR.validate(tomllib.loads(dumps(tool)))
 
 
 # -- one kind of file for another ------------------------------------------------------------------
@@ -107,10 +107,10 @@ def test_a_tool_is_no_linkage(tmp_path: Path) -> None:
     path = tmp_path / "mine.toml"
     path.write_text(TOOL)
     with pytest.raises(ModelError) as caught:
-        load(path)
+        load_linkage(path)
     said = "this is the file of a tool, with a table [shaft]; use `equipoise tool FILE`"
     assert str(caught.value) == f"{path}: {said}"
-    assert load_any(path) == loads_tool(TOOL)
+    assert load(path) == loads_tool(TOOL)
 
 
 def test_a_linkage_is_no_tool(tmp_path: Path) -> None:
@@ -118,7 +118,7 @@ def test_a_linkage_is_no_tool(tmp_path: Path) -> None:
     path.write_text(FOUR_BAR)
     with pytest.raises(ModelError, match="file of a linkage, without a table"):
         load_tool(path)
-    assert load_any(path) == loads(FOUR_BAR)
+    assert load(path) == loads(FOUR_BAR)
 
 
 @pytest.mark.parametrize("text", ["schema = 1\n", "schema = 1\n[shaft]\n[drive]\n", "x", ""])
@@ -126,7 +126,7 @@ def test_what_tells_neither_is_read_as_a_linkage(text: str, tmp_path: Path) -> N
     path = tmp_path / "mine.toml"
     path.write_text(text)
     with pytest.raises(ModelError) as of_any:
-        load_any(path)
+        load(path)
     with pytest.raises(ModelError) as of_linkage:
         load(path)
     assert str(of_any.value) == str(of_linkage.value)

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Hand, Impedance, Tool
-from equipoise.handheld.shaft import Section
+from equipoise.handheld.section import Section
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema import examples, load
+from equipoise.schema.models import dumps, files_of, load_tool, loads_tool, save
 from equipoise.schema.tables import format_impedance, read_impedance
-from equipoise.schema.tools import dumps_tool, files_of_tool, load_tool, loads_tool, save_tool
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 
 TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")
@@ -61,19 +61,19 @@ def shaken_by(machine: Machine, file: str = "") -> Tool:
 
 def test_a_file_is_written_as_people_write_it() -> None:
     text = TOOL.replace('mass = "3.6 kg"', 'mass = "3.6 kg"\ninertia = "2500 kg mm^2"')
-    assert dumps_tool(loads_tool(text)) == text
+    assert dumps(loads_tool(text)) == text
 
 
 def test_everything_survives() -> None:
     tool = loads_tool(EVERY_TOOL)
-    assert loads_tool(dumps_tool(tool)) == tool
-    assert dumps_tool(loads_tool(dumps_tool(tool))) == dumps_tool(tool)
+    assert loads_tool(dumps(tool)) == tool
+    assert dumps(loads_tool(dumps(tool))) == dumps(tool)
 
 
 @pytest.mark.parametrize("name", examples("tool"))
 def test_examples_survive(name: str) -> None:
     tool = load_tool(name)
-    assert loads_tool(dumps_tool(tool)) == tool
+    assert loads_tool(dumps(tool)) == tool
 
 
 @given(st.data())
@@ -89,7 +89,7 @@ def test_random_edits_survive(data: st.DataObject) -> None:
         return factors[name]
 
     tool = changed(loads_tool(EVERY_TOOL), factor)
-    assert loads_tool(dumps_tool(tool)) == tool
+    assert loads_tool(dumps(tool)) == tool
 
 
 size = st.floats(1e-20, 1e20)
@@ -113,7 +113,7 @@ def test_any_numbers_and_names_survive(
     shaken = replace(tool.excitations[0], station=name, phase=mass, ratio=-mass)
     tool = replace(tool, stations=(station, harnessed), excitations=(shaken,))
     try:
-        text = dumps_tool(tool)
+        text = dumps(tool)
         text.encode()
     except UnicodeEncodeError:  # half of a surrogate pair is no text
         return
@@ -124,24 +124,24 @@ def test_nothing_is_written_that_a_file_cannot_tell() -> None:
     tool = loads_tool(TOOL)
     profile = Section(980.0, 2.3, shear_stiffness=1e6)
     with pytest.raises(ModelError, match=r"^shaft: a file cannot tell shear_stiffness"):
-        dumps_tool(replace(tool, shaft=replace(tool.shaft, profile=profile)))
+        dumps(replace(tool, shaft=replace(tool.shaft, profile=profile)))
 
 
 def test_what_has_no_file_is_not_dumped() -> None:
     with pytest.raises(ModelError, match=r"^excitations\[1\].linkage: has no file; save"):
-        dumps_tool(shaken_by(load("scotch-yoke")))
+        dumps(shaken_by(load("scotch-yoke")))
     with pytest.raises(ModelError, match=r"\[2\].hand.impedance: has no file; save the tool"):
-        dumps_tool(held_by(replace(TABLE, file="")))
+        dumps(held_by(replace(TABLE, file="")))
     with pytest.raises(ModelError, match=r"hand.impedance.lateral: has no file; save the tool"):
-        dumps_tool(held_by(TABLE, replace(TABLE, file="")))
-    assert 'hand.impedance = "hand.csv"\n' in dumps_tool(held_by(TABLE))
-    assert 'linkage = "engine.toml"\n' in dumps_tool(shaken_by(load("scotch-yoke"), "engine.toml"))
+        dumps(held_by(TABLE, replace(TABLE, file="")))
+    assert 'hand.impedance = "hand.csv"\n' in dumps(held_by(TABLE))
+    assert 'linkage = "engine.toml"\n' in dumps(shaken_by(load("scotch-yoke"), "engine.toml"))
 
 
 def test_an_example_that_was_changed_is_not_dumped() -> None:
     lighter = load("scotch-yoke").with_link("yoke", mass=1.0)
     with pytest.raises(ModelError, match="not that of the example 'scotch-yoke' any more; save"):
-        dumps_tool(shaken_by(lighter, "scotch-yoke"))
+        dumps(shaken_by(lighter, "scotch-yoke"))
 
 
 # -- files -----------------------------------------------------------------------------------------
@@ -150,9 +150,9 @@ def test_an_example_that_was_changed_is_not_dumped() -> None:
 def saved(tool: Tool, folder: Path) -> list[str]:
     """Save a tool; the names of its files, after reading them again."""
     path = folder / "a.toml"
-    save_tool(tool, path)
+    save(tool, path)
     written = sorted(folder.iterdir())
-    assert sorted(files_of_tool(tool, path)) == written
+    assert sorted(files_of(tool, path)) == written
     assert load_tool(path) == tool
     return [file.name for file in written]
 
@@ -185,7 +185,7 @@ def test_linkages_are_saved_beside(tmp_path: Path) -> None:
 
 def test_a_file_that_would_hide_an_example(tmp_path: Path) -> None:
     (tmp_path / "scotch-yoke").write_text("something else")
-    save_tool(shaken_by(load("scotch-yoke"), "scotch-yoke"), tmp_path / "a.toml")
+    save(shaken_by(load("scotch-yoke"), "scotch-yoke"), tmp_path / "a.toml")
     assert (tmp_path / "a.linkage-1.toml").is_file()
     assert load_tool(tmp_path / "a.toml").excitations[0].linkage == load("scotch-yoke")
 
@@ -196,7 +196,7 @@ def test_a_file_that_would_hide_an_example(tmp_path: Path) -> None:
 )
 def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) -> None:
     with pytest.raises(UsageError, match=words):
-        save_tool(loads_tool(TOOL), tmp_path / name)
+        save(loads_tool(TOOL), tmp_path / name)
     assert not list(tmp_path.iterdir())
 
 

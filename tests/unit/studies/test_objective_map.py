@@ -12,7 +12,7 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.studies.objective_map import Landscape, landscape
 
-RIPPLE = eq.Objective("shaking_force.y", "ripple")
+RIPPLE = eq.balancing.Objective("shaking_force.y", "ripple")
 """U of Yamashita, Ichikawa and Mori (63), times the mass."""
 COUPLER = "links.coupler.center_of_mass"
 WEIGHT = "counterweights.crank"
@@ -24,7 +24,7 @@ def over_coupler(count: int = 13) -> Landscape:
         f"{COUPLER}.x": np.linspace(-0.06, 0.06, count),
         f"{COUPLER}.y": np.linspace(-0.04, 0.08, count),
     }
-    return landscape(eq.Template.load("yamashita-2"), over, RIPPLE)
+    return landscape(eq.schema.Template.load("yamashita-2"), over, RIPPLE)
 
 
 def over_counterweight(count: int = 13) -> Landscape:
@@ -33,7 +33,9 @@ def over_counterweight(count: int = 13) -> Landscape:
         f"{WEIGHT}.radius": np.linspace(0.0, 0.07, count),
         f"{WEIGHT}.direction": np.linspace(0.0, 2 * pi, count),
     }
-    return landscape(eq.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
+    return landscape(
+        eq.schema.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145}
+    )
 
 
 def lowest(found: Landscape) -> tuple[float, float]:
@@ -85,16 +87,16 @@ def test_each_point_is_what_an_analysis_of_that_machine_gives() -> None:
 @pytest.mark.parametrize(
     ("name", "objective"),
     [
-        ("lee-kim-b", eq.Objective("shaking_moment", "peak", about="O4")),
-        ("lee-kim-b", eq.Objective("joints.A", "peak", orders=(1, 2))),
-        ("four-row-transplanter", eq.Objective("shaking_force", "rms")),
-        ("spring-balanced-crank", eq.Objective("drive_torque", "area")),
+        ("lee-kim-b", eq.balancing.Objective("shaking_moment", "peak", about="O4")),
+        ("lee-kim-b", eq.balancing.Objective("joints.A", "peak", orders=(1, 2))),
+        ("four-row-transplanter", eq.balancing.Objective("shaking_force", "rms")),
+        ("spring-balanced-crank", eq.balancing.Objective("drive_torque", "area")),
     ],
 )
-def test_quick_and_slow_way_agree(name: str, objective: eq.Objective) -> None:
+def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) -> None:
     from equipoise.balancing.problem import Problem
 
-    model = eq.Template.load(name)
+    model = eq.schema.Template.load(name)
     over = {"links.coupler.mass": [0.3, 0.5, 0.9], "links.rocker.inertia": [1e-5, 4e-4]}
     found = landscape(model, over, objective)
     for row, inertia in enumerate(found.y):
@@ -110,7 +112,9 @@ def test_what_cannot_turn_has_no_value() -> None:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 8),
         "links.coupler.points.C.x": np.linspace(0.041, 0.151, 8),
     }
-    found = landscape(eq.Template.load("yamashita-1"), over, eq.Objective("shaking_force"))
+    found = landscape(
+        eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_force")
+    )
     for row, coupler in enumerate(found.y):
         for column, crank in enumerate(found.x):
             bars = sorted([crank, coupler, 0.08, 0.088])
@@ -153,17 +157,19 @@ BAD: dict[str, tuple[dict[str, Any], str, dict[str, float]]] = {
 def test_what_cannot_be_drawn_is_told(name: str) -> None:
     over, words, given = BAD[name]
     with pytest.raises(EquipoiseError, match=words):
-        landscape(eq.Template.load("yamashita-1"), over, RIPPLE, given)
+        landscape(eq.schema.Template.load("yamashita-1"), over, RIPPLE, given)
 
 
 def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
     over: Any = {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]}
     with pytest.raises(EquipoiseError, match="did you mean 'shaking_force'"):
-        landscape(eq.Template.load("yamashita-1"), over, eq.Objective("shaking_forc"))
+        landscape(
+            eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_forc")
+        )
     with pytest.raises(EquipoiseError, match=r"Template\.of\(machine\)"):
         landscape(eq.load("yamashita-1"), over, RIPPLE)  # type: ignore[arg-type]
     with pytest.raises(EquipoiseError, match="this is a tool"):
-        landscape(eq.Template.load("pole-saw"), over, RIPPLE)
+        landscape(eq.schema.Template.load("pole-saw"), over, RIPPLE)
 
 
 def test_a_counterweight_without_mass_is_no_map() -> None:
@@ -172,7 +178,7 @@ def test_a_counterweight_without_mass_is_no_map() -> None:
         f"{WEIGHT}.direction": np.linspace(0, 6, 5),
     }
     with pytest.raises(EquipoiseError, match=r"no mass; set counterweights\.crank\.mass"):
-        landscape(eq.Template.load("yamashita-1"), over, RIPPLE)
+        landscape(eq.schema.Template.load("yamashita-1"), over, RIPPLE)
 
 
 def test_a_least_at_the_end_of_a_range_is_told() -> None:
@@ -181,6 +187,6 @@ def test_a_least_at_the_end_of_a_range_is_told() -> None:
         f"{WEIGHT}.radius": np.linspace(0, 0.03, 5),
         f"{WEIGHT}.direction": np.linspace(3.0, 4.0, 5),
     }
-    model = eq.Template.load("yamashita-1")
+    model = eq.schema.Template.load("yamashita-1")
     found = landscape(model, over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
     assert found.at_edge == [f"{WEIGHT}.radius"]

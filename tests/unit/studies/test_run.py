@@ -67,7 +67,7 @@ def stop() -> None:
 def test_all_designs_are_computed_and_stored(tmp_path: Path) -> None:
     store = run_study(STUDY, tmp_path / "s", workers=2)
     values = samples(STUDY, 0, STUDY.size)
-    (_, block), *_ = open_store(store.path).blocks()
+    (_, block), *_ = open_store(store.path).in_blocks()
     np.testing.assert_array_equal(block.values, values)
     np.testing.assert_array_equal(block.outcome.figures, Formulas()(values).figures)
     np.testing.assert_array_equal(block.outcome.reason, Formulas()(values).reason)

@@ -47,7 +47,7 @@ def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_pa
     assert store.missing() == [1]
     assert store.numbers == STUDY.paths
     assert store.outputs == STUDY.names
-    (start, found), *more = store.blocks()
+    (start, found), *more = store.in_blocks()
     assert start == 0
     assert not more
     values = samples(STUDY, 0, 250)
@@ -61,7 +61,7 @@ def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_pa
 def test_many_designs_are_read_some_chunks_at_a_time(tmp_path: Path) -> None:
     study = short_study(140_000, 30_000)
     store = create_store(tmp_path / "s", study, 30_000, "compiled")
-    assert [(start, len(block.values)) for start, block in store.blocks()] == [
+    assert [(start, len(block.values)) for start, block in store.in_blocks()] == [
         (0, 60_000),
         (60_000, 60_000),
         (120_000, 20_000),
@@ -212,7 +212,7 @@ def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path: Path) -> None:
     store = filled(tmp_path / "s", 0, 1, 2)
     (store.path / "area" / "c" / "1").write_bytes(b"too short")
     with pytest.raises(UsageError, match="cannot be read"):
-        list(store.blocks())
+        list(store.in_blocks())
 
 
 def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:

@@ -12,7 +12,7 @@ from equipoise.symbols.scene import Scene, hull
 NAMES = sorted(eq.examples("linkage"))
 
 
-def scene_of(name: str, angles: int = 24) -> tuple[eq.Machine, eq.Motion, Scene]:
+def scene_of(name: str, angles: int = 24) -> tuple[eq.Machine, eq.mechanism.Motion, Scene]:
     machine = eq.load(name)
     motion = eq.move(machine, angles)
     return machine, motion, Scene.of(motion)

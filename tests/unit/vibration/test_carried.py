@@ -36,7 +36,7 @@ def ride(
     return BaseMotion(place, rate, change, THETA, 20 * one, spin_up * one, 0.3 - 0.2j)
 
 
-def same(found: Pass, wanted: Pass | eq.Forces) -> None:
+def same(found: Pass, wanted: Pass | eq.mechanism.Forces) -> None:
     """Compare all joint forces and the torque to 1e-12 of the largest force and torque."""
     size = max(float(np.max(joint.size)) for joint in wanted.joints.values())
     for name, joint in wanted.joints.items():

@@ -16,7 +16,6 @@ from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, respond, usual_step
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
-from equipoise.vibration.transient import from_rest
 from unit.vibration.build import SPEED, Mount, block, cart, rig, springs
 
 LINE = Motor(26.0, 6.0)
@@ -100,7 +99,7 @@ def test_a_speed_that_the_motor_sets_itself() -> None:
     words = "the speed follows from the motor and cannot be asked for"
     for call in (
         lambda: respond(free, 20.0, drive=True),
-        lambda: from_rest(free, 1.0, 20.0, drive=True),
+        lambda: eq.simulate(free, 1.0, 20.0, drive=True),
         lambda: sweep_speed(free, 10.0, 20.0, drive=True),
     ):
         with pytest.raises(ModelError, match=words):
@@ -126,7 +125,7 @@ def test_missing_masses_are_all_named() -> None:
         lambda: respond(machine),
         lambda: respond(machine, model="exact"),
         lambda: sweep_speed(machine, 3.0, 9.0),
-        lambda: from_rest(machine, 1.0),
+        lambda: eq.simulate(machine, 1.0),
     ):
         with pytest.raises(MassError) as caught:
             call()

@@ -9,8 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
-from equipoise.vibration.free import vibrate_freely
-from equipoise.vibration.modes import Mode, find_modes
+from equipoise.vibration.mode_shapes import Mode, find_modes
 from unit.vibration.build import Array, Gauge, Mount, block, rig, springs
 
 
@@ -147,11 +146,11 @@ def test_pendulum() -> None:
     """A body that hangs on its pivot: w^2 = m g l / (I + m l^2)."""
     mass, arm, inertia = 10.0, 0.7, 0.4
     hanging = block(pivot=(0.3, 0.2), center_of_mass=(0.3, 0.2 - arm, 0.0))
-    (mode,) = vibrate_freely(hanging).modes
+    (mode,) = eq.modes(hanging).modes
     wanted = sqrt(mass * 9.80665 * arm / (inertia + mass * arm**2))
     assert mode.natural_frequency == pytest.approx(wanted)
     standing = hanging.with_support(center_of_mass=(0.3, 0.2 + arm, 0.0))
-    assert max(m.eigenvalue.real for m in vibrate_freely(standing).modes) == pytest.approx(wanted)
+    assert max(m.eigenvalue.real for m in eq.modes(standing).modes) == pytest.approx(wanted)
 
 
 def test_spring_that_pulls_aside_stiffens_like_a_string() -> None:
@@ -159,8 +158,8 @@ def test_spring_that_pulls_aside_stiffens_like_a_string() -> None:
     base = {"pivot": (0.0, 0.0), "inertia": (2.0,)}
     turning = {"turn": Mount(axis="pitch", torsional_stiffness=500.0)}
     pushing = {"push": Mount((0.4, 0.0, 0.0), direction=0.0, stiffness=1.0, preload=200.0)}
-    (plain,) = vibrate_freely(block(**base, mounts=turning)).modes
-    (pushed,) = vibrate_freely(block(**base, mounts={**turning, **pushing})).modes
+    (plain,) = eq.modes(block(**base, mounts=turning)).modes
+    (pushed,) = eq.modes(block(**base, mounts={**turning, **pushing})).modes
     assert plain.natural_frequency == pytest.approx(sqrt(500 / 2))
     # The force keeps its direction, and its point turns away under it: potential -S l cos phi.
     assert pushed.natural_frequency == pytest.approx(sqrt((500 + 200 * 0.4) / 2))
@@ -170,7 +169,7 @@ def test_mass_on_two_springs() -> None:
     """Heave and pitch of a symmetric body: sqrt(2 k / m) and l sqrt(2 k / I)."""
     k, arm = 4000.0, 0.5
     feet = {n: Mount((x, 0.0, 0.0), stiffness=k) for n, x in (("a", -arm), ("b", arm))}
-    found = vibrate_freely(block(freedoms=("heave", "pitch"), mounts=feet))
+    found = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet))
     assert found.coordinates == ("heave", "pitch")
     heave, pitch = found.modes
     assert heave.natural_frequency == pytest.approx(sqrt(2 * k / 10))
@@ -185,7 +184,7 @@ def test_gauges_read_shapes() -> None:
     """A gauge 0.4 ahead of the centre reads 0.4 of the pitch; one of the rotation reads it all."""
     feet = {n: Mount((x, 0.0, 0.0), stiffness=4e3) for n, x in (("a", -0.5), ("b", 0.5))}
     gauges = {"ahead": Gauge((0.4, 0.0, 0.0)), "tilt": Gauge(axis="pitch")}
-    found = vibrate_freely(block(freedoms=("heave", "pitch"), mounts=feet, gauges=gauges))
+    found = eq.modes(block(freedoms=("heave", "pitch"), mounts=feet, gauges=gauges))
     np.testing.assert_allclose(np.abs(found.gauges["ahead"]), [1, 0.4], atol=1e-9)
     np.testing.assert_allclose(np.abs(found.gauges["tilt"]), [0, 1], atol=1e-9)
 
@@ -194,17 +193,17 @@ def test_the_linkage_rides_where_the_step_has_it() -> None:
     """In (59) and (57) its mass is at A, 1.34 m from O; in the whole moment it is spread."""
     inertia = 4.9854488 + 25 * 0.75**2
     linear, torque, moment = (
-        vibrate_freely(rig(), model).modes[0].natural_frequency
+        eq.modes(rig(), model).modes[0].natural_frequency
         for model in ("linear", "torque", "moment")
     )
     assert linear == torque == pytest.approx(sqrt(3252.81677175 / (inertia + 1.145 * 1.34**2)))
     assert moment != pytest.approx(linear, rel=1e-3)
-    assert vibrate_freely(rig()).linear.excitation.step == "linear"
-    assert vibrate_freely(springs()).linear.excitation.step == "moment"
+    assert eq.modes(rig()).linear.excitation.step == "linear"
+    assert eq.modes(springs()).linear.excitation.step == "moment"
 
 
 def test_told_values() -> None:
-    values = vibrate_freely(springs()).to_dict()
+    values = eq.modes(springs()).to_dict()
     assert values["model"] == "moment"
     assert values["coordinates"] == ["surge", "heave", "pitch"]
     assert len(values["modes"]) == 3
@@ -216,6 +215,6 @@ def test_told_values() -> None:
 
 def test_refusals() -> None:
     with pytest.raises(ModelError, match=r"^support: the machine stands on solid ground"):
-        vibrate_freely(eq.load("yamashita-1"))
+        eq.modes(eq.load("yamashita-1"))
     with pytest.raises(UsageError, match="got the model 'whole'; give one of linear, torque"):
-        vibrate_freely(rig(), "whole")
+        eq.modes(rig(), "whole")

@@ -1,0 +1,301 @@
+"""JSON Schemas of files, and tables of keys for the documentation, from what classes declare."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from equipoise.keys import (
+    PLANES,
+    Anything,
+    Direction,
+    File,
+    Flag,
+    Frozen,
+    Key,
+    Kind,
+    Listing,
+    Named,
+    Number,
+    OneOr,
+    Planes,
+    Point,
+    Quantity,
+    Table,
+    Tables,
+    Text,
+    Told,
+    Whole,
+    all_keys,
+    innermost,
+)
+from equipoise.quantities import KINDS, Dimension, pattern
+from equipoise.schema.opening import FileKind, document_of
+from equipoise.schema.reading import Polar
+from equipoise.schema.writing import plain_default
+
+Schema = dict[str, Any]
+Definitions = dict[str, Schema]
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def schema_of(kind: FileKind) -> Schema:
+    """JSON Schema (draft 2020-12) of a kind of file."""
+    definitions: Definitions = {}
+    of = document_of(kind)
+    whole = _object(of, definitions)
+    names = {"linkage": "model", "tool": "tool", "study": "study"}
+    return {
+        "$schema": DIALECT,
+        "title": f"Equipoise {names[kind]} file",
+        **whole,
+        "$defs": dict(sorted(definitions.items())),
+    }
+
+
+def _object(of: type[Frozen], definitions: Definitions) -> Schema:
+    keys = all_keys(of)
+    required = [name for name, one in keys.items() if one.required]
+    return {
+        "description": " ".join((of.__doc__ or "").split("\n\n")[0].split()),
+        "type": "object",
+        "properties": {name: _property(one, definitions) for name, one in keys.items()},
+        **({"required": required} if required else {}),
+        "additionalProperties": False,
+        **of.conditions,
+    }
+
+
+def _property(one: Key, definitions: Definitions) -> Schema:
+    schema = dict(_schema(one.kind, definitions))
+    if one.text:
+        schema["description"] = one.text.replace("`", "")
+    if one.example is not None:
+        schema["examples"] = [one.example]
+    default = plain_default(one)
+    if default not in (None, [], {}):
+        schema["default"] = default
+    if type(innermost(one.kind)) is Number:
+        limits = {"minimum": one.at_least, "exclusiveMinimum": one.above,
+                  "exclusiveMaximum": one.below}  # fmt: skip
+        at = schema if type(one.kind) is Number else schema.get("items", {})
+        at |= {name: limit for name, limit in limits.items() if limit is not None}
+    return schema
+
+
+def _schema(kind: Kind, definitions: Definitions) -> Schema:
+    return SCHEMAS[type(kind)](kind, definitions)
+
+
+def _defined(name: str, schema: Callable[[], Schema], definitions: Definitions) -> Schema:
+    """A reference to what is defined once."""
+    if name not in definitions:
+        definitions[name] = {}  # a table may have one of its own sort inside
+        definitions[name] = schema()
+    return {"$ref": f"#/$defs/{name}"}
+
+
+def _quantity(kind: Quantity, definitions: Definitions) -> Schema:
+    name = "".join(word.capitalize() for word in kind.dimension.split())
+    return _defined(name, lambda: {**_described(kind.dimension), **_text_of(kind)}, definitions)
+
+
+def _text_of(kind: Quantity) -> Schema:
+    example = KINDS[kind.dimension].example
+    return {"type": "string", "pattern": pattern(kind.dimension), "examples": [example]}
+
+
+def _described(dimension: Dimension, more: str = "") -> Schema:
+    kind = KINDS[dimension]
+    units = ", ".join(kind.units)
+    return {"description": f"{kind.noun}: number, space and one of {units}{more}"}
+
+
+def _text(kind: Text, definitions: Definitions) -> Schema:
+    names = kind.names or kind.suggested
+    return {"type": "string", **({"enum": [*names]} if names else {})}
+
+
+def _number(kind: Number, definitions: Definitions) -> Schema:
+    return {"type": "number"}
+
+
+def _whole(kind: Whole, definitions: Definitions) -> Schema:
+    if len(kind.names) == 1:
+        return {"type": "integer", "const": kind.names[0]}
+    if kind.names:
+        return {"type": "integer", "enum": [*kind.names]}
+    least = {} if kind.least is None else {"minimum": kind.least, "maximum": kind.most}
+    return {"type": "integer", **least}
+
+
+def _flag(kind: Flag, definitions: Definitions) -> Schema:
+    return {"type": "boolean"}
+
+
+def _told(kind: Told, definitions: Definitions) -> Schema:
+    return {"type": "string", **(kind.schema or {})}
+
+
+def _anything(kind: Anything, definitions: Definitions) -> Schema:
+    return dict(kind.schema or {})
+
+
+def _file(kind: File, definitions: Definitions) -> Schema:
+    return {"type": "string"}
+
+
+def _listing(kind: Listing, definitions: Definitions) -> Schema:
+    least, most = (min(kind.sizes), max(kind.sizes)) if kind.sizes else (1, None)
+    most_items = {} if most is None else {"maxItems": most}
+    unique = {"uniqueItems": True} if isinstance(kind.item, Text) and kind.item.names else {}
+    items = _schema(kind.item, definitions)
+    return {"type": "array", "items": items, "minItems": least, **most_items, **unique}
+
+
+_LENGTH = Quantity(dimension="length")
+
+
+def _point(kind: Point, definitions: Definitions) -> Schema:
+    sizes = (2, 3) if kind.space else (2,)
+    polar = _defined("PolarPoint", lambda: _object(Polar, definitions), definitions)
+    told = (
+        "x, y and z; in the plane of the drawing if z is left out"
+        if kind.space
+        else "x and y, or distance and direction"
+    )
+    either = [_listing(Listing(_LENGTH, sizes), definitions), polar]
+    name = "Place" if kind.space else "Point"
+    return _defined(name, lambda: {"anyOf": either, "description": told}, definitions)
+
+
+def _direction(kind: Direction, definitions: Definitions) -> Schema:
+    vector = _listing(Listing(Number(), (3,)), definitions)
+    either = [_schema(Quantity(dimension="angle"), definitions), vector]
+    told = "angle in the plane of the drawing, or a vector of three plain numbers"
+    return _defined("Direction", lambda: {"anyOf": either, "description": told}, definitions)
+
+
+def _one_or(kind: OneOr, definitions: Definitions) -> Schema:
+    item = _schema(kind.item, definitions)
+    item = {**item, "exclusiveMinimum": 0} if type(kind.item) is Number else item
+    several = {"type": "array", "items": item, "minItems": kind.size, "maxItems": kind.size}
+    return {"anyOf": [item, several]}
+
+
+def _planes(kind: Planes, definitions: Definitions) -> Schema:
+    if not isinstance(kind.item, Quantity):
+        return _in_planes(
+            {"type": "string", "examples": ["hand.csv"]}, "name of a file; or a table"
+        )
+    item = kind.item
+    told = _described(item.dimension, "; or a table")["description"]
+    name = "".join(word.capitalize() for word in item.dimension.split())
+    return _defined(f"{name}InPlanes", lambda: _in_planes(_text_of(item), told), definitions)
+
+
+def _in_planes(text: Schema, told: str) -> Schema:
+    table: Schema = {
+        "type": "object",
+        "properties": dict.fromkeys(PLANES, text),
+        "required": [*PLANES],
+        "additionalProperties": False,
+    }
+    told = f"{told} with one for the vertical and one for the lateral plane"
+    return {"anyOf": [text, table], "description": told}
+
+
+def _named(kind: Named, definitions: Definitions) -> Schema:
+    return {"type": "object", "additionalProperties": _schema(kind.item, definitions)}
+
+
+def _table(kind: Table, definitions: Definitions) -> Schema:
+    of = kind.type
+    return _defined(of.__name__, lambda: _object(of, definitions), definitions)
+
+
+def _tables(kind: Tables, definitions: Definitions) -> Schema:
+    return {"type": "array", "items": _table(kind.item, definitions)}
+
+
+SCHEMAS: Mapping[type[Kind], Callable[[Any, Definitions], Schema]] = {
+    Anything: _anything,
+    Direction: _direction,
+    File: _file,
+    Flag: _flag,
+    Listing: _listing,
+    Named: _named,
+    Number: _number,
+    OneOr: _one_or,
+    Planes: _planes,
+    Point: _point,
+    Quantity: _quantity,
+    Table: _table,
+    Tables: _tables,
+    Text: _text,
+    Told: _told,
+    Whole: _whole,
+}
+
+# -- the documentation -----------------------------------------------------------------------------
+
+_COUNTS = {2: "two", 3: "three"}
+
+
+def key_table(of: type[Frozen]) -> str:
+    """Rows of the documentation, one for each key of a class that holds no tables of its own."""
+    keys = [
+        one for one in all_keys(of).values() if not isinstance(innermost(one.kind), Table | Tables)
+    ]
+    rows = [
+        f"| `{one.name}` | {words_of(one.kind)} | {_default(one)} | {one.text} |" for one in keys
+    ]
+    return "\n".join(["| key | kind | default | meaning |", "|---|---|---|---|", *rows])
+
+
+def holds_tables(kind: Kind) -> bool:
+    """Whether a key has tables below it, which the documentation tells for themselves."""
+    return isinstance(innermost(kind), Table | Tables)
+
+
+def _default(one: Key) -> str:
+    if one.required:
+        return "required"
+    default = plain_default(one)
+    if default in (None, [], {}):
+        return ""
+    from equipoise.schema.writing import value_text
+
+    return f"`{value_text(default)}`"
+
+
+def words_of(kind: Kind) -> str:
+    """What a value is, as the documentation calls it."""
+    if isinstance(kind, Listing | Named | OneOr | Planes):
+        return _words_of_several(kind)
+    if isinstance(kind, Quantity):
+        return re.sub(r"^an? ", "", KINDS[kind.dimension].noun)
+    if isinstance(kind, Whole) and kind.names:
+        return " or ".join(map(str, kind.names))
+    names = {Text: "text", File: "file", Flag: "true or false", Whole: "whole number",
+             Number: "number", Direction: "angle, or vector", Anything: "value"}  # fmt: skip
+    point = "place" if isinstance(kind, Point) and kind.space else "point"
+    return point if isinstance(kind, Point) else names.get(type(kind), "text")
+
+
+def _words_of_several(kind: Listing | Named | OneOr | Planes) -> str:
+    item = words_of(kind.item)
+    if isinstance(kind, Listing):
+        count = _COUNTS.get(kind.sizes[0], "") if kind.sizes else "list of"
+        return f"{count} {_plural(item)}"
+    if isinstance(kind, Named):
+        return f"{_plural(item)} by name"
+    return f"{item}, or {_COUNTS[kind.size]}" if isinstance(kind, OneOr) else f"{item}, in planes"
+
+
+def _plural(words: str) -> str:
+    first, dot, rest = words.partition(" of ")
+    ending = {"s": "es", "y": "ies"}.get(first[-1], "s")
+    stem = first[:-1] if ending == "ies" and first[-2:] != "ey" else first
+    return f"{stem}{ending}{dot}{rest}"
