@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import os
 import subprocess
 import sys
 import tomllib
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 from equipoise.cli import run
 
@@ -54,6 +56,8 @@ TOOLS = ("brush-cutter", "nagamine-irie", "pole-saw")
 STUDIES = ("study-of-balance", "study-of-lengths", "study-of-tolerances")
 """Bundled files of tools and studies; those above are of linkages."""
 
+WIDE = 400
+"""Signs in a line of the terminal: values and words are asserted on, not where lines break."""
 READY = "ready to be analysed"
 """Last line of `equipoise check`."""
 
@@ -68,9 +72,10 @@ class Result:
 
 
 def equipoise(*arguments: str | Path) -> Result:
-    """Run a command within this process; a Python warning is an error here."""
+    """Run a command within this process, on a wide terminal; a Python warning is an error here."""
     out, err = io.StringIO(), io.StringIO()
-    with redirect_stdout(out), redirect_stderr(err):
+    wide = mock.patch.dict(os.environ, COLUMNS=str(WIDE))
+    with wide, redirect_stdout(out), redirect_stderr(err):
         status = run([str(argument) for argument in arguments])
     return Result(status, out.getvalue(), err.getvalue())
 
@@ -82,7 +87,14 @@ def command(*arguments: str | Path) -> list[str]:
 
 def process(*arguments: str | Path, **options: Any) -> Result:
     """Run a command in a process of its own, for a minute at most."""
-    options = {"capture_output": True, "encoding": "utf-8", "timeout": 60, **options}
+    environment = {**os.environ, "COLUMNS": str(WIDE)}
+    options = {
+        "env": environment,
+        "capture_output": True,
+        "encoding": "utf-8",
+        "timeout": 60,
+        **options,
+    }
     done = subprocess.run(command(*arguments), check=False, **options)
     return Result(done.returncode, done.stdout or "", done.stderr or "")
 

@@ -62,19 +62,23 @@ def test_tables() -> None:
     values = [float(cell) for cell in row.groups()]
     assert values[1] < values[0] < values[2]
     assert values[4] < 0.03 < values[5]
-    assert re.search(r"^Coulomb friction over stiffness mm +0\.\d+", shown, re.M)
+    assert re.search(r"^Coulomb friction over stiffness, mm +0\.\d+", shown, re.M)
     for absent in ("mass", "nan", "inertia"):
         assert absent not in shown
 
 
 def test_tables_with_a_stiffness() -> None:
     shown = succeeded(equipoise("decay", "decay.csv", "--stiffness", "2 N/mm"))
-    for name in ("mass kg", "viscous damping N s/m", "Coulomb friction N"):
+    for name in ("mass, kg", "viscous damping, N s/m", "Coulomb friction, N"):
         assert re.search(rf"^{name} +\S+ +\S+ to \S+", shown, re.M)
     shown = succeeded(equipoise("decay", "angle.csv", "--stiffness", "2 N m/rad"))
-    for name in ("moment of inertia kg m^2", "viscous damping N m s/rad", "Coulomb friction N m"):
+    for name in (
+        "moment of inertia, kg m^2",
+        "viscous damping, N m s/rad",
+        "Coulomb friction, N m",
+    ):
         assert re.search(rf"^{re.escape(name)} +\S+ +\S+ to \S+", shown, re.M)
-    assert "over stiffness deg" in shown
+    assert "over stiffness, deg" in shown
 
 
 def test_json() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -43,9 +44,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 def test_a_new_model_file_and_a_table(folder: Path) -> None:
     result = equipoise("plant", "fit", "kim-chung-a", "target.toml")
     text = succeeded(result)
-    assert "curve.height cm  26.00" in text
+    assert re.search(r"^height of the curve, mm +260\.0 ", text, re.MULTILINE)
     assert "yes" in text
-    assert "crank cm " in text
+    assert "crank, mm" in text
     assert result.err.splitlines()[-1] == "wrote kim-chung-a-fit.toml"
     assert "generation 1 of at most 20" in result.err
     found = eq.load("kim-chung-a-fit.toml")
@@ -115,7 +116,7 @@ def asked(folder: Path, goal: str) -> str:
 
 def test_the_smallest_population_and_a_figure_to_be_made_large(folder: Path) -> None:
     text = asked(folder, '"curve.height"\nmake = "largest"\n')
-    assert "curve.height cm  largest" in text
+    assert re.search(r"^height of the curve, mm +largest ", text, re.MULTILINE)
     assert " yes" not in text
 
 
@@ -127,7 +128,7 @@ def test_a_target_of_0_has_a_tolerance(folder: Path) -> None:
 def test_what_gets_lost_is_told(folder: Path) -> None:
     """A search that is not told of the tray misses it."""
     text = asked(folder, '"curve.height"\ntarget = "40 cm"\n')
-    assert "pick_up.attitude deg                -158.15  " in text
+    assert "attitude of the finger at pick-up, deg" in text and "-158.15  " in text
     found = eq.plant(eq.load("transplanter-fit.toml"))
     for note in found.notes:
         assert f"note: {note}" in text

@@ -64,7 +64,7 @@ def test_check_tells_what_it_has_read() -> None:
         "shaken by blade: unbalance 150.0 g mm, at saw, -0.7500 times the engine's speed" in lines
     )
     assert "day: mowing 2.500 h, walking 0.5000 h" in lines
-    assert lines[-2].endswith("limits belt force, handle acceleration, added_mass")
+    assert lines[-3].endswith("limits belt force, handle acceleration, added_mass")
 
 
 def test_check_of_a_tool_with_a_table() -> None:

@@ -204,7 +204,7 @@ class Asked:
         def show() -> None:
             from equipoise.present import show_blocks
 
-            show_blocks("", found.blocks(), units=self.units)
+            show_blocks(None, found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Picture]:
             from equipoise.figures import handheld as pictures
@@ -233,7 +233,7 @@ class Asked:
         def show() -> None:
             from equipoise.present import show_blocks
 
-            show_blocks("", found.blocks(), units=self.units)
+            show_blocks(None, found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Picture]:
             from equipoise.figures import handheld as pictures
@@ -256,7 +256,7 @@ class Asked:
         def show() -> None:
             from equipoise.present import show_blocks
 
-            show_blocks("", found.blocks(), units=self.units)
+            show_blocks(None, found.blocks(), units=self.units)
 
         def drawings() -> Mapping[str, Picture]:
             from equipoise.figures import handheld as pictures
@@ -337,7 +337,7 @@ def vary(
         from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        show_blocks("", found.blocks(), units=shown_in)
+        show_blocks(None, found.blocks(), units=shown_in)
 
     def drawings() -> Mapping[str, Picture]:
         from equipoise.figures import handheld as pictures
@@ -382,7 +382,7 @@ def sensitivities(
         from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        show_blocks("", sensitivity_blocks(loaded, found, asked.ends), units=shown_in)
+        show_blocks(None, sensitivity_blocks(loaded, found, asked.ends), units=shown_in)
 
     def values() -> Mapping[str, Any]:
         told: dict[str, dict[str, float]] = {}
@@ -425,7 +425,7 @@ def design(
         from equipoise.present import show_blocks
 
         _print_head(loaded, shown_in)
-        show_blocks("", found.blocks(), units=shown_in)
+        show_blocks(None, found.blocks(), units=shown_in)
 
     def drawings() -> Mapping[str, Picture]:
         from equipoise.figures import handheld as pictures

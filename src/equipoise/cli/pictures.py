@@ -34,6 +34,7 @@ from equipoise.cli.outputs import Kind, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.checks import unknown
 
 if TYPE_CHECKING:
     import numpy as np
@@ -73,6 +74,7 @@ def plot(
     out: Out = None,
     format: Kind = "svg",
     only: Many = None,
+    output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
     speed: Speed = None,
 ) -> None:
@@ -88,6 +90,8 @@ def plot(
         Kind of the pictures.
     only
         Draw this picture, by its name, and no other.  May be repeated.
+    output
+        Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
     at
         Crank angles at which the linkage is drawn, such as "0 deg, 45 deg".
     speed
@@ -104,7 +108,7 @@ def plot(
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
     with naming(file):
-        chosen = _chosen(each(found, at), only)
+        chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
             name = f"{picture.name}.{format}"
             write_all(folder, {name: render(picture.draw(), format)})
@@ -114,12 +118,28 @@ def plot(
     tell_pictures(len(chosen), folder)
 
 
+def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
+    """Outputs over crank angle, in one picture."""
+    from functools import partial
+
+    from equipoise.figures.outputs import outputs_chart
+    from equipoise.present.findings import ToolFindings
+    from equipoise.present.pictures import Picture
+
+    if isinstance(found, ToolFindings):
+        raise UsageError("--output: a tool has no crank angles; leave it out")
+    names = list(dict.fromkeys(names))
+    for name in names:
+        if name not in found.analysis.outputs:
+            raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
+    draw = partial(outputs_chart, found.analysis, names)
+    return [Picture("outputs", "motion", ", ".join(names), draw)]
+
+
 def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Picture]:
     """Those that are wanted; what comes after the last of them is not computed."""
     if only is None:
         return list(pictures)
-    from equipoise.mechanism.checks import unknown
-
     found: dict[str, Picture] = {}
     for picture in pictures:
         found[picture.name] = picture

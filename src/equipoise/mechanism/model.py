@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -23,6 +23,7 @@ from equipoise.keys import (
     Table,
     Tables,
     Text,
+    changed,
     declared,
     key,
     wrong_values,
@@ -215,6 +216,15 @@ class Machine(Frozen):
         """Return the machine with fields of its drive changed."""
         changed = replace(self, drive=replace(self.drive, **changes))
         return self._same_motion(changed, "link" not in changes)
+
+    def with_number(self, steps: Sequence[str], number: float) -> Machine:
+        """Return the machine with another number, by the keys and names on the way to it such as
+        ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
+        """
+        first, last = steps[0], steps[-1]
+        massive = first == "links" and bool({*steps} & MASS_FIELDS) and "points" not in steps
+        same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
+        return self._same_motion(changed(self, steps, number), same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""

@@ -29,12 +29,15 @@ def show(
 
 
 def show_blocks(
-    title: str,
+    title: str | None,
     blocks: Iterable[Block | Section],
     width: int | None = None,
     units: Units | None = None,
 ) -> None:
-    """Print blocks below a title; further arguments as of `show`."""
+    """Print blocks below a title, or where that is None below what was printed before.
+
+    Further arguments as of `show`.
+    """
     from equipoise.present.terminal import print_blocks
 
     print_blocks(title, blocks, width, units)

@@ -58,6 +58,7 @@ def _made(chart: Chart) -> Chart:
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     from equipoise.figures.analysis import curves, hodograph
     from equipoise.figures.linkage import linkage
+    from equipoise.figures.outputs import main_kinematics
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
@@ -66,6 +67,9 @@ def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     yield "curves", caption, partial(curves, analysis)
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
     yield "hodograph", caption, partial(hodograph, analysis)
+    caption = to_say("Motion over crank angle: position, velocity and acceleration.")
+    for chart in main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ():
+        yield chart.name, caption, partial(_made, chart)
 
 
 def _planting(figures: PlantingFigures) -> Iterator[Entry]:

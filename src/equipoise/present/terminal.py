@@ -28,13 +28,14 @@ SIGN = " !"
 
 
 def print_blocks(
-    title: str,
+    title: str | None,
     blocks: Iterable[Block | Section],
     width: int | None = None,
     units: Units | None = None,
 ) -> None:
     """Print a title and what stands below it.
 
+    title : none if empty; None where it goes on below something else.
     width : signs in a line; those of the terminal if None.
     units : chosen by the reader, by dimension.
     """
@@ -48,7 +49,7 @@ def print_blocks(
         emoji=False,
         soft_wrap=False,
     )
-    printer = _Printer(console, units or {})
+    printer = _Printer(console, units or {}, begun=title is None)
     if title:
         printer.words(title, "bold")
     printer.blocks(blocks)
@@ -57,8 +58,8 @@ def print_blocks(
 class _Printer:
     """Prints blocks one below the other."""
 
-    def __init__(self, console: Console, units: Units) -> None:
-        self.console, self.units = console, units
+    def __init__(self, console: Console, units: Units, begun: bool) -> None:
+        self.console, self.units, self.begun = console, units, begun
         self.coloured = console.is_terminal and console.color_system is not None
         self.apart = False  # whether running text begins after a space, as after a table
 
@@ -100,10 +101,14 @@ class _Printer:
             assert isinstance(block, Picture)  # a terminal draws none
 
     def space(self) -> None:
-        self.console.print()
+        """An empty line, but not at the very beginning."""
+        if self.begun:
+            self.console.print()
+        self.begun = True
 
     def words(self, text: str, style: str = "", indent: int = 0) -> None:
         """Running text; further lines of an item stand a little to the right."""
+        self.begun = True
         sign = SIGN if style == STRONG and not self.coloured else ""
         start = len(text) - len(text.lstrip(" ")) + indent
         for place, line in enumerate(

@@ -66,8 +66,8 @@ class Axis:
     @property
     def text(self) -> str:
         """Label and unit."""
-        if not self.unit.unit:
-            return self.label
+        if not self.unit.unit or not self.label:
+            return self.label or self.unit_name
         return say("{quantity}, {unit}", quantity=self.label, unit=self.unit_name)
 
     def told(self, value: float) -> str:

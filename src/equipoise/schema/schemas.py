@@ -29,6 +29,7 @@ from equipoise.keys import (
     Whole,
     all_keys,
     innermost,
+    keys_of,
 )
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.opening import FileKind, document_of
@@ -244,14 +245,13 @@ _COUNTS = {2: "two", 3: "three"}
 
 
 def key_table(of: type[Frozen]) -> str:
-    """Rows of the documentation, one for each key of a class that holds no tables of its own."""
-    keys = [
-        one for one in all_keys(of).values() if not isinstance(innermost(one.kind), Table | Tables)
-    ]
-    rows = [
-        f"| `{one.name}` | {words_of(one.kind)} | {_default(one)} | {one.text} |" for one in keys
-    ]
-    return "\n".join(["| key | kind | default | meaning |", "|---|---|---|---|", *rows])
+    """Rows of the documentation, one for each key of a class that holds no table."""
+    plain = (one for one in keys_of(of).values() if not holds_tables(one.kind))
+    rows = (
+        f"| `{one.name}` | {words_of(one.kind)} | {_default(one)} | {one.text} |" for one in plain
+    )
+    table = "\n".join(["| key | kind | default | meaning |", "|---|---|---|---|", *rows])
+    return table.replace("|  |", "| |")
 
 
 def holds_tables(kind: Kind) -> bool:
@@ -278,19 +278,24 @@ def words_of(kind: Kind) -> str:
         return re.sub(r"^an? ", "", KINDS[kind.dimension].noun)
     if isinstance(kind, Whole) and kind.names:
         return " or ".join(map(str, kind.names))
-    names = {Text: "text", File: "file", Flag: "true or false", Whole: "whole number",
+    if isinstance(kind, Text) and (names := kind.names or kind.suggested):
+        *most, last = (f'`"{name}"`' for name in names)
+        return f"{', '.join(most)} or {last}"
+    other = {Text: "text", File: "file", Flag: "true or false", Whole: "whole number",
              Number: "number", Direction: "angle, or vector", Anything: "value"}  # fmt: skip
     point = "place" if isinstance(kind, Point) and kind.space else "point"
-    return point if isinstance(kind, Point) else names.get(type(kind), "text")
+    return point if isinstance(kind, Point) else other.get(type(kind), "text")
 
 
 def _words_of_several(kind: Listing | Named | OneOr | Planes) -> str:
     item = words_of(kind.item)
     if isinstance(kind, Listing):
+        if isinstance(kind.item, Text) and kind.item.names:
+            return f"list of {item}"
         count = _COUNTS.get(kind.sizes[0], "") if kind.sizes else "list of"
         return f"{count} {_plural(item)}"
     if isinstance(kind, Named):
-        return f"{_plural(item)} by name"
+        return f"{item if item[0] == '`' else _plural(item)} by name"
     return f"{item}, or {_COUNTS[kind.size]}" if isinstance(kind, OneOr) else f"{item}, in planes"
 
 

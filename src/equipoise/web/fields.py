@@ -8,8 +8,9 @@ from functools import lru_cache, partial
 from math import pi
 from typing import Any
 
-from equipoise.mechanism.model import Link, Machine, Vector, size_of
-from equipoise.mechanism.support import Mount
+from equipoise.keys import Frozen, Quantity, quantities_of
+from equipoise.mechanism.model import Machine, Vector, size_of
+from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
 from equipoise.quantities import format_exact, rounded
 from equipoise.quantities.units import KINDS, Dimension
 from equipoise.web.design import Design, pin_of
@@ -108,149 +109,91 @@ def fields_of(design: Design) -> dict[str, Field]:
     return {field.path: field for field in (*found, *_weights(design))}
 
 
-def _on_machine(put: Callable[[Machine, float], Machine]) -> Put:
-    return lambda design, value: design.with_machine(put(design.own, value))
+Place = tuple[str, ...]
+"""Keys and names on the way to a number, which may have points in them."""
+
+
+def _field(place: Place, group: str, label: str, dimension: Dimension, value: float) -> Field:
+    """A number of the machine, which its place tells how to change."""
+    return Field(".".join(place), group, label, dimension, value, partial(_put, place))
+
+
+def _put(place: Place, design: Design, value: float) -> Design:
+    return design.with_machine(design.own.with_number(place, value))
+
+
+def _point(place: Place, group: str, label: str, point: Vector) -> Iterator[Field]:
+    for axis, value in zip("xy", point, strict=True):
+        yield _field((*place, axis), group, f"{label}, {axis}", "length", value)
+
+
+def _numbers(
+    place: Place, group: str, of: str, item: Frozen, without: tuple[str, ...] = ()
+) -> Iterator[Field]:
+    """Those keys of an object that are quantities and are given; `of` begins their labels."""
+    for key, one in quantities_of(item).items():
+        value = getattr(item, one.field)
+        if value is not None and key not in without and isinstance(one.kind, Quantity):
+            label = f"{of}{key.replace('_', ' ')}"
+            yield _field((*place, key), group, label, one.kind.dimension, value)
 
 
 def _drive(machine: Machine) -> Iterator[Field]:
-    put = _on_machine(lambda one, value: one.with_drive(speed=value))
-    yield Field("drive.speed", "drive", "speed", "angular speed", machine.drive.speed, put)
+    yield _field(("drive", "speed"), "drive", "speed", "angular speed", machine.drive.speed)
 
 
 def _links(machine: Machine) -> Iterator[Field]:
     for name, link in machine.links.items():
-        where, group = f"links.{name}", name
+        where = ("links", name)
         if link.mass is not None and link.inertia is not None:
-            quantity: tuple[tuple[str, Dimension, float], ...] = (
-                ("mass", "mass", link.mass),
-                ("inertia", "inertia", link.inertia),
-            )
-            for key, dimension, value in quantity:
-                put = _on_machine(partial(_with_quantity, name, key))
-                yield Field(f"{where}.{key}", group, key, dimension, value, put)
-            for axis, value in zip("xy", link.center_of_mass or CENTER, strict=True):
-                put = _on_machine(partial(_with_center, name, axis))
-                path, label = f"{where}.center_of_mass.{axis}", f"centre of mass, {axis}"
-                yield Field(path, group, label, "length", value, put)
+            yield from _numbers(where, name, "", link)
+            center = link.center_of_mass or CENTER
+            yield from _point((*where, "center_of_mass"), name, "centre of mass", center)
         for point, place in link.points.items():
-            for axis, value in zip("xy", place, strict=True):
-                put = _on_machine(partial(_with_point, name, point, axis))
-                path = f"{where}.points.{point}.{axis}"
-                yield Field(path, group, f"{point}, {axis}", "length", value, put)
-
-
-def _with_quantity(name: str, key: str, machine: Machine, value: float) -> Machine:
-    return machine.with_link(name, **{key: value})
-
-
-def _with_center(name: str, axis: str, machine: Machine, value: float) -> Machine:
-    old = machine.links[name].center_of_mass or CENTER
-    return machine.with_link(name, center_of_mass=_turned_to(old, axis, value))
-
-
-def _with_point(name: str, point: str, axis: str, machine: Machine, value: float) -> Machine:
-    link: Link = machine.links[name]
-    place = _turned_to(link.points[point], axis, value)
-    return machine.with_link(name, points={**link.points, point: place})
-
-
-def _turned_to(place: Vector, axis: str, value: float) -> Vector:
-    return (value, place[1]) if axis == "x" else (place[0], value)
+            yield from _point((*where, "points", point), name, point, place)
 
 
 def _frame(machine: Machine) -> Iterator[Field]:
     for point, place in machine.frame.items():
-        for axis, value in zip("xy", place, strict=True):
-            put = _on_machine(partial(_with_frame_point, point, axis))
-            path = f"frame.points.{point}.{axis}"
-            yield Field(path, "frame", f"{point}, {axis}", "length", value, put)
-
-
-def _with_frame_point(point: str, axis: str, machine: Machine, value: float) -> Machine:
-    place = _turned_to(machine.frame[point], axis, value)
-    return replace(machine, frame={**machine.frame, point: place})
+        yield from _point(("frame", "points", point), "frame", point, place)
 
 
 def _gears(machine: Machine) -> Iterator[Field]:
     for number, gear in enumerate(machine.gears, 1):
-        put = _on_machine(partial(_with_item, "gears", number, "start"))
         label = f"{gear.name}, angle of {gear.driven} at the start"
-        yield Field(f"gears.{number}.start", "gears", label, "angle", gear.start, put)
+        yield _field(("gears", str(number), "start"), "gears", label, "angle", gear.start)
 
 
 def _springs(machine: Machine) -> Iterator[Field]:
     for number, spring in enumerate(machine.springs, 1):
-        quantities: tuple[tuple[str, Dimension], ...] = (
-            ("stiffness", "stiffness"),
-            ("free_length", "length"),
-        )
-        for key, dimension in quantities:
-            put = _on_machine(partial(_with_item, "springs", number, key))
-            label = f"{spring.point} to {spring.to}, {key.replace('_', ' ')}"
-            path = f"springs.{number}.{key}"
-            yield Field(path, "springs", label, dimension, getattr(spring, key), put)
+        of = f"{spring.point} to {spring.to}, "
+        yield from _numbers(("springs", str(number)), "springs", of, spring)
 
 
 def _rows(machine: Machine) -> Iterator[Field]:
     for number, row in enumerate(machine.rows, 1):
-        put = _on_machine(partial(_with_item, "rows", number, "phase"))
-        label = f"row {number}, phase"
-        yield Field(f"rows.{number}.phase", "rows", label, "angle", row.phase, put)
+        yield _field(
+            ("rows", str(number), "phase"), "rows", f"row {number}, phase", "angle", row.phase
+        )
 
 
-def _with_item(kind: str, number: int, key: str, machine: Machine, value: float) -> Machine:
-    items = list(getattr(machine, kind))
-    items[number - 1] = replace(items[number - 1], **{key: value})
-    if kind == "gears":
-        return replace(machine, gears=tuple(items))
-    return machine.with_rows(items) if kind == "rows" else machine.with_springs(items)
-
-
-PLANTING: dict[str, Dimension] = {
-    "forward_speed": "speed",
-    "hill_spacing": "length",
-    "depth": "length",
-    "surface": "length",
-}
+NOT_OF_PLANTING = ("release", "acceleration_limit", "soil_acceleration_limit")
+"""What only tells when something happens, or what is wanted."""
 
 
 def _planting(machine: Machine) -> Iterator[Field]:
-    for key, dimension in PLANTING.items():
-        value = getattr(machine.planting, key, None)
-        if value is not None:
-            put = _on_machine(partial(_with_planting, key))
-            label = key.replace("_", " ")
-            yield Field(f"planting.{key}", "planting", label, dimension, value, put)
-
-
-def _with_planting(key: str, machine: Machine, value: float) -> Machine:
-    return machine.with_planting(**{key: value})
-
-
-MOUNTS: dict[str, Dimension] = {
-    "stiffness": "stiffness",
-    "damping": "damping",
-    "torsional_stiffness": "torsional stiffness",
-    "torsional_damping": "torsional damping",
-}
+    if machine.planting is not None:
+        yield from _numbers(("planting",), "planting", "", machine.planting, NOT_OF_PLANTING)
 
 
 def _mounts(machine: Machine) -> Iterator[Field]:
     if machine.support is None:
         return
     for name, mount in machine.support.mounts.items():
-        for key, dimension in MOUNTS.items():
-            if (mount.axis is None) != key.startswith("torsional"):
-                put = _on_machine(partial(_with_mount, name, key))
-                path, label = f"support.mounts.{name}.{key}", f"{name}, {key.replace('_', ' ')}"
-                yield Field(path, "support", label, dimension, getattr(mount, key), put)
-
-
-def _with_mount(name: str, key: str, machine: Machine, value: float) -> Machine:
-    assert machine.support is not None
-    mounts = machine.support.mounts
-    changed: Mount = replace(mounts[name], **{key: value})  # type: ignore[arg-type]
-    return machine.with_support(mounts={**mounts, name: changed})
+        other = OF_POINT if mount.axis is not None else OF_AXIS
+        without = (*other, "preload")
+        where = ("support", "mounts", name)
+        yield from _numbers(where, "support", f"{name}, ", mount, without)
 
 
 def _weights(design: Design) -> Iterator[Field]:

@@ -1,0 +1,338 @@
+"""What a value of a file can be, and how one that Python gives is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from importlib import import_module
+from numbers import Integral, Real
+from types import MappingProxyType
+from typing import Any, ClassVar
+
+from equipoise.quantities import Dimension
+
+MOST_WHOLE = 1_000_000
+
+
+class Record:
+    """What a table of a file is read to, and holds by the names of its fields."""
+
+    wanted: ClassVar[str] = "such an object"
+
+    @classmethod
+    def checked(cls, value: Any) -> Any:
+        """The value of a field that holds such an object; a `TypeError` where it is none."""
+        if not isinstance(value, Record):
+            raise TypeError
+        return value
+
+
+class Kind:
+    """What a value is: `check` takes one that Python gives, `wanted` says what it has to be."""
+
+    wanted: str
+
+    def check(self, value: Any) -> Any:
+        """The value as it is kept.
+
+        Raises
+        ------
+        TypeError, ValueError, OverflowError : it is something else.
+        """
+        return value
+
+
+NO_INERTIA = "no body has a negative moment of inertia"
+
+
+def choice(names: Iterable[Any]) -> str:
+    """Say which there are: ``'a', 'b' or 'c'``."""
+    *most, last = map(repr, names)
+    return f"{', '.join(most)} or {last}" if most else last
+
+
+@dataclass(frozen=True)
+class Text(Kind):
+    """Text; `names` are the only ones, if there are any.
+
+    suggested : those that editors offer; what else is wrong with it is said elsewhere.
+    """
+
+    names: tuple[str, ...] = ()
+    suggested: tuple[str, ...] = ()
+
+    wanted = "text"
+
+    def check(self, value: Any) -> str:
+        if not isinstance(value, str):
+            raise TypeError
+        return value
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A plain number."""
+
+    wanted = "a number"
+
+    def check(self, value: Any) -> float:
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise TypeError
+        return float(value)
+
+
+@dataclass(frozen=True)
+class Quantity(Number):
+    """A number with a unit in the file, in SI units in Python."""
+
+    dimension: Dimension = "length"
+
+
+@dataclass(frozen=True)
+class Whole(Kind):
+    """A whole number; `names` are the only ones, if there are any."""
+
+    least: int | None = None
+    most: int = MOST_WHOLE
+    names: tuple[int, ...] = ()
+
+    wanted = f"a whole number of at most {MOST_WHOLE}"
+
+    def check(self, value: Any) -> int:
+        if isinstance(value, bool) or not isinstance(value, Integral):
+            raise TypeError
+        count = int(value)
+        if abs(count) > max(self.most, MOST_WHOLE):
+            raise ValueError
+        return count
+
+
+@dataclass(frozen=True)
+class Flag(Kind):
+    """True or false."""
+
+    wanted = "true or false"
+
+    def check(self, value: Any) -> bool:
+        if not isinstance(value, bool):
+            raise TypeError
+        return value
+
+
+@dataclass(frozen=True)
+class Anything(Kind):
+    """What cannot be told before something else is known; it comes through as it is.
+
+    schema : what the JSON Schema says of it.
+    """
+
+    schema: Any = None
+
+
+@dataclass(frozen=True)
+class Told(Number):
+    """A number whose dimension something else tells; `Frozen.from_table` makes it of its text.
+
+    right : what to give where no text is given.  schema : what the JSON Schema says of it.
+    """
+
+    right: str = "give number and unit in quotes"
+    schema: Any = None
+
+
+def items_of(value: Any) -> tuple[Any, ...]:
+    """A list as a tuple; texts and mappings are none."""
+    if isinstance(value, str | Mapping):
+        raise TypeError
+    return tuple(value)
+
+
+@dataclass(frozen=True)
+class Listing(Kind):
+    """Some of a kind in a list.
+
+    sizes : how many there can be; none for one or more.
+    right : what to give instead of a list of another length, or of none.
+    """
+
+    item: Kind
+    sizes: tuple[int, ...] = ()
+    right: str = ""
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        if isinstance(self.item, Text):
+            return "a list of texts"
+        if isinstance(self.item, Listing | Point):
+            return "two points of two numbers each" if self.sizes else "rows of numbers"
+        if self.sizes == (2,):
+            whole = f"two whole numbers of at most {MOST_WHOLE}"
+            return whole if isinstance(self.item, Whole) else "two numbers"
+        return "numbers"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if self.sizes == (2,) and len(items) != 2 and not self.right:
+            raise ValueError
+        return items
+
+
+@dataclass(frozen=True)
+class Point(Kind):
+    """Two lengths along x and y, in a file by distance and direction too.
+
+    space : with a third length along z, which may be left out.
+    """
+
+    space: bool = False
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two or three numbers" if self.space else "two numbers"
+
+    def check(self, value: Any) -> tuple[float, ...]:
+        row = tuple(map(Number().check, items_of(value)))
+        row = (*row, 0.0) if self.space and len(row) == 2 else row
+        if len(row) != (3 if self.space else 2):
+            raise ValueError
+        return row
+
+
+@dataclass(frozen=True)
+class Direction(Kind):
+    """An angle in the plane of the drawing, or a vector of three plain numbers."""
+
+    wanted = "an angle, or three numbers"
+
+    def check(self, value: Any) -> float | tuple[float, ...]:
+        if isinstance(value, Real):
+            return Number().check(value)
+        if len(row := tuple(map(Number().check, items_of(value)))) != 3:
+            raise ValueError
+        return row
+
+
+@dataclass(frozen=True)
+class OneOr(Kind):
+    """One of a kind, or several in a list; always a tuple in Python.
+
+    repeat : one stands for as many equal ones.
+    right : what to give instead of anything else.
+    """
+
+    item: Kind
+    size: int
+    repeat: bool = False
+    right: str = ""
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two numbers" if self.repeat else "numbers"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if self.repeat and len(items) != self.size:
+            raise ValueError
+        return items
+
+
+PLANES = ("vertical", "lateral")
+
+
+@dataclass(frozen=True)
+class Planes(Kind):
+    """Of the vertical and the lateral plane: one for both, or a table of two."""
+
+    item: Kind
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return "two numbers" if isinstance(self.item, Quantity) else "a list of such objects"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        items = tuple(map(self.item.check, items_of(value)))
+        if isinstance(self.item, Quantity) and len(items) != 2:
+            raise ValueError
+        return items
+
+
+@dataclass(frozen=True)
+class Named(Kind):
+    """Some of a kind by names that the user chooses."""
+
+    item: Kind
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        of = {Point: "two numbers", Text: "text", Table: "such objects"}
+        return f"a mapping of names to {of.get(type(self.item), 'numbers')}"
+
+    def check(self, value: Any) -> Mapping[str, Any]:
+        if not isinstance(value, Mapping):
+            raise TypeError
+        name, item = Text().check, self.item.check
+        return MappingProxyType({name(key): item(one) for key, one in value.items()})
+
+
+@dataclass(frozen=True)
+class Table(Kind):
+    """A table with keys of its own, those of a class.
+
+    of : the class, or ``module:name`` of one that takes time to import.
+    flat : its keys stand among those of the table that has it.
+    headed : inside of another table it is written below a header of its own.
+    without : keys of a flat one that do not stand there.
+    """
+
+    of: Any
+    flat: bool = False
+    headed: bool = False
+    without: tuple[str, ...] = ()
+
+    @property
+    def wanted(self) -> str:  # type: ignore[override]
+        return self.type.wanted
+
+    @property
+    def type(self) -> Any:
+        """The class, a `Frozen`."""
+        if isinstance(self.of, str):
+            module, _, name = self.of.partition(":")
+            return getattr(import_module(module), name)
+        return self.of
+
+    def check(self, value: Any) -> Any:
+        return self.type.checked(value)
+
+
+@dataclass(frozen=True)
+class Tables(Kind):
+    """Any number of such tables."""
+
+    item: Table
+    wanted = "a list of such objects"
+
+    def check(self, value: Any) -> tuple[Any, ...]:
+        return tuple(map(self.item.check, value))
+
+
+@dataclass(frozen=True)
+class File(Kind):
+    """What lies in a file of its own, which the key names.
+
+    sort : what it is, such as ``load``.  named : field that keeps the file's name.
+    """
+
+    sort: str
+    named: str = ""
+    wanted = "such an object"
+
+    def check(self, value: Any) -> Any:
+        return Record.checked(value)
+
+
+def innermost(kind: Kind) -> Kind:
+    """What lists, and mappings of names, consist of."""
+    while isinstance(kind, Listing | Named | OneOr | Planes):
+        kind = kind.item
+    return kind

@@ -1,0 +1,234 @@
+"""A key of a file is declared once: reading, writing, refusing, schema, documentation, paths."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from equipoise.errors import ModelError
+from equipoise.handheld import design_plan, shaft, station
+from equipoise.handheld import model as tool
+from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, wrong_values
+from equipoise.mechanism import (
+    balance,
+    counterweights,
+    field,
+    force_elements,
+    mounts,
+    objectives,
+    parts,
+    support,
+    weights,
+)
+from equipoise.mechanism.force_elements import Spring
+from equipoise.mechanism.model import Frame, Machine, Position
+from equipoise.schema import finding, models, schemas
+from equipoise.schema.models import dumps, json_schema, loads
+from equipoise.schema.reading import Context, read_table
+from equipoise.schema.schemas import key_table
+from equipoise.schema.template import Template
+from equipoise.schema.writing import Writer, toml_text
+from equipoise.web.design import Design
+from equipoise.web.fields import fields_of
+from unit.schema.samples import FOUR_BAR
+
+PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
+DOCUMENTED: dict[str, type[Frozen]] = {
+    of.__name__: of
+    for of in (
+        Machine, parts.Drive, force_elements.Motor, Frame, parts.Link, parts.Slider, parts.Gear,
+        force_elements.Load, Spring, Position, field.Planting, field.Soil, support.Support,
+        mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
+        weights.AddedMass, weights.Weight, counterweights.GearedWeight,
+        counterweights.BalanceShafts,
+        balance.SpringChoice, balance.Phases, objectives.Objective, objectives.Limit, tool.Tool,
+        shaft.Shaft, shaft.Segment, station.Station,
+        tool.Excitation, tool.Operation, tool.Work, design_plan.DesignPlan,
+        design_plan.DesignVariable, design_plan.DesignLimit,
+    )
+}  # fmt: skip
+
+
+@declared
+class Brake(Frozen):
+    """What stops the crank; known to this test alone."""
+
+    link: str = key(Text(), "the link that it stops", example="crank")
+    torque: float = key("torque", "that it exerts", example="2 N m", above=0)
+    drag: float = key("torque", "of it while it is open", default=0.0, at_least=0)
+    lining: str = key(Text(("organic", "sintered")), "of its pads", default="organic")
+    share: float = key(Number(), "of the torque that it keeps when hot", default=1.0, below=1.5)
+
+
+BRAKE = {"link": "crank", "torque": "2 N m", "drag": "0.015 N m", "lining": "sintered"}
+
+
+def read(given: dict[str, Any]) -> Brake:
+    """As a table [brake] of a file; numbers are checked as those of a machine are."""
+    brake: Brake = read_table(Brake, given, Context(), ("brake",))
+    for wrong in wrong_values("brake", brake):
+        raise wrong
+    return brake
+
+
+# -- a table of this test --------------------------------------------------------------------------
+
+
+def test_a_table_is_read_and_written() -> None:
+    brake = read(BRAKE)
+    assert brake == Brake("crank", 2.0, 0.015, "sintered")
+    content = Writer({}).content(Brake, brake)
+    assert content == BRAKE
+    assert toml_text(Brake, content) == (
+        'link = "crank"\ntorque = "2 N m"\ndrag = "0.015 N m"\nlining = "sintered"\n'
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "sentence"),
+    [
+        ({"torque": 2}, "torque: got the bare number 2; give number and unit in quotes, such as"),
+        ({"torque": "2 kg"}, "torque: got '2 kg'; kg is the unit of a mass; a torque is wanted: "),
+        ({"torque": "0 N m"}, "torque: got 0 N m; give more than 0"),
+        ({"drag": "-1 N m"}, "drag: got -1 N m; give 0 or more"),
+        ({"share": "1"}, "share: got '1'; give a plain number without unit and quotes"),
+        ({"share": 2}, "share: got 2; give less than 1.5"),
+        ({"lining": "wood"}, "lining: got 'wood'; give 'organic' or 'sintered'"),
+        ({"link": 3}, "link: got the number 3; give text in quotes"),
+        ({"torqe": "2 N m"}, "torqe: no key is called 'torqe'; did you mean 'torque'?"),
+    ],
+)
+def test_what_is_wrong_is_refused(changes: dict[str, Any], sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        read({**BRAKE, **changes})
+    assert str(caught.value).startswith(f"brake.{sentence}")
+
+
+def test_what_is_missing_is_told_with_an_example() -> None:
+    with pytest.raises(ModelError, match=r'^brake\.torque: missing; add torque = "2 N m"$'):
+        read({"link": "crank"})
+
+
+def test_values_of_python_are_checked_by_the_same_declaration() -> None:
+    with pytest.raises(ModelError, match=r"^torque: got '2 N m'; give a number$"):
+        Brake("crank", "2 N m")  # type: ignore[arg-type]
+
+
+def test_its_rows_in_the_documentation() -> None:
+    assert key_table(Brake).splitlines()[2:] == [
+        "| `link` | text | required | the link that it stops |",
+        "| `torque` | torque | required | that it exerts |",
+        '| `drag` | torque | `"0 N m"` | of it while it is open |',
+        '| `lining` | `"organic"` or `"sintered"` | `"organic"` | of its pads |',
+        "| `share` | number | `1` | of the torque that it keeps when hot |",
+    ]
+
+
+# -- a new key of a table that there is ------------------------------------------------------------
+
+
+@declared
+class LossySpring(Spring):
+    """A spring with a key more: declaring it is the one edit that a new key takes."""
+
+    loss: float = key("damping", "of the spring itself", default=0.0, at_least=0)
+
+
+@declared
+class LossyMachine(Machine):
+    """Machines with such springs."""
+
+    springs: tuple[LossySpring, ...] = key(Tables(Table(LossySpring)), "springs", default=())
+
+
+SPRING = '\n[[springs]]\nlink = "rocker"\npoint = "C"\nto = "A"\nstiffness = "2 kN/m"\n'
+LOSSY = f'{SPRING}loss = "3 N s/m"\n'
+
+
+@pytest.fixture
+def lossy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Files of linkages are those of `LossyMachine`."""
+    monkeypatch.setattr(models, "Machine", LossyMachine)
+    monkeypatch.setattr(finding, "document_of", lambda kind: LossyMachine)
+    monkeypatch.setattr(schemas, "document_of", lambda kind: LossyMachine)
+
+
+@pytest.mark.usefixtures("lossy")
+def test_a_new_key_is_read_and_written() -> None:
+    machine = loads(FOUR_BAR + LOSSY)
+    assert machine.springs[0].loss == 3.0
+    assert 'loss = "3 N s/m"' in dumps(machine)
+    assert loads(dumps(machine)) == machine
+    assert loads(FOUR_BAR + SPRING).springs[0].loss == 0.0
+
+
+@pytest.mark.usefixtures("lossy")
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ('loss = "3 N"', "loss: got '3 N'; N is the unit of a force"),
+        ("loss = 3", "loss: got the bare number 3; give number and unit in quotes"),
+        ('loss = "-3 N s/m"', "loss: got -3 N s/m; give 0 or more"),
+        ('los = "3 N s/m"', "los: no key is called 'los'; did you mean 'loss'?"),
+    ],
+)
+def test_a_new_key_is_refused_when_wrong(line: str, sentence: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        loads(FOUR_BAR + SPRING + line)
+    assert f"springs[1].{sentence}" in str(caught.value)
+
+
+@pytest.mark.usefixtures("lossy")
+def test_a_new_key_is_in_the_schema_and_in_the_documentation() -> None:
+    schema = json_schema("linkage")
+    told = schema["$defs"]["LossySpring"]["properties"]["loss"]
+    assert (told["description"], told["default"]) == ("of the spring itself", "0 N s/m")
+    validator = Draft202012Validator(schema)
+    assert validator.is_valid(tomllib.loads(FOUR_BAR + LOSSY))
+    assert not validator.is_valid(tomllib.loads(FOUR_BAR + SPRING + 'loss = "3 N"'))
+    row = '| `loss` | damping coefficient | `"0 N s/m"` | of the spring itself |'
+    assert row in key_table(LossySpring)
+
+
+@pytest.mark.usefixtures("lossy")
+@pytest.mark.parametrize("text", [FOUR_BAR + LOSSY, FOUR_BAR + SPRING])
+def test_a_new_key_is_reached_by_its_path(text: str) -> None:
+    """From a study, whether the file has it or not, and from the page."""
+    template = Template(text)
+    assert template.number("springs[1].loss")[1] == "damping"
+    made: Any = template.machine({"springs[1].loss": 7.5})
+    assert made.springs[0].loss == 7.5
+    machine = loads(text)
+    design = Design(machine, machine)
+    field = fields_of(design)["springs.1.loss"]
+    assert (field.label, field.dimension) == ("C to A, loss", "damping")
+    own: Any = field.put(design, 4.0).own
+    assert own.springs[0].loss == 4.0
+
+
+# -- the documentation -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
+def test_tables_of_the_documentation_are_up_to_date(name: str) -> None:
+    """Write them anew with ``python tests/unit/schema/test_declaration.py``."""
+    page = PAGE.read_text(encoding="utf-8")
+    assert f"{marked(name)}\n{key_table(DOCUMENTED[name])}\n" in page
+
+
+def marked(name: str) -> str:
+    """The line above a table."""
+    return f"<!-- keys of {name} -->"
+
+
+if __name__ == "__main__":
+    text = PAGE.read_text(encoding="utf-8")
+    for name, of in DOCUMENTED.items():
+        table = re.compile(re.escape(marked(name)) + r"\n(\|.*\n)*")
+        text = table.sub(lambda _, of=of, name=name: f"{marked(name)}\n{key_table(of)}\n", text)
+    PAGE.write_text(text, encoding="utf-8")
