@@ -20,7 +20,7 @@ LANGUAGES = {"en": "English", "ja": "日本語", "ko": "한국어"}
 _spoken = ContextVar("spoken", default="en")
 
 
-def say(text: str, **values: Any) -> str:
+def say(text: str, /, **values: Any) -> str:
     """A text in the language that is spoken, its ``{placeholders}`` filled in.
 
     text : in English, as in the catalogues; one that is in none of them stays English.
