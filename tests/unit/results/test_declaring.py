@@ -16,7 +16,7 @@ from equipoise.figures import render
 from equipoise.figures.outputs import kinematics, outputs_chart
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.outputs import DECLARED, declaring, output
-from equipoise.present.composition import report
+from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.outputs import documented, unit_of
 from equipoise.schema.models import dumps
@@ -86,7 +86,7 @@ def test_it_is_printed(power: None) -> None:
 @pytest.mark.parametrize("language", ["en", "ja", "ko"])
 def test_it_stands_in_the_report(power: None, language: str) -> None:
     machine = eq.load("yamashita-1")
-    text = report(Findings(machine, dumps(machine), "machine.toml"), language)
+    text = report_page(Findings(machine, dumps(machine), "machine.toml"), language)
     assert ("drive power (en)" in text) == (language != "en")
     assert "drive power" in text
 
