@@ -111,7 +111,7 @@ OPTIONS = {
     "new": ["FILE", "--tool", "--study"],
     "plant": ["FILE", "--speed", "--crank-zero", "--angles", "--units", *OUTPUTS],
     "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", "--units", *OUTPUTS],
-    "plot": ["FILE", "--out", "--format", "--only", "--at", "--speed"],
+    "plot": ["FILE", "--out", "--format", "--only", "--at", "--output", "--speed"],
     "plot map": [
         *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed", "--out"],
         "--format",

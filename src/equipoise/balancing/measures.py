@@ -15,11 +15,10 @@ import numpy as np
 from equipoise.balancing.program import Affine, Block, Program
 from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import quantity_of
+from equipoise.mechanism.objectives import output_of, quantity_of
+from equipoise.quantities import SI
 
 Array = np.ndarray[Any, Any]
-
-UNITS = {"force": "N", "torque": "N m", "length": "m", "angle": "rad", "energy": "J"}
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +66,9 @@ def measured(values: Array, measure: Measure) -> float:
 def unit_of(objective: Objective, machine: Machine) -> str:
     """SI unit of a measure of an output."""
     quantity = quantity_of(objective, machine)
-    return "N rad" if quantity is None else UNITS[quantity]
+    if quantity is None:  # the area under what is no torque
+        return f"{SI[output_of(objective.output, machine).dimension]} rad"
+    return SI[quantity]
 
 
 def mean_square_rows(signal: Signal, measure: Measure) -> tuple[Array, Array]:

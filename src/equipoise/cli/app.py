@@ -16,7 +16,7 @@ app = App(
 
 COMMANDS = {
     "analyze": "analyze",
-    "animate": "pictures",
+    "animate": "reports",
     "balance": "balance:app",
     "best": "designs",
     "check": "files",
@@ -28,7 +28,7 @@ COMMANDS = {
     "new": "files",
     "plant": "planting:app",
     "plot": "pictures:plot_app",
-    "report": "pictures",
+    "report": "reports",
     "respond": "vibration",
     "resume": "sweep",
     "schema": "files",

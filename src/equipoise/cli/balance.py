@@ -74,17 +74,11 @@ def balance(
         plan = plan_of(machine, freed, objective, limit)
         with counted("program") as progress:
             found = balancing.balance(machine, plan, progress)
-
-        def show() -> None:
-            from equipoise.present import show as shown
-
-            shown(found)
-
         outputs.write(found.columns)
         outputs.draw(lambda: _drawings(found))
         if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
-        outputs.print(found.to_dict, show)
+        outputs.show(found)
 
 
 def _machine(file: str, speed: float | None) -> Machine:
@@ -148,14 +142,8 @@ def trade_off(
         one, other = read_objective("FIRST", first), read_objective("SECOND", second)
         with counted("point") as progress:
             found = pareto.trade_off(machine, one, other, plan, points, progress)
-
-        def show() -> None:
-            from equipoise.present import show as shown
-
-            shown(found)
-
         outputs.write(found.columns)
-        outputs.give(lambda: _drawings(found), found.to_dict, show)
+        outputs.give_result(found)
 
 
 @app.command
@@ -218,13 +206,7 @@ def sensitivities(
         check_moving(machine)
         with blaming("OUTPUT"):
             found = sensitivity.sensitivities(machine, output)
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(found, zero=crank_zero or 0.0)
-
-    outputs.print(found.to_dict, show)
+    outputs.show(found, zero=crank_zero or 0.0)
 
 
 @app.command

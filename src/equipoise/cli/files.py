@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import gc
 import sys
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
@@ -105,7 +105,7 @@ def new(
     print(f"wrote {path}; next: {command.format(path)}", file=sys.stderr)
 
 
-def _kind(tool: bool, study: bool) -> str:
+def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:
     if tool and study:
         raise UsageError("--tool and --study are two kinds of files; give one of them")
     return "tool" if tool else "study" if study else "linkage"

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
+    from equipoise.present.cells import Units
+    from equipoise.results.result import Result
 
 Kind = Literal["svg", "png", "pdf"]
 Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
@@ -52,6 +54,12 @@ class Printed:
         else:
             show()
 
+    def show(self, found: Result, units: Units | None = None, **options: Any) -> None:
+        """Print a result, further arguments as of `present.show`."""
+        from equipoise.present import show
+
+        self.print(found.to_dict, lambda: show(found, units=units, **options))
+
 
 @Parameter(name="*")
 @dataclass(frozen=True)
@@ -72,6 +80,13 @@ class Drawn(Printed):
         """Write pictures into the folder if there is to be one, and say so."""
         if self.plot is not None:
             write_pictures(drawings(), self.plot, self.format or "svg")
+
+    def give_result(self, found: Result, units: Units | None = None, **options: Any) -> None:
+        """Write the pictures that are wanted, then print; further arguments as of `show`."""
+        from equipoise.figures.pictures import pictures_of
+
+        self.draw(lambda: pictures_of(found))
+        self.show(found, units, **options)
 
     def give(
         self,

@@ -1,45 +1,37 @@
-"""The commands `plot`, `plot map`, `animate` and `report`: what is told in pictures."""
+"""The commands `plot` and `plot map`."""
 
 from __future__ import annotations
 
 import os
 import re
-import shlex
 import sys
 from collections.abc import Iterable, Sequence
-from math import ceil
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
-    SIGNED,
     File,
     Many,
     Out,
     Speed,
-    Text,
-    blaming,
-    check_belonging,
     check_folder,
-    check_result_file,
     count,
     ends_of_range,
     naming,
     quantity,
     read_by,
-    sources_of,
 )
 from equipoise.cli.outputs import Kind, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.checks import unknown
 
 if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.present.pictures import Picture
-    from equipoise.results.analysis import Analysis
     from equipoise.studies.design_space import Model
 
 plot_app = App(name="plot")
@@ -50,7 +42,7 @@ NUMBER = '"links.crank.mass = 300 g"'
 GIVEN = re.compile(r"(?P<path>[^=]+)=(?P<value>.+)", re.DOTALL)
 
 
-def _default(file: str, ending: str) -> str:
+def default_name(file: str, ending: str) -> str:
     """Name of what is written beside the user where no other is given."""
     return f"{os.path.basename(file).removesuffix('.toml')}{ending}"
 
@@ -73,6 +65,7 @@ def plot(
     out: Out = None,
     format: Kind = "svg",
     only: Many = None,
+    output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
     speed: Speed = None,
 ) -> None:
@@ -88,6 +81,8 @@ def plot(
         Kind of the pictures.
     only
         Draw this picture, by its name, and no other.  May be repeated.
+    output
+        Draw this output over crank angle, such as "points.P.vx", instead.  May be repeated.
     at
         Crank angles at which the linkage is drawn, such as "0 deg, 45 deg".
     speed
@@ -98,13 +93,13 @@ def plot(
     from equipoise.present.pictures import each
     from equipoise.schema.output import write_all
 
-    folder = _default(file, "-pictures") if out is None else out
+    folder = default_name(file, "-pictures") if out is None else out
     check_folder("--out", folder)
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
     with naming(file):
-        chosen = _chosen(each(found, at), only)
+        chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
             name = f"{picture.name}.{format}"
             write_all(folder, {name: render(picture.draw(), format)})
@@ -114,12 +109,28 @@ def plot(
     tell_pictures(len(chosen), folder)
 
 
+def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
+    """Outputs over crank angle, in one picture."""
+    from functools import partial
+
+    from equipoise.figures.outputs import outputs_chart
+    from equipoise.present.findings import ToolFindings
+    from equipoise.present.pictures import Picture
+
+    if isinstance(found, ToolFindings):
+        raise UsageError("--output: a tool has no crank angles; leave it out")
+    names = list(dict.fromkeys(names))
+    for name in names:
+        if name not in found.analysis.outputs:
+            raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
+    draw = partial(outputs_chart, found.analysis, names)
+    return [Picture("outputs", "motion", ", ".join(names), draw)]
+
+
 def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Picture]:
     """Those that are wanted; what comes after the last of them is not computed."""
     if only is None:
         return list(pictures)
-    from equipoise.mechanism.checks import unknown
-
     found: dict[str, Picture] = {}
     for picture in pictures:
         found[picture.name] = picture
@@ -171,7 +182,7 @@ def landscape(
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
-    folder = _default(file, "-pictures") if out is None else out
+    folder = default_name(file, "-pictures") if out is None else out
     check_folder("--out", folder)
     objective = read_objective("OUTPUT", output)
     model = Template.load(file)
@@ -233,182 +244,3 @@ def _read(model: Model, option: str, path: str, text: str) -> float:
         return float(text)
     except ValueError:
         raise UsageError(f"{option}: got {text!r} for {path}; give a plain number") from None
-
-
-# -- films -----------------------------------------------------------------------------------------
-
-FILMS = ("svg", "gif", "mp4")
-SVG_FRAMES = 60
-"""In a turn; from one to the next, parts go evenly."""
-LEAST_ANGLES = 720
-"""In a turn, for smooth paths."""
-MOST_PATHS = 3
-
-
-def animate(
-    file: File,
-    /,
-    *,
-    out: Out = None,
-    seconds: Annotated[float, SIGNED] = 2.0,
-    turns: Annotated[int | None, SIGNED] = None,
-    width: Annotated[int, SIGNED] = 640,
-    trace: Many = None,
-    force: bool = False,
-    speed: Speed = None,
-    dark: bool = False,
-) -> None:
-    """Show how a linkage moves: as SVG for a page, as GIF, or as a film in MP4.
-
-    Parameters
-    ----------
-    file
-        Path of a model file, or the name of a bundled example.
-    out
-        The animation: name of an .svg, .gif or .mp4 file; FILE.svg beside you if not given.
-    seconds
-        Time that a turn of the crank takes.
-    turns
-        With .mp4: turns of the crank, the whole cycle if not given.
-    width
-        Width of the picture in pixels.
-    trace
-        A point whose path is drawn; can be given again.  If not given, points that join nothing.
-    force
-        Draw the shaking force on the frame as an arrow.
-    speed
-        With --force: speed of the crank instead of the file's, such as "300 rpm".
-    dark
-        With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
-    """
-    from equipoise.figures.stage import check_seconds, check_width
-    from equipoise.schema.models import load_linkage
-    from equipoise.schema.output import write
-
-    name = _default(file, ".svg") if out is None else out
-    kind = _kind(name)
-    if turns is not None and (kind != "mp4" or turns < 1):
-        raise UsageError(f"--turns: got {turns}; give 1 or more, with a name that ends in .mp4")
-    if dark and kind == "svg":
-        raise UsageError("--dark: an SVG follows the reader's screen; leave it out")
-    check_belonging("--force", force, speed=speed)
-    check_seconds(seconds)
-    check_width(width)
-    machine = load_linkage(file)
-    check_result_file("--out", name, sources_of(machine, file))
-    if speed is not None:
-        machine = machine.with_drive(speed=speed)
-    options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}
-    if kind != "svg":
-        options["dark"] = dark
-    if kind == "mp4":
-        options["turns"] = turns
-    from equipoise.results.analysis import analyze
-
-    with naming(file):
-        found = analyze(machine, _angles_of(kind, seconds))
-        data = _animated(found, kind, force, options)
-    write(name, data)
-    print(f"wrote {name}", file=sys.stderr)
-
-
-def _kind(out: str) -> str:
-    kind = os.path.splitext(out)[1].lower().removeprefix(".")
-    if kind not in FILMS:
-        raise UsageError(f"--out: got {out!r}; give a name that ends in .svg, .gif or .mp4")
-    return kind
-
-
-def _angles_of(kind: str, seconds: float) -> int:
-    """Crank angles in a turn: so many for each frame that paths are smooth."""
-    from equipoise.figures.film import in_a_turn
-
-    frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
-    return frames * ceil(LEAST_ANGLES / frames)
-
-
-def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
-    from equipoise.figures import film
-    from equipoise.figures.stage import Arrow
-    from equipoise.figures.svg import animated_svg
-    from equipoise.symbols.scene import Scene
-
-    scene = Scene.of(found.motion)
-    if options["traced"] is None:
-        options["traced"] = scene.ends[:MOST_PATHS]
-    if force:
-        forces, of_one = found.forces, len(found.machine.rows) > 1
-        options["arrow"] = Arrow(forces.about, forces.shaking_force.value, of_one)
-    if kind == "svg":
-        return animated_svg(scene, title=found.machine.title, frames=SVG_FRAMES, **options)
-    draw = film.gif if kind == "gif" else film.mp4
-    with counted("frame") as told:
-        return draw(scene, told=told, **options)
-
-
-# -- the report ------------------------------------------------------------------------------------
-
-Language = Literal["en", "ja", "ko"]
-"""As in `words`."""
-
-
-def report(
-    file: File,
-    /,
-    *,
-    out: Out = None,
-    language: Language = "en",
-    pdf: bool = False,
-    speed: Text = None,
-) -> None:
-    """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
-
-    Parameters
-    ----------
-    file
-        Path of a model file, or the name of a bundled example.
-    out
-        Name of the report, which ends in .html or .pdf; NAME-report.html beside you if not given.
-    language
-        English, Japanese or Korean.
-    pdf
-        Write a PDF beside the page too.
-    speed
-        Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
-    """
-    paths = _paths(file, out, pdf)
-    rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.present.composition import check, write_document
-    from equipoise.schema.files import printable
-
-    check(paths, language)
-    from equipoise.present.composition import build
-    from equipoise.present.findings import find
-
-    found = find(file, speed=rate)
-    with naming(file):
-        document = build(found, language, _command(file, language, speed), together=True)
-    write_document(document, paths)
-    for path in paths:
-        print(f"wrote {printable(path)}", file=sys.stderr)
-
-
-def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
-    """The files that are wanted."""
-    from equipoise.present.composition import kind_of
-
-    if out is None:
-        out = _default(file, "-report.html")
-    with blaming("--out"):
-        kind = kind_of(out)
-    also = [f"{os.path.splitext(out)[0]}.pdf"] if pdf and kind == "html" else []
-    for path in (out, *also):
-        check_result_file("--out", path, [file])
-    return [out, *also]
-
-
-def _command(file: str, language: str, speed: str | None) -> str:
-    """The command as it can be given again, wherever the report goes."""
-    words = ["equipoise", "report", os.path.basename(file)]
-    words += [] if language == "en" else ["--language", language]
-    return shlex.join([*words, *([] if speed is None else ["--speed", speed])])

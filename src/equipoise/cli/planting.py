@@ -69,13 +69,7 @@ def plant(
     with naming(file):
         figures = read_off(machine if speed is None else machine.with_drive(speed=speed))
         outputs.write(lambda: table(figures, 360 if angles is None else angles))
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(figures, units=shown_in, zero=crank_zero or 0.0)
-
-    outputs.give(lambda: _drawings(figures), figures.to_dict, show)
+    outputs.give_result(figures, shown_in, zero=crank_zero or 0.0)
 
 
 def _drawings(figures: PlantingFigures) -> Mapping[str, Picture]:
@@ -144,10 +138,5 @@ def fit(
     origin = f"Geometry found by equipoise plant fit {Path(targets).name}, seed {fitted.seed}."
     write_model(fitted.machine, new, ", fitted", origin)
     outputs.write(lambda: table(fitted.after))
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(fitted, units=shown_in)
-
-    outputs.give(lambda: _drawings(fitted.after), fitted.to_dict, show)
+    outputs.draw(lambda: _drawings(fitted.after))
+    outputs.show(fitted, shown_in)

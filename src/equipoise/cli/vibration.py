@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
 from equipoise.cli.options import (
@@ -22,21 +21,9 @@ from equipoise.cli.progress import counted
 from equipoise.errors import EquipoiseError, UsageError
 
 if TYPE_CHECKING:
-    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
     from equipoise.present.cells import Units
     from equipoise.vibration.response import Response
-
-
-def _pictures(found: Any) -> Callable[[], Mapping[str, Picture]]:
-    """What draws a result; Matplotlib is imported when the first is drawn, not before."""
-
-    def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures.pictures import pictures_of
-
-        return pictures_of(found)
-
-    return drawings
 
 
 def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()) -> None:
@@ -55,13 +42,7 @@ def modes(file: File, /, *, model: Model | None = None, outputs: Drawn = Drawn()
     machine = load_linkage(file)
     with naming(file):
         found = free.modes(machine, model)
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(found)
-
-    outputs.give(_pictures(found), found.to_dict, show)
+    outputs.give_result(found)
 
 
 def _speeds(option: str, text: str) -> list[float]:
@@ -151,14 +132,8 @@ def simulate(
     machine, shown_in = _machine(file, units, outputs)
     with naming(file):
         found = transient.simulate(machine, duration, speed, drive)
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(found, units=shown_in)
-
     outputs.write(found.columns)
-    outputs.give(_pictures(found), found.to_dict, show)
+    outputs.give_result(found, shown_in)
 
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
@@ -183,14 +158,9 @@ def _answer(
     from equipoise.vibration.forced import respond as solve
 
     found = solve(machine, speed, model, drive)
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(found, units=units, others=None if drive else _others(machine, found))
-
     outputs.write(found.columns)
-    outputs.give(_pictures(found), found.to_dict, show)
+    others = None if drive or outputs.json else _others(machine, found)
+    outputs.give_result(found, units, others=others)
 
 
 QUICK = 40
@@ -230,11 +200,5 @@ def _sweep(
 
     with counted("speed") as progress:
         found = sweep_speed(machine, *ends, model, drive, speeds or SPEEDS, progress)
-
-    def show() -> None:
-        from equipoise.present import show as shown
-
-        shown(found, units=units)
-
     outputs.write(found.columns)
-    outputs.give(_pictures(found), found.to_dict, show)
+    outputs.give_result(found, units)

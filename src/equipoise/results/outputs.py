@@ -116,6 +116,11 @@ class Outputs:
         return self._found[name]
 
     @property
+    def names(self) -> list[str]:
+        """Of all of them."""
+        return list(self._found)
+
+    @property
     def arrays(self) -> list[Output]:
         """Those that stand among the arrays; the size of a vector is told by its components."""
         return [one for one in self if one.declared.array]
@@ -150,3 +155,22 @@ def unit_of(name: str) -> str:
     if found is None:
         raise UsageError(unknown(name, DECLARED, "output"))
     return found[0].unit
+
+
+def documented() -> str:
+    """All declared outputs as the table of the documentation, in Markdown."""
+    head = "| output | unit | what it is | needs | stands in |\n|---|---|---|---|---|\n"
+    return head + "".join(map(_documented, DECLARED.values()))
+
+
+def _documented(one: Declared) -> str:
+    places = {
+        "arrays": one.array and one.read is not None,
+        "summary": one.summed and one.read is not None,
+        "orders": one.ordered,
+        "balance": not one.reason,
+        "compiled studies": one.loop is not None,
+    }
+    stands = ", ".join(place for place, stands in places.items() if stands)
+    what = str(one.note("NAME"))
+    return f"| `{one.named('NAME')}` | {one.unit} | {what} | {one.needs} | {stands} |\n"

@@ -291,27 +291,18 @@ def _four_bar(found: FourBar) -> Iterator[str]:
 
 # -- forces ----------------------------------------------------------------------------------------
 
-FORCES: dict[str, Dimension] = {
-    "shaking_force.x": "force",
-    "shaking_force.y": "force",
-    "shaking_force": "force",
-    "shaking_moment": "torque",
-    "drive_torque": "torque",
-    "frame_force": "force",
-    "frame_moment": "torque",
-}
-
 
 def force_blocks(analysis: Analysis) -> Iterator[Block]:
     """Forces on frame and drive; what they come from; their orders."""
-    summary, rows = analysis.summary, []
-    for name, kind in FORCES.items():
-        found = summary[name]
-        scale = max(summary[other].peak for other, same in FORCES.items() if same == kind)
+    ones = [one for one in analysis.outputs.summed if one.group == "forces"]
+    rows = []
+    for one in ones:
+        found, kind = one.figures, one.dimension
+        scale = max(other.figures.peak for other in ones if other.dimension == kind)
         values = (found.mean, found.rms)
         rows.append(
             (
-                output_named(name, len(analysis.machine.rows)),
+                one.label(),
                 *(Value(value, scale, dimension=kind) for value in values),
                 largest(found, scale, kind),
                 smallest(found, scale, kind),
@@ -379,13 +370,14 @@ def _causes(analysis: Analysis) -> Table:
 
 def orders_table(analysis: Analysis) -> Table:
     """Amplitudes of the first orders that there are."""
-    names = ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque")
-    signals = {name: analysis.by_order[name] for name in names}
+    ones = [one for one in analysis.outputs.ordered if one.declared.compared]
+    kinds = {one.name: one.dimension for one in ones}
+    names, signals = list(kinds), {one.name: analysis.by_order[one.name] for one in ones}
     count = max(len(signal.amplitudes) for signal in signals.values())
     sizes = {name: np.pad(one.sizes, (0, count - len(one.sizes))) for name, one in signals.items()}
     tops = {name: float(np.max(size[1:], initial=0.0)) for name, size in sizes.items()}
     scales = {
-        name: max(tops[other] for other in names if FORCES[other] == FORCES[name]) for name in names
+        name: max(tops[other] for other in names if kinds[other] == kinds[name]) for name in names
     }
     rows = tuple(
         (
@@ -395,7 +387,7 @@ def orders_table(analysis: Analysis) -> Table:
         )
         for k in loud(list(sizes.values()))
     )
-    columns = (Column(output_named(name), FORCES[name]) for name in names)
+    columns = (Column(output_named(name), kinds[name]) for name in names)
     heads = (Column(say("order")), Column(say("frequency"), "frequency"), *columns)
     return Table(say("Amplitudes by order"), heads, rows)
 

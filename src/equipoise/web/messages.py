@@ -13,10 +13,10 @@ from equipoise.quantities.problems import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
 
-KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "download")
+KINDS = ("ready", "open", "edit", "undo", "redo", "balance", "compare", "outputs", "download")
 SLOW = ("balance", "download")
 """Those that take more than a moment."""
-MOST_EDITS = 100
+MOST_EDITS, MOST_OUTPUTS = 100, 20
 LONGEST_LABEL = 200
 LARGEST_MESSAGE = 3 * LARGEST
 """Bytes: of a model file as JSON, in which signs take up to six times their place, but few do."""
@@ -71,6 +71,14 @@ class Message:
         if not isinstance(value, bool):
             _wrong(f"{self.kind}: {key}", value, "true or false")
         return value
+
+    def names(self) -> tuple[str, ...]:
+        """Names of the outputs that a message of the kind `outputs` asks for."""
+        names = self.values.get("names")
+        good = isinstance(names, list) and all(isinstance(name, str) for name in names)
+        if not isinstance(names, list) or not good or len(names) > MOST_OUTPUTS:
+            _wrong("outputs: names", names, f"a list of at most {MOST_OUTPUTS} names")
+        return tuple(dict.fromkeys(names))
 
     @property
     def label(self) -> str:

@@ -46,6 +46,7 @@ class Session:
     preview : what it is while something is dragged; each one starts from `found`.
     before : with which it is compared, if with any.
     scale : of the sliders.  more_told : the design of which `tell_more` has told.
+    wanted : outputs that the page draws besides those that it always does.
     lock : held while a design takes the place of another, since balancing has a thread of its own.
     """
 
@@ -55,6 +56,7 @@ class Session:
     before: Solved | None = None
     scale: Scale | None = None
     more_told: Solved | None = None
+    wanted: tuple[str, ...] = ()
     lock: Lock = field(default_factory=Lock)
 
     def receive(self, message: Message) -> Iterator[Reply]:
@@ -115,6 +117,13 @@ class Session:
     def _compare(self, message: Message) -> Iterator[Reply]:
         first = self._past.first
         self.before = solved(first) if message.flag("on", False) else None
+        yield from self._shown(message.seq)
+
+    def _outputs(self, message: Message) -> Iterator[Reply]:
+        names = message.names()
+        for name in names:
+            _ = self._current().analysis.outputs[name]
+        self.wanted = names
         yield from self._shown(message.seq)
 
     def _balance(self, message: Message) -> Iterator[Reply]:
@@ -209,7 +218,7 @@ class Session:
     def _state(self, seq: int | None) -> Reply:
         assert self.scale is not None
         found, history = self.shown, self._past
-        content, data = state_of(found, self.before)
+        content, data = state_of(found, self.before, self.wanted)
         fields = [self.scale.told(one) for one in fields_of(found.design).values()]
         told = {"undo": history.undo, "redo": history.redo, "fields": fields}
         return Reply({"type": "state", "seq": seq, **told, **content}, data)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Rows
-from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared
 from equipoise.mechanism.tip import surface_of
+from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.symbols.scene import Scene
@@ -25,21 +25,6 @@ Values = dict[str, Any]
 
 MOST_ORDER = 20
 """Highest order of the spectra."""
-SPECTRA = ("shaking_force.x", "shaking_force.y", "shaking_moment", "drive_torque")
-LABELS = {
-    "shaking_force": ("shaking force", "N"),
-    "shaking_force.x": ("shaking force, x", "N"),
-    "shaking_force.y": ("shaking force, y", "N"),
-    "shaking_moment": ("shaking moment", "N m"),
-    "drive_torque": ("drive torque", "N m"),
-    "rows.shaking_force": ("all rows, shaking force", "N"),
-    "rows.shaking_moment": ("all rows, shaking moment", "N m"),
-    "rows.roll_moment": ("all rows, roll moment", "N m"),
-    "rows.yaw_moment": ("all rows, yaw moment", "N m"),
-    "rows.drive_torque": ("all rows, drive torque", "N m"),
-}
-"""Signals of which figures are told."""
-OF_ROWS = ("shaking_force", "shaking_moment", "roll_moment", "yaw_moment", "drive_torque")
 
 
 @dataclass
@@ -71,10 +56,13 @@ class Block:
         return b"".join(part.tobytes() for part in self.parts)
 
 
-def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
+def state_of(
+    found: Solved, before: Solved | None, wanted: Sequence[str] = ()
+) -> tuple[Values, bytes]:
     """Everything that a page draws of a machine.
 
     before : with which it is compared, if with any.
+    wanted : names of further outputs that it draws, as far as there are such.
     """
     analysis, block = found.analysis, Block()
     machine, motion = analysis.machine, analysis.motion
@@ -90,10 +78,12 @@ def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
         block.add(f"guide.{guide.name}", guide.way)
     signals = signals_of(analysis)
     _add_signals(block, signals, analysis)
+    _add_outputs(block, analysis, wanted)
     old = None
     if before is not None:
         old = signals_of(before.analysis)
         _add_signals(block, old, before.analysis, "before.")
+        _add_outputs(block, before.analysis, wanted, "before.")
     content: Values = {
         "name": found.design.name,
         "title": machine.title,
@@ -105,6 +95,17 @@ def state_of(found: Solved, before: Solved | None) -> tuple[Values, bytes]:
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
         "scene": stage_of(scene, movable(machine)),
         "figures": [*_figures(signals, old, _size_of(machine))],
+        "outputs": [
+            {
+                "name": one.name,
+                "label": one.label(),
+                "group": GROUPS[one.group],
+                "unit": shown.name,
+                "factor": shown.factor,
+            }
+            for one in analysis.outputs
+            for shown in [display(one.dimension)]
+        ],
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,
@@ -130,16 +131,16 @@ def signals_of(analysis: Analysis) -> dict[str, Array]:
 
 def _together(analysis: Analysis) -> dict[str, Array]:
     """The same of all rows together, where there are several and they turn."""
-    machine, motion = analysis.machine, analysis.motion
-    if len(machine.rows) < 2 or motion.speed == 0:
+    if analysis.motion.speed == 0:
         return {}
-    rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
-    count, signals = len(motion.crank_angle), {}
-    for output in OF_ROWS:
-        read = rows.signals(Objective(output))
-        parts = Periodic(read.total(phases)[0], read.turns).samples(count)
-        signals[f"rows.{output}"] = parts[0] + 1j * parts[1] if len(parts) > 1 else parts[0]
-    return signals
+    return {f"rows.{name}": values for name, values in analysis.together.items()}
+
+
+def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
+    """Outputs that the page has asked for, in the unit in which it reads them."""
+    for name in names:
+        if name in analysis.outputs:
+            block.add(f"{prefix}output.{name}", analysis.outputs[name].values)
 
 
 def _add_signals(
@@ -158,8 +159,9 @@ def _spectra(analysis: Analysis, signals: dict[str, Array]) -> Iterator[tuple[st
     if analysis.solved is None:
         return
     turns = analysis.motion.turns
-    for name in SPECTRA:
-        yield name, _sizes(analysis.by_order[name])
+    for one in analysis.outputs.ordered:
+        if one.declared.compared:
+            yield one.name, _sizes(analysis.by_order[one.name])
     whole = signals.get("rows.shaking_force")
     if whole is not None:
         yield "rows.shaking_force.x", _sizes(Periodic.of(whole.real, turns))
@@ -218,20 +220,31 @@ def _figures(
         (_peak(values) for one in (parts, olds) for name, values in one.items() if _is_force(name)),
         default=0.0,
     )
-    for name, (label, unit) in LABELS.items():
+    for name, one in told_signals().items():
         if name not in parts:
             continue
         values, was = parts[name], olds.get(name)
         least = NOTHING * loudest * (1.0 if _is_force(name) else size)
-        of_one = "one row, " if several and not name.startswith("rows.") else ""
+        label = one.say("", several)
         for measure, (shown, of) in MEASURES.items():
             entry = {
                 "name": f"{name}.{measure}",
-                "label": f"{of_one}{label}, {shown}",
-                "unit": unit,
+                "signal": label,
+                "measure": measure,
+                "label": f"{label}, {shown}",
+                "unit": one.unit,
                 "value": _plain(of(values), least),
             }
             yield entry if was is None else entry | {"before": _plain(of(was), least)}
+
+
+def told_signals() -> dict[str, Declared]:
+    """Outputs of which figures are told: those of frame and drive, and of all rows together."""
+    return {
+        name: one
+        for name, one in DECLARED.items()
+        if (one.group == "forces" and one.compared) or (one.group == "rows" and one.summed)
+    }
 
 
 def _is_force(name: str) -> bool:

@@ -1,21 +1,33 @@
-"""Figures of many designs at once are those of each alone."""
+"""Figures of the tip: of the whole curve, of the stay in the soil, and clearances."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from typing import Any
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.figures import tip_figures
+from equipoise.mechanism.tip import TipCurve, surface_of
+from equipoise.planting.figures import clearances, distance, tip_figures
 from equipoise.planting.goals import TURNING, dimension_of
 from equipoise.planting.stroke import soil_crossings
 from equipoise.planting.summary import PlantingFigures, plant
-from unit.planting.build import apart
+from unit.planting.build import (
+    EXAMPLES,
+    Array,
+    apart,
+    block,
+    cycle,
+    over_ground,
+    planetary,
+    spinner,
+    tip_at,
+    twice,
+)
 
 NAMES = ("kim-chung-a", "kim-chung-b")
 LENGTHS = {"soil.path_length_ground", "soil.path_length_machine"}
@@ -143,3 +155,317 @@ KINDS = {
 def test_a_name_tells_the_kind_of_quantity(name: str, kind: str | None) -> None:
     assert dimension_of(name) == kind
     assert name in alone("kim-chung-a")[0].figures
+
+
+SAMPLES = 20_001
+"""Sums over chords and largest samples are right to the square of a step: some 1e-8."""
+MACHINES: dict[str, Any] = {
+    **{name: lambda name=name: eq.load(name) for name in EXAMPLES},
+    "backward": lambda: eq.load("kim-chung-b").with_planting(travel="backward", finger_from="C"),
+    "speeding up": lambda: eq.load("kim-chung-a").with_drive(acceleration=150.0),
+    "twice": twice,
+    "three turns": lambda: planetary(-20.0, depth=0.05),
+    "spinner": lambda: spinner(depth=0.06),
+}
+every_machine = pytest.mark.parametrize("name", MACHINES)
+
+
+@cache
+def found(name: str) -> PlantingFigures:
+    return plant(MACHINES[name]())
+
+
+def stay(figures: PlantingFigures) -> Array:
+    """Crank angles from entry to exit, running on in the sense of the drive."""
+    entry, sense = figures["entry.crank_angle"], np.sign(figures["speed"])
+    travel = sense * (figures["exit.crank_angle"] - entry) % figures.curve.period
+    return entry + sense * np.linspace(0.0, travel, SAMPLES)
+
+
+@every_machine
+def test_travel_time_and_depth(name: str) -> None:
+    figures, theta = found(name), stay(found(name))
+    travel = abs(theta[-1] - theta[0])
+    assert figures["soil.crank_travel"] == pytest.approx(travel, abs=1e-12)
+    assert figures["soil.time"] == pytest.approx(travel / abs(figures["speed"]), rel=1e-12)
+    lowest = tip_at(figures.machine, theta).y.min()
+    assert figures["soil.depth"] == pytest.approx(figures["surface"] - lowest, abs=1e-8)
+
+
+@every_machine
+def test_lengths_by_chords(name: str) -> None:
+    figures, theta = found(name), stay(found(name))
+    machine = np.sum(np.abs(np.diff(tip_at(figures.machine, theta).place)))
+    ground = over_ground(figures, theta)
+    assert figures["soil.path_length_machine"] == pytest.approx(machine, rel=1e-7)
+    assert figures["soil.path_length_ground"] == pytest.approx(
+        np.sum(np.abs(np.diff(ground))), rel=1e-7
+    )
+    advance = (ground[-1] - ground[0]).real
+    assert figures["soil.ground_advance"] == pytest.approx(advance, abs=1e-13)
+    assert figures["soil.ground_distance"] == abs(figures["soil.ground_advance"])
+
+
+@every_machine
+def test_largest_acceleration_by_sampling(name: str) -> None:
+    figures, theta = found(name), stay(found(name))
+    sizes = np.abs(tip_at(figures.machine, theta).acceleration_vector)
+    assert sizes.max() * (1 - 1e-12) <= figures["soil.max_acceleration.value"]
+    assert figures["soil.max_acceleration.value"] == pytest.approx(sizes.max(), rel=1e-7)
+    if name != "spinner":  # whose acceleration is the same everywhere
+        at = figures["soil.max_acceleration.crank_angle"]
+        assert apart(at, theta[np.argmax(sizes)]) < 1e-3
+        assert abs(tip_at(figures.machine, at).acceleration_vector[0]) == pytest.approx(sizes.max())
+
+
+def test_the_largest_acceleration_may_lie_where_the_tip_leaves() -> None:
+    figures = found("twice")
+    leaving = figures["exit.acceleration.size"]
+    assert figures["soil.max_acceleration.value"] == pytest.approx(leaving, rel=1e-12)
+    assert leaving < figures["max_acceleration.value"] / 1.5
+
+
+# -- the hole --------------------------------------------------------------------------------------
+
+
+def cuts(figures: PlantingFigures, base: str) -> Array:
+    """Places over ground at which the finger cuts the surface, while its foot is above."""
+    theta = stay(figures)
+    foot = eq.move(figures.machine, theta).points[base].place
+    tip, level = tip_at(figures.machine, theta).place, figures["surface"]
+    share = (level - tip.imag) / (foot.imag - tip.imag)
+    x = over_ground(figures, theta).real + share * (foot - tip).real
+    return np.asarray(x[foot.imag >= level])
+
+
+@pytest.mark.parametrize("finger_from", ["B", "C"])
+@pytest.mark.parametrize("name", EXAMPLES)
+def test_hole_by_sampling(name: str, finger_from: str) -> None:
+    machine = eq.load(name).with_planting(finger_from=finger_from)
+    figures = plant(machine)
+    places = cuts(figures, finger_from)
+    assert len(places) == SAMPLES
+    assert figures["soil.hole_length"] == pytest.approx(np.ptp(places), rel=1e-7)
+    assert figures["soil.hole_length"] >= np.ptp(places) * (1 - 1e-12)
+
+
+def test_hole_of_a_finger_that_goes_all_below() -> None:
+    """Its foot is 20 mm from the tip and 40 mm deep: the cut ends at a jump."""
+    machine = eq.load("kim-chung-a")
+    points = machine.links["coupler"].points
+    up = np.array(points["B"]) - points["P"]
+    near = np.array(points["P"]) + 0.02 * up / np.hypot(*up)
+    machine = machine.with_link("coupler", points={**points, "K": tuple(map(float, near))})
+    figures = plant(machine.with_planting(finger_from="K"))
+    places = cuts(figures, "K")
+    assert 1000 < len(places) < SAMPLES - 1000
+    assert figures["soil.hole_length"] == pytest.approx(np.ptp(places), abs=3e-5)
+
+
+def test_a_machine_at_rest_has_no_ground_figures_of_the_stay() -> None:
+    moving, resting = found("kim-chung-a"), plant(MACHINES["kim-chung-a"]().with_planting(
+        forward_speed=0.0))  # fmt: skip
+    missing = set(moving.figures) - set(resting.figures)
+    assert {f"soil.{key}" for key in ("path_length_ground", "ground_advance", "ground_distance",
+                                      "hole_length")} <= missing  # fmt: skip
+    for key in ("crank_travel", "time", "depth", "path_length_machine", "max_acceleration.value"):
+        assert resting[f"soil.{key}"] == pytest.approx(moving[f"soil.{key}"], rel=1e-13)
+
+
+# -- limits ----------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sense", [1, -1])
+@pytest.mark.parametrize("name", ["kim-chung-a", "twice", "three turns"])
+def test_at_the_highest_speed_the_limit_is_just_met(name: str, sense: int) -> None:
+    """One way round all of the path is held to its limit, the other way the stay in the soil."""
+    limits = {"acceleration_limit": 80.0, "soil_acceleration_limit": 30.0}
+    machine = MACHINES[name]().with_planting(**limits)
+    limit, largest = {
+        1: ("acceleration", "max_acceleration.value"),
+        -1: ("soil_acceleration", "soil.max_acceleration.value"),
+    }[sense]
+    figures, wanted = plant(machine), limits[f"{limit}_limit"]
+    assert figures[f"limits.{limit}.limit"] == wanted
+    highest = figures[f"limits.{limit}.highest_speed"]
+    assert plant(machine, speed=sense * highest)[largest] == pytest.approx(wanted, rel=1e-9)
+
+
+def test_limits_leave_the_acceleration_of_the_drive_aside() -> None:
+    machine = eq.load("kim-chung-a").with_planting(acceleration_limit=80.0)
+    steady, rising = (plant(machine.with_drive(acceleration=a)) for a in (0.0, 150.0))
+    name = "limits.acceleration.highest_speed"
+    assert rising[name] == steady[name]
+    assert rising["max_acceleration.value"] != steady["max_acceleration.value"]
+
+
+def test_without_limits_there_are_none() -> None:
+    assert not any(name.startswith("limits") for name in found("kim-chung-a").figures)
+    only = plant(eq.load("kim-chung-a").with_planting(soil_acceleration_limit=30.0))
+    assert {name for name in only.figures if name.startswith("limits")} == {
+        "limits.soil_acceleration.limit",
+        "limits.soil_acceleration.highest_speed",
+        "limits.soil_acceleration.highest_forward_speed",
+    }
+
+
+def test_a_limit_of_one_g_on_the_crank() -> None:
+    """r omega^2 = g."""
+    figures = plant(spinner(acceleration_limit=9.80665))
+    highest = figures["limits.acceleration.highest_speed"]
+    assert highest == pytest.approx(np.sqrt(98.0665), rel=1e-12)
+
+
+FIELDS: dict[str, Any] = {
+    "kim-chung-a": lambda: eq.load("kim-chung-a").with_planting(tray=((0.05, 0.03), (0.01, 0.0))),
+    "kim-chung-b": lambda: eq.load("kim-chung-b").with_planting(tray=((-0.16, 0.05), (-0.15, 0.1))),
+    "kim-chung-c": lambda: eq.load("kim-chung-c").with_planting(tray=((0.1, 0.1), (0.2, 0.1))),
+    "deep": lambda: eq.load("kim-chung-a").with_planting(depth=0.15, tray=((0.3, 0.1), (0.2, 0.2))),
+    "twice": lambda: twice(tray=((0.2, 0.0), (0.2, 0.1))),
+    "three turns": lambda: planetary(tray=((0.11, 0.0), (0.12, 0.0))),
+    "spinner": lambda: spinner(tray=((0.05, 0.1), (-0.1, 0.02))),
+}  # fmt: skip
+every_field = pytest.mark.parametrize("name", FIELDS)
+
+
+@cache
+def curve_of(name: str) -> TipCurve:
+    return TipCurve([FIELDS[name]()])
+
+
+class Clearance(NamedTuple):
+    value: float
+    crank_angle: float
+
+
+def clearances_from(ground: str, curve: TipCurve) -> dict[str, Clearance]:
+    """Body -> its clearance from the soil or the tray."""
+    found = clearances(curve, soil_crossings(curve)[0])
+    begin, end = f"clearance.{ground}.", ".value"
+    bodies = [
+        name[len(begin) : -len(end)]
+        for name in found
+        if name.startswith(begin) and name.endswith(end)
+    ]
+    return {
+        body: Clearance(*(float(found[f"{begin}{body}.{key}"][0]) for key in Clearance._fields))
+        for body in bodies
+    }
+
+
+def soil_clearances(curve: TipCurve) -> dict[str, Clearance]:
+    return clearances_from("soil", curve)
+
+
+def tray_clearances(curve: TipCurve) -> dict[str, Clearance]:
+    return clearances_from("tray", curve)
+
+
+def outline(machine: eq.Machine, link: str) -> list[str]:
+    """Points of a link but the tip."""
+    assert machine.planting is not None
+    return [point for point in machine.links[link].points if point != machine.planting.tip]
+
+
+def near(found: Clearance, samples: Array, value_at: Any) -> None:
+    """Compare with samples: none is smaller, and the crank angle told has the value told."""
+    step = np.max(np.abs(np.diff(samples)))
+    assert found.value - 1e-13 <= samples.min() <= found.value + step
+    assert value_at(np.array([found.crank_angle]))[0] == pytest.approx(found.value, abs=1e-13)
+
+
+@every_field
+def test_clearance_above_the_soil(name: str) -> None:
+    machine = FIELDS[name]()
+    theta = np.sort(np.abs(cycle(machine)))
+    found = soil_clearances(curve_of(name))
+    assert list(found) == [link for link in machine.links if outline(machine, link)]
+    for link, clearance in found.items():
+
+        def height(angles: Array, link: str = link) -> Any:
+            points = eq.move(machine, angles).points
+            lowest = np.min([points[point].y for point in outline(machine, link)], axis=0)
+            return lowest - surface_of(machine)
+
+        near(clearance, height(theta), height)
+
+
+@every_field
+def test_clearance_from_the_tray(name: str) -> None:
+    machine = FIELDS[name]()
+    assert machine.planting is not None
+    assert machine.planting.tray is not None
+    start, stop = (complex(*end) for end in machine.planting.tray)
+    theta = np.sort(np.abs(cycle(machine)))
+    found = tray_clearances(curve_of(name))
+    bodies = {link: outline(machine, link) for link in machine.links}
+    bodies["tip P"] = ["P"]
+    assert list(found) == [body for body, points in bodies.items() if points]
+    for body, clearance in found.items():
+
+        def gap(angles: Array, body: str = body) -> Any:
+            motion = eq.move(machine, angles).points
+            places = [motion[point].place for point in bodies[body]]
+            lines = [*combinations(places, 2)] or [(places[0], places[0])]
+            return np.min([between(a, b, start, stop) for a, b in lines], axis=0)
+
+        near(clearance, gap(theta), gap)
+
+
+def between(a: Array, b: Array, c: complex, d: complex) -> Array:
+    """Distance of lines by another way: the closest of both lines' parameters, one by one.
+
+    The distance is convex in both shares, so that its least value over the square lies where both
+    slopes vanish or on one of the four sides, where one share is 0 or 1 and the other follows.
+    """
+    u, v, w = b - a, d - c, a - c
+    gaps = []
+    for share in (0.0, 1.0):
+        gaps.append(np.abs(w + share * u - clipped(w + share * u, v) * v))
+        gaps.append(np.abs(w - share * v + clipped(share * v - w, u) * u))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turned = (np.conj(u) * v).imag
+        s, t = (np.conj(v) * w).imag / turned, (np.conj(u) * w).imag / turned
+    inside = (s >= 0) & (s <= 1) & (t >= 0) & (t <= 1)
+    return np.asarray(np.where(inside, 0.0, np.min(gaps, axis=0)))
+
+
+def clipped(point: Any, along: Any) -> Any:
+    """Share of a line from 0 along a vector that is closest to a point."""
+    square = np.maximum(np.abs(along) ** 2, 1e-300)
+    return np.clip((np.conj(along) * point).real / square, 0.0, 1.0)
+
+
+def test_trays_are_met_and_missed() -> None:
+    values = [found.value for name in FIELDS for found in tray_clearances(curve_of(name)).values()]
+    assert min(values) == 0.0
+    assert max(values) > 0.05
+    depths = [found.value for name in FIELDS for found in soil_clearances(curve_of(name)).values()]
+    assert min(depths) < 0 < max(depths)
+
+
+def test_without_a_tray_there_is_no_clearance_from_it() -> None:
+    assert tray_clearances(TipCurve([eq.load("kim-chung-a")])) == {}
+
+
+def test_a_link_of_which_only_the_tip_is_known_is_left_out() -> None:
+    assert list(soil_clearances(TipCurve([block()]))) == ["crank", "rod"]
+
+
+@pytest.mark.parametrize(
+    ("line", "wanted"),
+    [
+        ((-1 + 1j, 1 + 1j), 1.0),
+        ((3 + 4j, 5 + 9j), np.hypot(2, 4)),
+        ((-1 - 1j, 1 + 1j), 0.0),
+        ((2 + 0j, 3 + 0j), 1.0),
+        ((0.5 + 0j, 3 + 0j), 0.0),
+        ((0.5 + 2j, 0.5 + 0.25j), 0.25),
+        ((0.5 + 2j, 0.5 + 2j), 2.0),
+    ],
+)
+def test_distance_of_two_lines(line: tuple[complex, complex], wanted: float) -> None:
+    """From the line from -1 to 1."""
+    one, other = (np.array([end]) for end in line)
+    assert distance(one, other, -1 + 0j, 1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)
+    assert distance(other, one, 1 + 0j, -1 + 0j)[0] == pytest.approx(wanted, abs=1e-15)

@@ -1,4 +1,4 @@
-"""All figures as one result: names, notes, plain data, and what cannot be read off."""
+"""All that is read off a planting machine: figures, forces in the soil, and a table."""
 
 from __future__ import annotations
 
@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import ModelError, MotionError
+from equipoise.errors import ModelError, MotionError, UsageError
 from equipoise.mechanism.field import Planting, Soil
-from equipoise.planting.summary import PlantingFigures, plant
+from equipoise.planting.summary import PlantingFigures, plant, soil_forces, table
 from unit.mechanism.build import four_bar
 from unit.planting.build import EXAMPLES, TURN, planetary, spinner, twice
 
@@ -213,3 +213,160 @@ def test_a_crank_that_cannot_turn() -> None:
     values = Planting(tip="C", forward_speed=0.6, surface=0.5)
     with pytest.raises(MotionError, match="the crank cannot turn fully"):
         plant(four_bar(1.0, 0.9, 0.5, 0.9, planting=values))
+
+
+SOIL = Soil(resistance=5.0, per_depth=400.0)
+
+
+@pytest.mark.parametrize("name", [*EXAMPLES, "three turns"])
+def test_both_are_what_an_analysis_finds(name: str) -> None:
+    machine = planetary(depth=0.05) if name == "three turns" else eq.load(name)
+    found = soil_forces(machine.with_planting(soil=SOIL))
+    assert found is not None
+    wet = eq.analyze(machine.with_planting(soil=SOIL), 720).forces
+    dry = eq.analyze(machine, 720).forces
+    for got, want in ((found.in_soil, wet), (found.in_air, dry)):
+        np.testing.assert_allclose(got.drive_torque, want.drive_torque, rtol=1e-12, atol=1e-12)
+        for joint in want.joints:
+            np.testing.assert_allclose(got.joints[joint].value, want.joints[joint].value,
+                                       rtol=1e-12, atol=1e-10)  # fmt: skip
+    assert np.max(np.abs(wet.drive_torque - dry.drive_torque)) > 0.1
+    np.testing.assert_array_equal(found.motion.crank_angle, wet.motion.crank_angle)
+
+
+def test_figures_of_torque_and_joints() -> None:
+    machine = eq.load("kim-chung-b").with_planting(soil=SOIL)
+    found = soil_forces(machine)
+    assert found is not None
+    compared = found.compared()
+    assert list(compared) == ["drive_torque", "joints.A", "joints.B", "joints.D", "joints.C"]
+    for name, (air, soil) in compared.items():
+        for figures, forces in ((air, found.in_air), (soil, found.in_soil)):
+            values = forces.drive_torque if name == "drive_torque" else (
+                forces.joints[name.removeprefix("joints.")].size
+            )  # fmt: skip
+            k = int(np.argmax(np.abs(values)))
+            assert figures.peak == abs(values[k])
+            assert figures.peak_at == found.motion.crank_angle[k]
+            assert figures.mean == pytest.approx(np.mean(values), rel=1e-12)
+
+
+def test_loads_of_the_machine_act_in_air_and_in_soil() -> None:
+    machine = eq.load("kim-chung-a").with_planting(soil=SOIL)
+    loaded = replace(machine, loads=(eq.Load("crank", torque=-1.0),))
+    found = soil_forces(loaded)
+    bare = soil_forces(machine)
+    assert found is not None
+    assert bare is not None
+    np.testing.assert_allclose(found.in_air.drive_torque, bare.in_air.drive_torque + 1)
+    np.testing.assert_allclose(found.in_soil.drive_torque, bare.in_soil.drive_torque + 1)
+
+
+def test_no_soil_or_masses_no_forces() -> None:
+    assert soil_forces(eq.load("kim-chung-a")) is None
+    assert soil_forces(eq.load("yamashita-1")) is None
+    assert soil_forces(twice(soil=SOIL)) is None
+    assert plant(twice(soil=SOIL)).forces is None
+    assert "forces" not in plant(twice(soil=SOIL)).to_dict()
+
+
+def test_they_stand_in_the_output() -> None:
+    figures = plant(eq.load("kim-chung-a").with_planting(soil=SOIL))
+    given = figures.to_dict()["forces"]
+    assert figures.forces is figures.forces
+    assert figures.forces is not None
+    air, soil = figures.forces.compared()["joints.C"]
+    assert given["joints.C"]["in_air"]["peak"] == air.peak
+    assert given["joints.C"]["in_soil"]["max_at"] == soil.max_at
+    assert set(given["drive_torque"]["in_soil"]) == {
+        "mean", "rms", "peak", "peak_at", "max", "max_at", "min", "min_at", "peak_to_peak"
+    }  # fmt: skip
+
+
+MACHINES: dict[str, Any] = {
+    "counterclockwise": lambda: eq.load("kim-chung-a"),
+    "clockwise": lambda: eq.load("kim-chung-c"),
+    "backward": lambda: eq.load("kim-chung-b").with_planting(travel="backward"),
+    "speeding up": lambda: eq.load("kim-chung-a").with_drive(acceleration=70.0),
+    "three turns": lambda: planetary(-20.0),
+}
+UNITS = {"x": "m", "y": "m", "ground_x": "m", "vx": "m/s", "vy": "m/s", "speed": "m/s",
+         "ground_vx": "m/s", "ground_speed": "m/s", "ax": "m/s^2", "ay": "m/s^2",
+         "acceleration": "m/s^2"}  # fmt: skip
+
+
+@cache
+def table_of(name: str) -> PlantingFigures:
+    return plant(MACHINES[name]())
+
+
+@pytest.mark.parametrize("angles", [1, 7, 90])
+@pytest.mark.parametrize("name", MACHINES)
+def test_columns_are_those_of_the_motion(name: str, angles: int) -> None:
+    figures = table_of(name)
+    columns = {key: values for key, _, values in table(figures, angles)}
+    turns = figures.curve.turns
+    theta = np.sign(figures["speed"]) * np.arange(angles * turns) * TURN / angles
+    time = theta / figures["speed"]
+    motion = eq.move(figures.machine, theta)
+    np.testing.assert_allclose(columns["time"], time, rtol=1e-14)
+    np.testing.assert_allclose(
+        np.exp(1j * columns["crank_angle"] / turns), np.exp(1j * theta / turns), atol=1e-13
+    )
+    assert np.all((columns["crank_angle"] >= 0) & (columns["crank_angle"] < TURN * turns))
+    points = {"tip": motion.points["P"], "center_of_mass": motion.mass_centers[figures.curve.link]}
+    for point, moving in points.items():
+        ahead = moving.velocity + figures["forward_speed"]
+        wanted = {
+            "x": moving.x,
+            "y": moving.y,
+            "ground_x": moving.x + figures["forward_speed"] * time,
+            "vx": moving.vx,
+            "vy": moving.vy,
+            "speed": np.hypot(moving.vx, moving.vy),
+            "ground_vx": ahead.real,
+            "ground_speed": np.abs(ahead),
+            "ax": moving.ax,
+            "ay": moving.ay,
+            "acceleration": np.hypot(moving.ax, moving.ay),
+        }
+        assert wanted.keys() == UNITS.keys()
+        for key, values in wanted.items():
+            np.testing.assert_allclose(columns[f"{point}.{key}"], values, rtol=1e-12, atol=1e-13)
+
+
+def test_names_and_units_in_order() -> None:
+    columns = table(table_of("clockwise"), 4)
+    assert [(name, unit) for name, unit, _ in columns] == [
+        ("crank_angle", "rad"),
+        ("time", "s"),
+        *((f"tip.{key}", unit) for key, unit in UNITS.items()),
+        *((f"center_of_mass.{key}", unit) for key, unit in UNITS.items()),
+    ]
+
+
+def test_rows_follow_time_whichever_way_the_crank_turns() -> None:
+    for name in ("counterclockwise", "clockwise"):
+        columns = {key: values for key, _, values in table(table_of(name), 8)}
+        assert np.all(np.diff(columns["time"]) > 0)
+        assert columns["crank_angle"][0] == 0
+        step = np.diff(np.degrees(columns["crank_angle"]))[1:]
+        np.testing.assert_allclose(step, 45 if name == "counterclockwise" else -45)
+
+
+def test_without_masses_there_is_no_centre_of_mass() -> None:
+    names = [name for name, _, _ in table(plant(twice()), 3)]
+    assert names == ["crank_angle", "time", *(f"tip.{key}" for key in UNITS)]
+
+
+def test_the_table_has_360_crank_angles_a_turn_unless_said_otherwise() -> None:
+    assert {len(values) for _, _, values in table(table_of("clockwise"))} == {360}
+    assert {len(values) for _, _, values in table(table_of("three turns"))} == {1080}
+
+
+@pytest.mark.parametrize("angles", [0, -3, 400_001])
+def test_a_number_of_crank_angles_that_cannot_be(angles: int) -> None:
+    with pytest.raises(UsageError, match=f"got {angles}; give 1 to 400000"):
+        table(plant(spinner()), angles)
+    with pytest.raises(UsageError, match="give 1 to 133333"):
+        table(table_of("three turns"), 133_334)

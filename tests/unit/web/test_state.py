@@ -44,7 +44,7 @@ def test_rows_add_up_as_their_phases_say() -> None:
         total = sum(np.roll(one, -samples) for samples in ahead)
         scale = np.max(np.abs(one))
         np.testing.assert_allclose(read(f"rows.{name}"), total, atol=2e-5 * scale)
-    assert shown.figure("drive_torque.rms")["label"] == "one row, drive torque, RMS"
+    assert shown.figure("drive_torque.rms")["label"] == "one row: drive torque, RMS"
 
 
 def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:

@@ -1,23 +1,34 @@
-"""What may be added to quieten a machine: each wrong value is refused at its key."""
+"""What may be changed to quieten a machine: each wrong value is refused at its key."""
 
 from __future__ import annotations
 
+import pickle
 from dataclasses import replace
-from math import inf, nan
+from math import inf, nan, pi, radians
 from typing import Any
 
 import pytest
 
+import equipoise as eq
 from equipoise.mechanism.balance import (
+    LISTS,
+    MOST,
     AddedMass,
     Balance,
     BalanceShafts,
     CenterMove,
     GearedWeight,
+    Limit,
+    Objective,
+    Phases,
+    SpringChoice,
     Weight,
     largest_mass,
 )
-from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, STEEL, refused
+from equipoise.mechanism.objectives import output_of, quantity_of
+from equipoise.mechanism.outputs import joint_names
+from equipoise.mechanism.support import Row
+from unit.mechanism.balances import ALONE, DISC, FOUR, GEARED, ROOM, SHAFTS, SPRING, STEEL, refused
 from unit.mechanism.build import ORIGIN, body, slider_crank
 
 # -- weights ---------------------------------------------------------------------------------------
@@ -221,3 +232,231 @@ def test_names_of_shafts_against_geared_weights() -> None:
     geared = replace(GEARED, name="balance-shaft-2")
     refused("balance.shafts[1].name", "'balance-shaft-2' is given twice; give each its own name",
             Balance(geared=(geared,), shafts=(SHAFTS,)))  # fmt: skip
+
+
+# -- springs and phases ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("spring", "key", "words"),
+    [
+        (replace(SPRING, link="roker"), ".link",
+         "no link is called 'roker'; did you mean 'rocker'?"),
+        (replace(SPRING, point="B"), ".point",
+         "no point of rocker is called 'B'; there are 'D', 'C'"),
+        (replace(SPRING, to="C"), ".to",
+         "no point of the frame is called 'C'; there are 'A', 'D'"),
+        (replace(SPRING, point="D"), ".point",
+         "'D' is pinned to the frame, where a spring does nothing; give a point that moves"),
+        (replace(SPRING, stiffness=0.0), ".stiffness", "got 0 N/m; give more than 0"),
+        (replace(SPRING, free_length=(-0.1, 0.1)), ".free_length[1]",
+         "got -0.1 m; give 0 or more"),
+        (replace(SPRING, free_length=(0.12, 0.02)), ".free_length",
+         "got 120 to 20 mm; give the smaller one first"),
+    ],
+)  # fmt: skip
+def test_springs(spring: SpringChoice, key: str, words: str) -> None:
+    refused(f"balance.springs[1]{key}", words, Balance(springs=(spring,)))
+
+
+@pytest.mark.parametrize("degrees", [0, -5, 90.1])
+def test_steps_of_phases(degrees: float) -> None:
+    refused("balance.phases.step",
+            f"got {degrees:g} deg; give more than 0 deg and at most 90 deg",
+            Balance(phases=Phases(radians(degrees))))  # fmt: skip
+
+
+def test_phases_need_rows() -> None:
+    for machine, count in ((ALONE, 0), (replace(ALONE, rows=(Row(),)), 1)):
+        refused("balance.phases",
+                f"got {count} rows, which leaves no phase to choose; give two at least",
+                Balance(phases=Phases()), machine)  # fmt: skip
+    assert FOUR.with_balance(Balance(phases=Phases(pi / 2))).balance is not None
+
+
+# -- objectives and limits -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("objective", "key", "words"),
+    [
+        (Objective("shaking"), "output",
+         "no output is called 'shaking'; did you mean 'shaking_force'?"),
+        (Objective("shaking_force.z"), "output",
+         "no output is called 'shaking_force.z'; did you mean 'shaking_force.y'?"),
+        (Objective("x"), "output",
+         "no output is called 'x'; there are 'shaking_force.x', 'shaking_force.y', "
+         "'shaking_force', 'shaking_moment', 'drive_torque', 'frame_force.x', 'frame_force.y', "
+         "'frame_force', 'frame_moment', 'joints.A', 'joints.D', 'joints.B', 'joints.C', "
+         "'roll_moment', 'yaw_moment', 'gauges.g', 'gauges.nod'"),
+        (Objective("drive_torque.x"), "output",
+         "no output is called 'drive_torque.x'; did you mean 'drive_torque'?"),
+        (Objective("joints.Q"), "output",
+         "no joint is called 'Q'; there are 'A', 'D', 'B', 'C'"),
+        (Objective("joints.B.z"), "output",
+         "no joint is called 'B.z'; there are 'A', 'D', 'B', 'C'"),
+        (Objective("gauges.h"), "output",
+         "no gauge is called 'h'; there are 'g', 'nod'"),
+        (Objective("shaking_moment", "max"), "measure",
+         "got 'max'; give 'rms', 'ripple', 'peak', 'peak_to_peak' or 'area'"),
+        (Objective("shaking_force", "ripple"), "output",
+         "shaking_force is a vector, which has no ripple; give .x or .y"),
+        (Objective("frame_force", "peak_to_peak"), "output",
+         "frame_force is a vector, which has no peak_to_peak; give .x or .y"),
+        (Objective("joints.B", "area"), "output",
+         "joints.B is a vector, which has no area; give .x or .y"),
+        (Objective("drive_torque", orders=(1.0, -1.0)), "orders[2]", "got -1; give 0 or more"),
+        (Objective("drive_torque", orders=(1.0, 2.0, 1.0)), "orders[3]", "1 is given twice"),
+        (Objective("drive_torque", orders=(*range(201),)), "orders",
+         "got 201; at most 200 are computed with"),
+        (Objective("drive_torque", about="A"), "about",
+         "goes with shaking_moment and frame_moment; leave it out"),
+        (Objective("shaking_moment", about="B"), "about",
+         "no point of the frame is called 'B'; there are 'A', 'D'"),
+        (Objective("drive_torque", speeds=(1.0,)), "speeds",
+         "goes with gauges; other outputs are taken at the speed of the drive"),
+        (Objective("gauges.g", speeds=(1.0, 0.0)), "speeds[2]",
+         "the crank stands still there; give another speed"),
+        (Objective("gauges.g", speeds=(1.0, 1.0)), "speeds[2]", "the same speed is given twice"),
+        (Objective("links.rocker.angle"), "output",
+         "links.rocker.angle is a part of the motion, which masses do not change"),
+        (Objective("weight.x"), "output",
+         "weight.x shakes nothing; take the force or moment on the frame instead"),
+        (Objective("drive_torque", weight=0.0), "weight", "got 0; give more than 0"),
+        (Objective("drive_torque", weight=nan), "weight", "got nan; give a finite number"),
+    ],
+)  # fmt: skip
+def test_objectives(objective: Objective, key: str, words: str) -> None:
+    refused(f"balance.objectives[1].{key}", words, Balance(objectives=(objective,)))
+    limit = Limit(objective, ratio=1.0)
+    refused(f"balance.limits[1].{key}", words, Balance(limits=(limit,)))
+
+
+@pytest.mark.parametrize(
+    ("output", "words"),
+    [
+        ("gauges.g", "there is no gauge; give a support with gauges"),
+        ("roll_moment", "roll_moment comes from linkages side by side; give [[rows]]"),
+        ("yaw_moment", "yaw_moment comes from linkages side by side; give [[rows]]"),
+    ],
+)
+def test_outputs_of_support_and_rows(output: str, words: str) -> None:
+    balance = Balance(objectives=(Objective(output),))
+    refused("balance.objectives[1].output", words, balance, ALONE)
+    assert replace(FOUR, balance=balance).balance == balance
+
+
+@pytest.mark.parametrize(
+    ("limit", "key", "words"),
+    [
+        (Limit(Objective("drive_torque")), "",
+         "give either at_most or ratio, its share of the value before"),
+        (Limit(Objective("drive_torque"), 1.0, 1.0), "",
+         "give either at_most or ratio, its share of the value before"),
+        (Limit(Objective("drive_torque"), 0.0), ".at_most",
+         "got 0 in SI units; give more than 0"),
+        (Limit(Objective("drive_torque"), ratio=-0.8), ".at_most",
+         "got -80 %; give more than 0"),
+        (Limit(Objective("shaking_force.x", "area"), 1.0), ".at_most",
+         "there is no unit for the area under shaking_force.x; give a share of the value before, "
+         'such as "80 %"'),
+        (Limit(Objective("gauges.g", "area"), 1.0), ".at_most",
+         "there is no unit for the area under gauges.g; give a share of the value before, such as "
+         '"80 %"'),
+    ],
+)  # fmt: skip
+def test_limits(limit: Limit, key: str, words: str) -> None:
+    refused(f"balance.limits[1]{key}", words, Balance(limits=(limit,)))
+
+
+def test_the_whole() -> None:
+    refused("balance.combine", "got 'max'; give 'sum' or 'squares'",
+            Balance(combine="max"))  # type: ignore[arg-type] # fmt: skip
+    refused("balance.added_mass", "got 0 kg; give more than 0", Balance(added_mass=0.0))
+
+
+MANY: dict[str, Any] = {
+    "moves": CenterMove("crank"),
+    "masses": AddedMass("crank", "A", ROOM),
+    "geared": GEARED,
+    "shafts": SHAFTS,
+    "springs": SPRING,
+    "objectives": Objective("drive_torque"),
+    "limits": Limit(Objective("drive_torque"), 1.0),
+}
+
+
+@pytest.mark.parametrize("key", LISTS)
+def test_numbers_of_items(key: str) -> None:
+    refused(f"balance.{key}", f"got {MOST + 1}; at most {MOST} are computed with",
+            Balance(**{key: (MANY[key],) * (MOST + 1)}))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("where", "balance"),
+    [
+        ("balance.masses[1].thickness",
+         Balance(masses=(AddedMass("crank", "A", replace(DISC, thickness=inf)),))),
+        ("balance.geared[1].ratio[2]", Balance(geared=(replace(GEARED, ratio=(1.0, inf)),))),
+        ("balance.geared[1].at_most",
+         Balance(geared=(replace(GEARED, weight=replace(ROOM, at_most=inf)),))),
+        ("balance.shafts[1].axes[2][1]",
+         Balance(shafts=(replace(SHAFTS, axes=(ORIGIN, (inf, 0.0))),))),
+        ("balance.limits[1].orders[1]",
+         Balance(limits=(Limit(Objective("drive_torque", orders=(inf,)), 1.0),))),
+    ],
+)  # fmt: skip
+def test_numbers_are_finite(where: str, balance: Balance) -> None:
+    refused(where, "got inf; give a finite number", balance)
+
+
+# -- what is right ---------------------------------------------------------------------------------
+
+
+def test_what_is_right_is_kept() -> None:
+    balance = Balance(
+        moves=(CenterMove("crank", x=(0.0, 0.0)), CenterMove("rocker", center=ORIGIN, radius=1.0)),
+        masses=(AddedMass("crank", "A", Weight(mass=1.0)), AddedMass("crank", "A", DISC)),
+        geared=(GEARED, replace(GEARED, driver="crank", direction=(0.0, 0.0), name="second")),
+        shafts=(SHAFTS,),
+        springs=(SPRING, replace(SPRING, free_length=None)),
+        phases=Phases(),
+        objectives=(Objective("joints.B.x", "area"), Objective("shaking_moment", about="D")),
+        limits=(Limit(Objective("frame_force", "peak"), 10.0),),
+    )
+    machine = replace(FOUR, balance=balance)
+    assert pickle.loads(pickle.dumps(machine)) == machine
+    assert FOUR.with_balance(balance) == machine
+    assert machine.with_balance(None) == FOUR
+    assert FOUR.with_balance(Balance()).balance == Balance()
+
+
+def test_names_of_joints() -> None:
+    assert joint_names(slider_crank()) == ["A", "B", "C", "piston on frame"]
+    links = {**ALONE.links, "wheel": body(C=ORIGIN, B=(0.1, 0.0))}
+    both = replace(ALONE, links=links)
+    assert joint_names(both) == [
+        "A", "D", "B/crank", "B/coupler", "B/wheel", "C/coupler", "C/rocker", "C/wheel",
+    ]  # fmt: skip
+
+
+@pytest.mark.parametrize("machine", [ALONE, slider_crank()])
+def test_computed_joints_are_known(machine: eq.Machine) -> None:
+    computed = eq.analyze(machine, angles=4).to_dict()["joints"]
+    assert {*computed} == {*joint_names(machine)}
+
+
+def test_quantities_of_outputs() -> None:
+    def quantity(output: str, measure: Any = "rms") -> str | None:
+        return quantity_of(Objective(output, measure), FOUR)
+
+    assert quantity("shaking_force.x", "peak") == "force"
+    assert quantity("joints.B") == "force"
+    assert quantity("yaw_moment") == "torque"
+    assert quantity("drive_torque", "area") == "energy"
+    assert quantity("shaking_force.x", "area") is None
+    assert quantity("gauges.g") == "length"
+    assert quantity("gauges.nod", "peak") == "angle"
+    assert quantity("gauges.nod", "area") is None
+    assert output_of("joints.B", FOUR).is_vector
+    assert not output_of("joints.B.y", FOUR).is_vector

@@ -1,0 +1,206 @@
+"""The commands `animate` and `report`: a linkage that moves, and one page that tells all."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from math import ceil
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from equipoise.cli.options import (
+    SIGNED,
+    File,
+    Many,
+    Out,
+    Speed,
+    Text,
+    blaming,
+    check_belonging,
+    check_result_file,
+    naming,
+    quantity,
+    sources_of,
+)
+from equipoise.cli.pictures import default_name
+from equipoise.cli.progress import counted
+from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+FILMS = ("svg", "gif", "mp4")
+SVG_FRAMES = 60
+"""In a turn; from one to the next, parts go evenly."""
+LEAST_ANGLES = 720
+"""In a turn, for smooth paths."""
+MOST_PATHS = 3
+
+
+def animate(
+    file: File,
+    /,
+    *,
+    out: Out = None,
+    seconds: Annotated[float, SIGNED] = 2.0,
+    turns: Annotated[int | None, SIGNED] = None,
+    width: Annotated[int, SIGNED] = 640,
+    trace: Many = None,
+    force: bool = False,
+    speed: Speed = None,
+    dark: bool = False,
+) -> None:
+    """Show how a linkage moves: as SVG for a page, as GIF, or as a film in MP4.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    out
+        The animation: name of an .svg, .gif or .mp4 file; FILE.svg beside you if not given.
+    seconds
+        Time that a turn of the crank takes.
+    turns
+        With .mp4: turns of the crank, the whole cycle if not given.
+    width
+        Width of the picture in pixels.
+    trace
+        A point whose path is drawn; can be given again.  If not given, points that join nothing.
+    force
+        Draw the shaking force on the frame as an arrow.
+    speed
+        With --force: speed of the crank instead of the file's, such as "300 rpm".
+    dark
+        With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
+    """
+    from equipoise.figures.stage import check_seconds, check_width
+    from equipoise.schema.models import load_linkage
+    from equipoise.schema.output import write
+
+    name = default_name(file, ".svg") if out is None else out
+    kind = _kind(name)
+    if turns is not None and (kind != "mp4" or turns < 1):
+        raise UsageError(f"--turns: got {turns}; give 1 or more, with a name that ends in .mp4")
+    if dark and kind == "svg":
+        raise UsageError("--dark: an SVG follows the reader's screen; leave it out")
+    check_belonging("--force", force, speed=speed)
+    check_seconds(seconds)
+    check_width(width)
+    machine = load_linkage(file)
+    check_result_file("--out", name, sources_of(machine, file))
+    if speed is not None:
+        machine = machine.with_drive(speed=speed)
+    options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}
+    if kind != "svg":
+        options["dark"] = dark
+    if kind == "mp4":
+        options["turns"] = turns
+    from equipoise.results.analysis import analyze
+
+    with naming(file):
+        found = analyze(machine, _angles_of(kind, seconds))
+        data = _animated(found, kind, force, options)
+    write(name, data)
+    print(f"wrote {name}", file=sys.stderr)
+
+
+def _kind(out: str) -> str:
+    kind = os.path.splitext(out)[1].lower().removeprefix(".")
+    if kind not in FILMS:
+        raise UsageError(f"--out: got {out!r}; give a name that ends in .svg, .gif or .mp4")
+    return kind
+
+
+def _angles_of(kind: str, seconds: float) -> int:
+    """Crank angles in a turn: so many for each frame that paths are smooth."""
+    from equipoise.figures.film import in_a_turn
+
+    frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
+    return frames * ceil(LEAST_ANGLES / frames)
+
+
+def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
+    from equipoise.figures import film
+    from equipoise.figures.stage import Arrow
+    from equipoise.figures.svg import animated_svg
+    from equipoise.symbols.scene import Scene
+
+    scene = Scene.of(found.motion)
+    if options["traced"] is None:
+        options["traced"] = scene.ends[:MOST_PATHS]
+    if force:
+        forces, of_one = found.forces, len(found.machine.rows) > 1
+        options["arrow"] = Arrow(forces.about, forces.shaking_force.value, of_one)
+    if kind == "svg":
+        return animated_svg(scene, title=found.machine.title, frames=SVG_FRAMES, **options)
+    draw = film.gif if kind == "gif" else film.mp4
+    with counted("frame") as told:
+        return draw(scene, told=told, **options)
+
+
+# -- the report ------------------------------------------------------------------------------------
+
+Language = Literal["en", "ja", "ko"]
+"""As in `words`."""
+
+
+def report(
+    file: File,
+    /,
+    *,
+    out: Out = None,
+    language: Language = "en",
+    pdf: bool = False,
+    speed: Text = None,
+) -> None:
+    """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
+
+    Parameters
+    ----------
+    file
+        Path of a model file, or the name of a bundled example.
+    out
+        Name of the report, which ends in .html or .pdf; NAME-report.html beside you if not given.
+    language
+        English, Japanese or Korean.
+    pdf
+        Write a PDF beside the page too.
+    speed
+        Speed of the crank, or of the tool's engine, instead of the file's, such as "250 rpm".
+    """
+    paths = _paths(file, out, pdf)
+    rate = None if speed is None else quantity("--speed", speed, "angular speed")
+    from equipoise.present.composition import check, write_document
+    from equipoise.schema.files import printable
+
+    check(paths, language)
+    from equipoise.present.composition import build
+    from equipoise.present.findings import find
+
+    found = find(file, speed=rate)
+    with naming(file):
+        document = build(found, language, _command(file, language, speed), together=True)
+    write_document(document, paths)
+    for path in paths:
+        print(f"wrote {printable(path)}", file=sys.stderr)
+
+
+def _paths(file: str, out: str | None, pdf: bool) -> list[str]:
+    """The files that are wanted."""
+    from equipoise.present.composition import kind_of
+
+    if out is None:
+        out = default_name(file, "-report.html")
+    with blaming("--out"):
+        kind = kind_of(out)
+    also = [f"{os.path.splitext(out)[0]}.pdf"] if pdf and kind == "html" else []
+    for path in (out, *also):
+        check_result_file("--out", path, [file])
+    return [out, *also]
+
+
+def _command(file: str, language: str, speed: str | None) -> str:
+    """The command as it can be given again, wherever the report goes."""
+    words = ["equipoise", "report", os.path.basename(file)]
+    words += [] if language == "en" else ["--language", language]
+    return shlex.join([*words, *([] if speed is None else ["--speed", speed])])

@@ -1,0 +1,206 @@
+"""An output that is declared is found everywhere: nothing else lists outputs by hand."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import EquipoiseError
+from equipoise.figures import render
+from equipoise.figures.outputs import kinematics, outputs_chart
+from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
+from equipoise.mechanism.outputs import DECLARED, declaring, output
+from equipoise.present.composition import report_page
+from equipoise.present.findings import Findings
+from equipoise.results.outputs import documented, unit_of
+from equipoise.schema.models import dumps
+from equipoise.schema.output import json_text, to_csv
+from equipoise.studies.dimensions import dimension_of
+from equipoise.web.messages import message_of
+from equipoise.web.session import Session, opened_example
+from support.printing import words
+
+DOCS = Path(__file__).parents[3] / "docs" / "output.md"
+BEGIN, END = "<!-- declared outputs -->\n", "<!-- end of declared outputs -->\n"
+POWER = "drive_power"
+
+
+def declare(linear: bool) -> None:
+    """Declare the power of the drive, and whether it is linear in the masses."""
+    loop = "{drive torque} * {speed}"
+    output(POWER, "power", "drive power", linear=linear, loop=loop)(
+        lambda found: found.forces.drive_torque * found.motion.speed
+    )
+
+
+@pytest.fixture
+def power() -> Iterator[None]:
+    """Inside, the power of the drive is declared."""
+    with declaring():
+        declare(True)
+        yield
+
+
+@pytest.fixture(params=[True, False], ids=["linear", "unknown"])
+def linear(request: pytest.FixtureRequest) -> Iterator[bool]:
+    """The same, and whether it is said to be linear."""
+    with declaring():
+        declare(request.param)
+        yield request.param
+
+
+def found_with() -> eq.Analysis:
+    assert POWER in DECLARED
+    return eq.analyze(eq.load("yamashita-1"), 90)
+
+
+def test_it_stands_among_plain_data(power: None) -> None:
+    found = found_with()
+    power = found.forces.power
+    assert found.summary[POWER].peak == pytest.approx(np.max(np.abs(power)))
+    values = json.loads(json_text(found.to_dict()))
+    np.testing.assert_allclose(values[POWER], power)
+    assert values["summary"][POWER]["rms"] == pytest.approx(np.sqrt(np.mean(power**2)))
+    header = to_csv(found).splitlines()[0].split(",")
+    assert "drive_power [W]" in header
+
+
+def test_it_stands_in_tables(power: None) -> None:
+    pytest.importorskip("pandas"), pytest.importorskip("xarray")
+    found = found_with()
+    np.testing.assert_array_equal(found.to_frame()[POWER], found.forces.power)
+    array = found.to_dataset()[POWER]
+    assert array.attrs == {"units": "W", "long_name": "drive power"}
+
+
+def test_it_is_printed(power: None) -> None:
+    assert "drive power, W" in words(found_with().blocks())
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_it_stands_in_the_report(power: None, language: str) -> None:
+    machine = eq.load("yamashita-1")
+    text = report_page(Findings(machine, dumps(machine), "machine.toml"), language)
+    assert ("drive power (en)" in text) == (language != "en")
+    assert "drive power" in text
+
+
+def test_it_can_be_drawn(power: None) -> None:
+    picture = render(outputs_chart(found_with(), [POWER])).decode()
+    assert "drive power" in picture
+
+
+def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
+    session = Session()
+    session.open(opened_example("yamashita-1"))
+    asked = message_of({"type": "outputs", "seq": 1, "names": [POWER, "points.P.vx"]})
+    content = next(iter(session.receive(asked))).content
+    offered = {one["name"]: one for one in content["outputs"]}
+    assert offered[POWER] == {
+        "name": POWER,
+        "label": "drive power",
+        "group": "frame and drive",
+        "unit": "W",
+        "factor": 1.0,
+    }
+    assert {f"output.{POWER}", "output.points.P.vx"} <= content["arrays"].keys()
+    assert "output.shaking_moment" not in content["arrays"]
+    refused = message_of({"type": "outputs", "seq": 2, "names": ["drive_powers"]})
+    content = next(iter(session.receive(refused))).content
+    assert content["message"] == "no output is called 'drive_powers'; did you mean 'drive_power'?"
+
+
+def test_studies_know_its_dimension(power: None) -> None:
+    machine = found_with().machine
+    for path in (POWER, f"summary.{POWER}.rms", f"{POWER}.peak_to_peak"):
+        assert dimension_of(machine, "analyze", path) == "power"
+    assert dimension_of(machine, "analyze", f"summary.{POWER}.max_at") == "angle"
+    assert unit_of(POWER) == "W"
+
+
+def test_balancing_takes_it_or_says_why_not(linear: bool) -> None:
+    machine = eq.load("yamashita-1")
+    plan = Balance(
+        masses=(AddedMass("rocker", "D", Weight(radius=0.05, at_most=0.5)),),
+        objectives=(Objective(POWER),),
+    )
+    if not linear:
+        with pytest.raises(EquipoiseError, match="is only read; it is not known to be linear"):
+            eq.balance(machine, plan)
+        return
+    torque = Balance(masses=plan.masses, objectives=(Objective("drive_torque"),))
+    found, same = eq.balance(machine, plan), eq.balance(machine, torque)
+    speed = abs(machine.drive.speed)
+    for one, other in zip(found.objectives.values(), same.objectives.values(), strict=True):
+        np.testing.assert_allclose(one, np.array(other) * speed, rtol=1e-6)
+    assert found.units["rms of drive_power"] == "W"
+
+
+# -- documentation ---------------------------------------------------------------------------------
+
+
+def test_the_documentation_has_all_of_them_and_nothing_else() -> None:
+    text = DOCS.read_text(encoding="utf-8")
+    assert text.partition(BEGIN)[2].partition(END)[0].strip() == documented().strip()
+
+
+def test_a_new_one_comes_into_the_documentation(linear: bool) -> None:
+    balance = ", balance" if linear else ""
+    row = f"| `{POWER}` | W | drive power | masses | arrays, summary{balance}, compiled studies |"
+    assert row in documented().splitlines()
+
+
+# -- kinematic diagrams ----------------------------------------------------------------------------
+
+
+def test_a_slider_crank_shows_its_stroke() -> None:
+    found = eq.analyze(eq.load("slider-crank-engine"))
+    (slider,) = found.machine.sliders
+    travel = found.outputs[f"sliders.{slider.name}.travel"]
+    places = found.motion.points[slider.point].place
+    ends = places[np.argmax(travel.values)], places[np.argmin(travel.values)]
+    assert travel.figures.peak_to_peak == pytest.approx(abs(ends[0] - ends[1]))
+
+
+@pytest.mark.parametrize("name", sorted(eq.examples("linkage")))
+def test_sliding_and_transmission_of_every_example(name: str) -> None:
+    found = eq.analyze(eq.load(name), 360)
+    step = 2 * np.pi / 360
+    for motion in found.motion.sliders.values():
+        slope = np.gradient(motion.travel, step)[2:-2] * found.motion.speed
+        scale = np.max(np.abs(motion.velocity)) or 1.0
+        np.testing.assert_allclose(slope, motion.velocity[2:-2], atol=5e-3 * scale)
+    for angle in found.motion.transmission.values():
+        assert np.all((angle >= 0) & (angle <= np.pi))
+    if found.four_bar is not None and found.four_bar.transmission_min is not None:
+        low, high = found.four_bar.transmission_min, found.four_bar.transmission_max
+        angles: list[Any] = list(found.motion.transmission.values())
+        assert any(
+            np.min(one) >= low - 1e-9
+            and np.max(one) <= high + 1e-9
+            and np.ptp(one) > 0.9 * (high - low)
+            for one in angles
+        )
+
+
+def test_everything_that_moves_has_its_diagrams() -> None:
+    found = eq.analyze(eq.load("quick-return"), 90)
+    drawn = {chart.name: chart for chart in kinematics(found)}
+    names = ["transmission", *(slider.name for slider in found.machine.sliders)]
+    names += [*found.machine.links, *(set(found.motion.points) - set(found.machine.frame))]
+    assert set(drawn) == {f"kinematics-{name.replace(' ', '-')}" for name in names}
+    titles = [panel.title for panel in drawn["kinematics-ram-on-frame"].panels]
+    assert titles[0] == "travel of ram on frame, mm"
+
+
+if __name__ == "__main__":  # write the table of the documentation again
+    text = DOCS.read_text(encoding="utf-8")
+    before, _, rest = text.partition(BEGIN)
+    after = rest.partition(END)[2]
+    DOCS.write_text(f"{before}{BEGIN}{documented()}{END}{after}", encoding="utf-8")
