@@ -91,7 +91,11 @@ export class App {
     this.hands = new Hands(page, (dress) => new Stage(dress));
     this.stage = this.hands.made;
     this.board = new Board(this.stage, (link) => this.chooseLink(link));
-    this.charts = new Charts(this.theme, (angle) => this.turn(angle));
+    this.charts = new Charts(
+      this.theme,
+      (angle) => this.turn(angle),
+      (names) => this.command({ type: "outputs", names }),
+    );
     this.inspector = new Inspector(this.talk, (on) => this.hold(on));
     this.balance = new BalancePanel(
       () => this.keep(),

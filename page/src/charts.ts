@@ -1,6 +1,6 @@
 /** All charts beside the linkage. */
 
-import { chooser } from "./chooser";
+import { chooser, finder } from "./chooser";
 import { h } from "./dom";
 import { Plane, type Trace } from "./plane";
 import type { Numbers, ResponseMessage, State } from "./protocol";
@@ -28,6 +28,7 @@ export class Charts {
   private readonly jointOf = chooser("Force in joint", () => this.chosen());
   private readonly spectrumOf = chooser("Spectrum of", () => this.chosen());
   private readonly gaugeOf = chooser("Response of", () => this.answer());
+  private readonly outputOf = finder("Any output over crank angle", (name) => this.ask(name));
   private readonly polar = new Plane("Shaking force, polar", true, h("b", {}, "Polar force"));
   private readonly path = new Plane("Path", false, this.pathOf.label);
   private readonly force: Strip;
@@ -35,6 +36,7 @@ export class Charts {
   private readonly torque: Strip;
   private readonly joint: Strip;
   private readonly spectrum: Strip;
+  private readonly output: Strip;
   private readonly response: Strip;
   private readonly sweep: Strip;
   private readonly strips: Strip[];
@@ -48,7 +50,11 @@ export class Charts {
     }
   });
 
-  constructor(theme: Theme, picked: (degrees: number) => void) {
+  constructor(
+    theme: Theme,
+    picked: (degrees: number) => void,
+    private readonly wanted: (names: string[]) => void,
+  ) {
     const over = { xLabel: "°", xStep: (span: number) => (span > 400 ? 180 : 90), picked };
     const strip = (title: string, height: number, xAxis: boolean, control?: HTMLElement) =>
       new Strip({ title, height, xAxis, ...over, ...(control && { control }) }, theme);
@@ -58,6 +64,7 @@ export class Charts {
     this.joint = strip("Joint force", 100, true, this.jointOf.label);
     const bars = { title: "Spectrum", height: 104, xAxis: true, bars: true };
     this.spectrum = new Strip({ ...bars, control: this.spectrumOf.label }, theme);
+    this.output = strip("Output", 110, true, this.outputOf.label);
     this.response = strip("Response", 110, true, this.gaugeOf.label);
     this.sweep = new Strip(
       { title: "Response against speed", height: 110, xAxis: true, quiet: true },
@@ -69,6 +76,7 @@ export class Charts {
       this.torque,
       this.spectrum,
       this.joint,
+      this.output,
       this.response,
       this.sweep,
     ];
@@ -114,6 +122,7 @@ export class Charts {
     // Rows that stand still have no forces together.
     this.whoseRow.hidden = !state.numbers.has("rows.shaking_force");
     if (other) this.offer(state);
+    this.outputOf.offer(state.outputs);
     this.again();
   }
 
@@ -139,7 +148,8 @@ export class Charts {
     this.at = k;
     this.polar.point(k);
     this.path.point(k);
-    for (const strip of [this.force, this.moment, this.torque, this.joint]) strip.point(degrees, k);
+    for (const strip of [this.force, this.moment, this.torque, this.joint, this.output])
+      strip.point(degrees, k);
     const samples = this.heard?.[1].get("response.angle")?.length;
     if (samples && this.state)
       this.response.point(degrees, Math.round((k / this.state.angles) * samples) % samples);
@@ -203,6 +213,7 @@ export class Charts {
     if (!state) return;
     this.drawPath(state);
     if (state.numbers.has("shaking_force")) this.drawForces(state);
+    this.drawOutput(state);
     this.point(this.at, (this.at / state.angles) * 360 * state.turns);
   }
 
@@ -274,6 +285,20 @@ export class Charts {
     this.path.show({ title: "Path", unit: "mm", factor: 1000, traces, every, level, least: 1e-6 });
   }
 
+  /** Ask for the numbers of an output; they come with the state, now and after every change. */
+  private ask(name: string): void {
+    const known = this.state?.outputs.some((one) => one.name === name);
+    this.wanted(known ? [name] : []);
+  }
+
+  private drawOutput(state: State): void {
+    const one = state.outputs.find(({ name }) => state.numbers.has(`output.${name}`));
+    const found = one && both(state, `output.${one.name}`);
+    const { unit, factor } = one ?? { unit: "", factor: 1 };
+    const curves = found ? [{ label: "", role: "third" as Role, ...scaled(found, factor) }] : [];
+    this.output.show({ x: this.x.of(state.angles, state.turns), unit, curves });
+  }
+
   private answer(): void {
     if (!this.heard || !this.state) return;
     const [message, numbers] = this.heard;
@@ -300,6 +325,13 @@ export class Charts {
     this.sweep.show({ x: rpm, unit: `m${found.unit} peak to peak, over rpm`, curves: [curve] });
     this.sweep.point((message.sweep.own * 30) / Math.PI, null);
   }
+}
+
+type Pair = { values: Float64Array; before?: Float64Array | undefined };
+
+function scaled(found: Pair, factor: number): Pair {
+  const times = (values: Float64Array) => values.map((value) => value * factor);
+  return { values: times(found.values), before: found.before && times(found.before) };
 }
 
 /** Displacements in m and rad are told in mm and mrad. */

@@ -26,7 +26,7 @@ interface Question {
 const SLOW = new Set(["balance", "download"]);
 
 /** What makes the machine on the server other than it was; said again after a broken line. */
-const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare"]);
+const REMEMBERED = new Set(["edit", "undo", "redo", "balance", "compare", "outputs"]);
 
 export class Conversation {
   /** Drags and held keys under way; each ends before something else is asked. */

@@ -17,6 +17,7 @@ export type Asked =
   | { type: "edit"; commit: boolean; label: string; edits: Edit[] }
   | { type: "undo" | "redo" | "balance" }
   | { type: "compare"; on: false }
+  | { type: "outputs"; names: string[] }
   | { type: "download"; kind: FileKind; language?: string };
 
 export interface Example {
@@ -87,8 +88,22 @@ export interface Scene {
   looks: Record<string, string>;
 }
 
+/** What can be drawn over the crank angle, once its numbers have been asked for. */
+export interface Output {
+  name: string;
+  label: string;
+  /** In which it is read, and how many of it one SI unit is. */
+  unit: string;
+  factor: number;
+  /** Heading under which it is offered. */
+  group: string;
+}
+
 export interface Figure {
   name: string;
+  /** What the figure is of, and which figure it is. */
+  signal: string;
+  measure: "rms" | "peak";
   label: string;
   unit: string;
   /** Null where it is not finite. */
@@ -115,6 +130,7 @@ export interface StateMessage {
   scene: Scene;
   arrays: Arrays;
   figures: Figure[];
+  outputs: Output[];
   orders: number[];
   notes: string[];
   before: boolean;
@@ -148,6 +164,8 @@ export interface Change {
   unit: string;
   before: number;
   after: number;
+  /** Whether it comes first: of a whole signal on the frame, or the mass that it takes. */
+  main?: boolean;
 }
 
 export interface Balanced {

@@ -103,12 +103,9 @@ export class PlantedTable {
 function byLine(figures: Figure[]): Map<string, Line> {
   const lines = new Map<string, Line>();
   for (const figure of figures) {
-    const dot = figure.name.lastIndexOf(".");
-    const [signal, measure] = [figure.name.slice(0, dot), figure.name.slice(dot + 1)];
-    const label = capital(figure.label.replace(/, (RMS|peak)$/, ""));
-    const line = lines.get(signal) ?? { label, unit: figure.unit };
-    if (measure === "peak") line.peak = figure;
-    else line.rms = figure;
+    const { signal, unit } = figure;
+    const line = lines.get(signal) ?? { label: capital(signal), unit };
+    line[figure.measure] = figure;
     lines.set(signal, line);
   }
   return lines;
@@ -133,7 +130,7 @@ export class BalancePanel {
   ) {}
 
   show(found: Balanced): void {
-    const whole = found.figures.filter((figure) => MAIN.test(figure.label));
+    const whole = found.figures.filter(({ main }) => main);
     const changed = whole.filter(
       ({ before, after }) => Math.abs(after - before) > 5e-4 * Math.abs(before),
     );
@@ -166,9 +163,6 @@ export class BalancePanel {
     this.root.hidden = true;
   }
 }
-
-/** The figures that come first: of whole signals on the frame, and of the mass that it takes. */
-const MAIN = /^(mass\b.*|(?!.*(\b[xy], |joint)).*, (RMS|peak))$/;
 
 function comparison(figures: Change[]): HTMLTableElement {
   const rows = figures.map(({ label, unit, before, after }) =>

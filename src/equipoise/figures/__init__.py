@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal
 
 from equipoise.errors import UsageError
 from equipoise.results.charts import Chart
@@ -11,18 +11,14 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 Kind = Literal["svg", "png", "pdf"]
-Picture: TypeAlias = "Chart | Figure"
-"""A chart, or a drawing by Matplotlib."""
+Picture = Chart
+"""What can be drawn."""
 
 __all__ = ["Kind", "Picture", "figure", "plot", "render"]
 
 
-def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:
+def render(picture: Chart, kind: Kind = "svg") -> bytes:
     """The picture as a file; the same bytes for the same picture."""
-    if not isinstance(picture, Chart):
-        from equipoise.plotting.style import render as drawn
-
-        return drawn(picture, kind)
     from equipoise.figures.layout import lay_out
 
     sheet = lay_out(picture)
@@ -35,10 +31,8 @@ def render(picture: Chart | Figure, kind: Kind = "svg") -> bytes:
     return painted(sheet, kind)
 
 
-def figure(picture: Picture) -> Figure:
+def figure(picture: Chart) -> Figure:
     """The picture as a figure of Matplotlib."""
-    if not isinstance(picture, Chart):
-        return picture
     from equipoise.figures.layout import lay_out
     from equipoise.figures.paint import figure_of
 

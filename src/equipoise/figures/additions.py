@@ -42,8 +42,12 @@ FULL = 1e-6
 
 
 def posed_well(original: Machine, machine: Machine) -> Posed:
-    """A machine at the crank angle at which joints and links of the original keep apart."""
-    return Posed(machine, clear_angle(Scene.of(move(original, ANGLES))))
+    """A machine at the crank angle at which joints and links of the original keep apart.
+
+    Where there are new springs, at that at which links keep apart from them, too.
+    """
+    shown_best = machine if len(machine.springs) > len(original.springs) else original
+    return Posed(machine, clear_angle(Scene.of(move(shown_best, ANGLES))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,7 +88,7 @@ class Posed:
 
 
 @dataclass(frozen=True, eq=False)
-class Mark:
+class Addition:
     """Something to draw, complex places in mm.
 
     kind : ``mass``, ``room``, ``gear``, ``move``, ``spring``.
@@ -100,7 +104,7 @@ class Mark:
     away: complex = field(default=1j)
 
 
-def marks(posed: Posed, changes: tuple[Change, ...], plan: Balance) -> list[Mark]:
+def additions(posed: Posed, changes: tuple[Change, ...], plan: Balance) -> list[Addition]:
     """Everything that is drawn over the machine."""
     found = list(_rooms(posed, plan))
     for change in changes:
@@ -129,14 +133,14 @@ def _way(vector: complex) -> complex:
 # -- masses ----------------------------------------------------------------------------------------
 
 
-def _pieces(posed: Posed, change: Change) -> Iterator[Mark]:
+def _pieces(posed: Posed, change: Change) -> Iterator[Addition]:
     link, values = change.link, change.values
     center = MM * posed.at(link, complex(*values["center"]))
     for piece in values["pieces"]:
         place = MM * posed.at(link, complex(*piece["place"]))
         text = say("{mass} on {link}", mass=grams(piece["mass"]), link=short(link, SHORT))
         outline, holes, edge = _shape(posed, link, piece, center, place)
-        yield Mark("mass", outline, holes, edge, text, _way(place - center))
+        yield Addition("mass", outline, holes, edge, text, _way(place - center))
 
 
 def _shape(
@@ -169,14 +173,14 @@ def sector(center: complex, inner: float, outer: float, middle: float, width: fl
 # -- the rest --------------------------------------------------------------------------------------
 
 
-def _moved(posed: Posed, change: Change) -> Mark:
+def _moved(posed: Posed, change: Change) -> Addition:
     """From the old centre of mass to the new one."""
     old, new = (MM * posed.at(change.link, complex(*change.values[k])) for k in ("from", "to"))
     text = f"{short(change.link, SHORT)}, {grams(change.values['mass'])}"
-    return Mark("move", np.array([old, new]), (), new, text, _way(new - old))
+    return Addition("move", np.array([old, new]), (), new, text, _way(new - old))
 
 
-def _spring(posed: Posed, change: Change) -> Mark:
+def _spring(posed: Posed, change: Change) -> Addition:
     values = change.values
     own = posed.machine.links[change.link].points[values["point"]]
     one = MM * posed.at(change.link, complex(*own))
@@ -188,10 +192,10 @@ def _spring(posed: Posed, change: Change) -> Mark:
         length=shown(free),
     )
     away = 1j * _way(other - one)
-    return Mark("spring", np.array([one, other]), (), (one + other) / 2, text, away)
+    return Addition("spring", np.array([one, other]), (), (one + other) / 2, text, away)
 
 
-def _gears(posed: Posed, change: Change) -> Iterator[Mark]:
+def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
     """Pitch circles: that on the driver, then that on the shaft."""
     values = change.values
     driver, shaft = (MM * radius for radius in values["pitch_radii"])
@@ -203,10 +207,10 @@ def _gears(posed: Posed, change: Change) -> Iterator[Mark]:
     for middle, radius in ((at, driver), (axis, shaft)):
         text = say("gear, {radius} mm", radius=shown(radius))
         edge = middle + radius * aside
-        yield Mark("gear", circle(middle, radius), (), edge, text, aside)
+        yield Addition("gear", circle(middle, radius), (), edge, text, aside)
 
 
-def _rooms(posed: Posed, plan: Balance) -> Iterator[Mark]:
+def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
     """The rooms that masses and centres of mass have."""
     links = posed.machine.links
     held = [(one.link, links[one.link].points[one.at], one.weight) for one in plan.masses]
@@ -215,18 +219,18 @@ def _rooms(posed: Posed, plan: Balance) -> Iterator[Mark]:
     for link, center, weight in held:
         if isfinite(weight.radius):
             middle = MM * posed.at(link, complex(*center))
-            yield Mark("room", circle(middle, MM * weight.radius))
+            yield Addition("room", circle(middle, MM * weight.radius))
     for moved in plan.moves:
         yield from _room_of_center(posed, moved)
 
 
-def _room_of_center(posed: Posed, move: CenterMove) -> Iterator[Mark]:
+def _room_of_center(posed: Posed, move: CenterMove) -> Iterator[Addition]:
     if move.center is not None and move.radius is not None:
         middle = MM * posed.at(move.link, complex(*move.center))
-        yield Mark("room", circle(middle, MM * move.radius))
+        yield Addition("room", circle(middle, MM * move.radius))
     if move.x is not None and move.y is not None:
         box = [complex(move.x[i], move.y[j]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
-        yield Mark("room", np.array([MM * posed.at(move.link, corner) for corner in box]))
+        yield Addition("room", np.array([MM * posed.at(move.link, corner) for corner in box]))
 
 
 def grams(mass: float) -> str:

@@ -2,67 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.figure import Figure
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch, PathPatch
-from matplotlib.path import Path
 
-from equipoise.figures.additions import MM, Mark, Posed, marks, posed_well
-from equipoise.figures.drawing import (
-    Drawn,
-    Panel,
-    Placed,
-    arrow,
-    draw_machine,
-    keep_clear,
-    key_of,
-)
-from equipoise.figures.labels import Labels
+from equipoise.figures.additions import MM, Addition, Posed, additions, posed_well
+from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
+from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
-from equipoise.plotting.style import (
-    INK,
-    LEFT,
-    LINES,
-    MAIN,
-    RIGHT,
-    STRESS,
-    blank,
-    heading,
-    legend,
-    place,
-    short,
-    shown,
-)
+from equipoise.results.charts import Arrow, Chart, Curve, Mark, Outline, Panel
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import coils, zigzag
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-    from matplotlib.axes import Axes
-
     from equipoise.balancing.balanced import Balanced
 
 Array = np.ndarray[Any, Any]
 
-WIDEST, HIGHEST = 6.6, 5.2
-NARROWEST, LOWEST = 4.6, 1.7
-"""Inches: the axes at most and at least."""
-TOP, BOTTOM, ROOM = 0.82, 0.5, 0.5
-"""Inches: above and below the axes; free around what is drawn, for labels."""
 FAR = 2.0
 """Over the size of the machine: rooms that are larger do not set the scale."""
-NEAR = 0.12
-"""Inches: dots that are nearer to each other look like one."""
-FILL = 0.45
-"""How opaque added masses are."""
-DASHES: Any = {"room": (0, (5, 3)), "gear": (0, (8, 2, 1.5, 2)), "spring": "-"}
-COLORS = {"room": LINES, "gear": STRESS, "spring": STRESS, "move": STRESS, "mass": MAIN}
+NEAR = 0.02
+"""Over the size of the machine: dots that are nearer to each other look like one."""
 NAMES = {
     "mass": to_say("added mass"),
     "move": to_say("centre of mass, from old to new"),
@@ -72,30 +35,20 @@ NAMES = {
 }
 
 
-def changes_figure(found: Balanced) -> Figure:
+def changes(found: Balanced) -> Chart:
     """The new machine, as far as can be with nothing on top of each other, and its changes."""
     posed = posed_well(found.original, found.machine)
-    drawn = marks(posed, found.changes, found.plan)
+    new = additions(posed, found.changes, found.plan)
     scene = _without_new(posed.scene, Scene.of(move(found.original, [0.0])))
-    panel = _panel(posed, scene, drawn)
-    figure = blank(panel.width + LEFT + RIGHT, panel.height + TOP + BOTTOM)
     drive = short(found.machine.drive.link)
-    changed = any(one.kind != "room" for one in drawn)
+    changed = any(one.kind != "room" for one in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    angle = f"{shown(round(float(np.degrees(posed.crank_angle)), 2))}°"
-    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=angle)
-    heading(figure, found.original.title, what, LEFT)
-    axes = place(figure, LEFT, BOTTOM, panel.width, panel.height)
-    panel.settle(axes)
-    axes.set_xlabel(say("x in the frame, mm"))
-    axes.set_ylabel(say("y in the frame, mm"))
-    machine = Drawn(scene, posed.number, MM, panel.inch)
-    shapes = draw_machine(axes, machine)
-    for one in drawn:
-        _draw(axes, one, machine.unit)
-    _label(axes, machine, shapes, drawn)
-    legend(figure, _keys(drawn, gears=bool(scene.wheels)))
-    return figure
+    told = told_angle(posed.crank_angle)
+    what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=told)
+    panel = _panel(posed, scene, new)
+    keys = [("added", say(NAMES["spring"]))] if any(one.kind == "spring" for one in new) else []
+    keys += [("wheel", say("pitch circles of gears"))] if scene.wheels else []
+    return Chart("changes", found.original.title, what, (panel,), keys=tuple(keys))
 
 
 def _without_new(scene: Scene, old: Scene) -> Scene:
@@ -104,123 +57,96 @@ def _without_new(scene: Scene, old: Scene) -> Scene:
     return replace(scene, springs=springs, wheels=wheels, planned=(), mass_centers={})
 
 
-def _panel(posed: Posed, scene: Scene, drawn: list[Mark]) -> Panel:
-    """The part of the plane that holds machine and changes, on one scale."""
-    machine = MM * scene.corners_at(posed.number)
+def _panel(posed: Posed, scene: Scene, new: list[Addition]) -> Panel:
+    k, shapes = posed.number, drawn(scene, posed.number)
+    springs = [one for one in new if one.kind == "spring"]
+    zigzags = tuple(_zigzag(one.outline / MM, scene.unit) for one in springs)
+    machine = scene.corners_at(k)
     size = _size(machine)
-    shapes = [m.outline for m in drawn if m.kind != "room" or _size(m.outline) <= FAR * size]
-    held = np.concatenate([machine, *shapes])
-    low = complex(np.min(held.real), np.min(held.imag))
-    high = complex(np.max(held.real), np.max(held.imag))
-    across, up = (high - low).real, (high - low).imag
-    inch = max(across / (WIDEST - 2 * ROOM), up / (HIGHEST - 2 * ROOM)) or 1.0
-    middle = (low + high) / 2
-    half = complex(
-        max(across / 2 + ROOM * inch, NARROWEST * inch / 2),
-        max(up / 2 + ROOM * inch, LOWEST * inch / 2),
+    outlines = [one.outline / MM for one in new]
+    held = [
+        outline
+        for one, outline in zip(new, outlines, strict=True)
+        if one.kind != "room" or _size(outline) <= FAR * size
+    ]
+    every = np.concatenate([machine, *held])
+    ends = complex(every.real.min(), every.imag.min()), complex(every.real.max(), every.imag.max())
+    x, y = (
+        replace(axis, low=low, high=high)
+        for axis, low, high in zip(
+            plane_axes(scene),
+            (ends[0].real, ends[0].imag),
+            (ends[1].real, ends[1].imag),
+            strict=True,
+        )
     )
-    start, stop = middle - half, middle + half
-    return Panel(start.real, stop.real, start.imag, stop.imag, inch)
+    return Panel(
+        x,
+        y,
+        tuple(_curves(new)),
+        (*_dots(new), *_texts(new, NEAR * size), *joint_names(scene, k, optional=True)),
+        arrows=tuple(_arrows(new)),
+        outlines=tuple(_masses(new)),
+        equal=True,
+        zero=False,
+        ground=shapes["ground"],
+        signs=(*shapes["signs"], *zigzags),
+    )
 
 
 def _size(places: Array) -> float:
     return float(max(np.ptp(places.real), np.ptp(places.imag)))
 
 
-def _draw(axes: Axes, one: Mark, unit: float) -> None:
-    """unit : of signs, mm."""
-    color = COLORS[one.kind]
-    x, y = one.outline.real, one.outline.imag
-    if one.kind == "move":
-        _move(axes, one)
-    elif one.kind == "mass" and len(one.outline) == 1:
-        axes.plot(x, y, "o", color=color, markersize=8, markeredgecolor="white", zorder=3.4)
-    elif one.kind == "mass":
-        outlines = [one.outline, *(hole[::-1] for hole in one.holes)]
-        path = Path.make_compound_path(*(_path(outline) for outline in outlines))
-        axes.add_patch(PathPatch(path, fc=color, ec="none", alpha=FILL, zorder=3.1))
-        axes.add_patch(PathPatch(path, fc="none", ec=color, lw=1.0, zorder=3.2))
-    elif one.kind == "spring":
-        start, end = (complex(z) for z in one.outline)
-        line = zigzag(start, end, coils(abs(end - start), unit)).at(1.0, unit)
-        axes.plot(line.real, line.imag, color=color, label=one.kind, linewidth=1.4, zorder=2.8)
-    else:
-        look: Any = {"linestyle": DASHES[one.kind], "linewidth": 0.9, "zorder": 2.3}
-        axes.plot(x, y, color=color, label=one.kind, **look)
+def _zigzag(ends: Array, unit: float) -> Any:
+    start, end = (complex(z) for z in ends)
+    return zigzag(start, end, coils(abs(end - start), unit), "added")
 
 
-def _path(outline: Array) -> Path:
-    return Path(np.column_stack([outline.real, outline.imag]), closed=True)
+def _curves(new: list[Addition]) -> Iterator[Curve]:
+    """Rooms, and pitch circles of new gears."""
+    for one in new:
+        if one.kind in ("room", "gear"):
+            line = one.outline / MM
+            yield Curve(line.real, line.imag, say(NAMES[one.kind]), one.kind)
 
 
-def _move(axes: Axes, one: Mark) -> None:
-    """From a hollow dot to a full one."""
-    old, new = (complex(z) for z in one.outline)
-    color = COLORS["move"]
-    look: Any = {"color": color, "markersize": 5, "zorder": 3.6}
-    axes.plot(old.real, old.imag, "o", markerfacecolor="white", **look)
-    axes.plot(new.real, new.imag, "o", **look)
-    if old != new:
-        arrow(axes, old, new, color=color, lw=1.4, mutation_scale=11, zorder=3.5)
+def _masses(new: list[Addition]) -> Iterator[Outline]:
+    for one in new:
+        if one.kind == "mass" and len(one.outline) > 1:
+            holes = tuple(hole / MM for hole in one.holes)
+            yield Outline(one.outline / MM, "added mass", say(NAMES["mass"]), holes)
 
 
-def _label(axes: Axes, machine: Drawn, shapes: list[Placed], drawn: list[Mark]) -> None:
-    """What is changed by how much, and the names of points where there is room."""
-    labels = Labels(axes)
-    keep_clear(labels, shapes)
-    for one in drawn:
-        if len(one.outline) > 1:
-            labels.avoid(one.outline.real, one.outline.imag, 0.25 if one.kind == "room" else 0.6)
-    for at in _dots(drawn):
-        labels.reserve(at.real, at.imag)
-    for one, text in _together(drawn, NEAR * machine.inch):
-        wish = float(np.degrees(np.angle(one.away)))
-        labels.put(text, one.at.real, one.at.imag, wish=wish, color=COLORS[one.kind])
-    look: Any = {"fontweight": "bold", "color": INK, "near": 5.0, "optional": True}
-    for name, at in machine.points.items():
-        labels.put(short(name), at.real, at.imag, wish=45.0, **look)
+def _arrows(new: list[Addition]) -> Iterator[Arrow]:
+    for one in new:
+        if one.kind == "move" and one.outline[0] != one.outline[1]:
+            yield Arrow(complex(one.outline[0]) / MM, complex(one.outline[1]) / MM, "move")
 
 
-def _together(drawn: list[Mark], near: float) -> Iterator[tuple[Mark, str]]:
-    """What has a text, with that; several that are alike and at one place share it."""
-    left = [one for one in drawn if one.text]
+def _dots(new: list[Addition]) -> Iterator[Mark]:
+    """Added masses that are points; old and new centres of mass."""
+    for one in new:
+        if one.kind == "mass" and len(one.outline) == 1:
+            z = complex(one.outline[0]) / MM
+            yield Mark(z.real, z.imag, "", "point mass", label=say(NAMES["mass"]))
+        elif one.kind == "move":
+            for role, place in zip(("old center", "move"), one.outline, strict=True):
+                z = complex(place) / MM
+                label = say(NAMES["move"]) if role == "move" else ""
+                yield Mark(z.real, z.imag, "", role, label=label)
+
+
+def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
+    """What each is; several that are alike and at one place share it."""
+    left = [one for one in new if one.text]
     while left:
         first = left[0]
-        alike = [one for one in left if one.text == first.text and abs(one.at - first.at) < near]
+        alike = [
+            one for one in left if one.text == first.text and abs(one.at - first.at) < near * MM
+        ]
         left = [one for one in left if one not in alike]
-        yield first, first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"
-
-
-def _dots(drawn: list[Mark]) -> list[complex]:
-    """Places of points and centres of mass."""
-    small = (one for one in drawn if one.kind == "move" or len(one.outline) == 1)
-    return [complex(z) for one in small for z in one.outline]
-
-
-def _keys(drawn: list[Mark], gears: bool) -> list[Any]:
-    """What the signs are that the picture has.
-
-    gears : whether there are some already.
-    """
-    kinds = {one.kind for one in drawn}
-    found: list[Any] = []
-    look: Any
-    for kind, text in NAMES.items():
-        if kind not in kinds:
-            continue
-        name = say(text)
-        if kind == "mass" and all(len(one.outline) == 1 for one in drawn if one.kind == kind):
-            look = {"color": COLORS[kind], "marker": "o", "markersize": 8, "mec": "white"}
-            found.append(Line2D([], [], linestyle="none", label=name, **look))
-        elif kind == "mass":
-            look = {"facecolor": MAIN, "alpha": FILL, "linewidth": 0}
-            found.append(Patch(label=name, **look))
-        elif kind == "move":
-            found.append(Line2D([], [], color=COLORS[kind], marker=">", label=name))
-        else:
-            width = 1.6 if kind == "spring" else 0.9
-            look = {"color": COLORS[kind], "linestyle": DASHES[kind], "linewidth": width}
-            found.append(Line2D([], [], label=name, **look))
-    if gears:
-        found.append(key_of("wheel", say("pitch circles of gears")))
-    return found
+        text = first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"
+        wish = float(np.degrees(np.angle(first.away)))
+        role = {"mass": "added mass", "spring": "move"}.get(first.kind, first.kind)
+        yield Mark(first.at.real / MM, first.at.imag / MM, text, role, wish, sign=False)

@@ -15,7 +15,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
 from equipoise.figures.moving import Moving, Part, Stroke
-from equipoise.plotting.style import styled
+from equipoise.figures.paint import settings
 from equipoise.symbols.looks import LIGHT, LOOKS, Colors, Look
 
 Array = np.ndarray[Any, Any]
@@ -93,7 +93,7 @@ def _brush(canvas: Any, look: Look, colors: Colors, unit: float) -> Any:
 def _texts(drawn: Moving, colors: Colors) -> tuple[Array, Array]:
     """Pixels (P, 4) that texts cover, their colours already weighed, and which (height, width)."""
     stage = drawn.stage
-    with styled():
+    with settings():
         figure = Figure(figsize=(stage.width / DOTS, stage.height / DOTS), dpi=DOTS)
         figure.patch.set_alpha(0)
         canvas: Any = FigureCanvasAgg(figure)

@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.figures.machine import draw_shapes, sample_of
 from equipoise.figures.metrics import lines_of, set_in, width_of
 from equipoise.figures.panel import LEAD, MIDDLE, View, draw, flag_height, frame
 from equipoise.figures.scales import Scale, ends_of, ticks_of
 from equipoise.figures.sheet import Sheet, Signs, Stroke, Words
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, Look, look_of
 from equipoise.results.charts import Chart, Panel
+from equipoise.symbols.looks import LOOKS
 
 Array = np.ndarray[Any, Any]
 
@@ -86,6 +88,8 @@ def _heading(sheet: Sheet, chart: Chart) -> float:
 
 
 def _kind(role: str) -> str:
+    if role in LOOKS:
+        return "machine"
     look = look_of(role)
     if look.fill and not look.sign:
         return "patch"
@@ -140,6 +144,9 @@ def _legend(sheet: Sheet, keys: list[Key], left: float, right: float, top: float
 
 
 def _sample(sheet: Sheet, key: Key, x: float, y: float) -> None:
+    if key.role in LOOKS:
+        draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
+        return
     look = look_of(key.role, key.dashed)
     if key.kind == "patch":
         fill = look.fill or look.color
@@ -237,6 +244,9 @@ def _cell(panel: Panel, height: float) -> Cell:
     for outline in panel.outlines:
         x.append(outline.places.real)
         y.append(outline.places.imag)
+    if panel.held is not None:
+        x.append([z.real for z in panel.held])
+        y.append([z.imag for z in panel.held])
     if panel.surface is not None:
         x.append(panel.surface.x)
         y.append(panel.surface.y)

@@ -65,6 +65,11 @@ OTHER_SCRIPTS = (
 _painting = RLock()
 
 
+def font_folder() -> str:
+    """Where the fonts are that everybody has who has Matplotlib."""
+    return f"{matplotlib.get_data_path()}/fonts/ttf"
+
+
 @cache
 def _families() -> list[str]:
     installed = {font.name for font in font_manager.fontManager.ttflist}
@@ -72,7 +77,7 @@ def _families() -> list[str]:
 
 
 @contextmanager
-def _settings() -> Iterator[None]:
+def settings() -> Iterator[None]:
     """Everything inside looks the same whatever the user's Matplotlib is set to.
 
     Matplotlib's settings belong to the whole process, so one thread paints at a time.
@@ -87,7 +92,7 @@ def _settings() -> Iterator[None]:
 
 def figure_of(sheet: Sheet) -> Figure:
     """A sheet as a figure, one unit of whose axes is a point."""
-    with _settings():
+    with settings():
         figure = Figure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
@@ -102,7 +107,7 @@ def figure_of(sheet: Sheet) -> Figure:
 def painted(sheet: Sheet, kind: Kind) -> bytes:
     """A sheet as a file of Matplotlib."""
     figure, file = figure_of(sheet), BytesIO()
-    with _settings():
+    with settings():
         figure.savefig(file, format=kind, metadata=METADATA[kind])
     return file.getvalue()
 
@@ -121,7 +126,11 @@ def _paint(axes: Axes, item: Item, order: int) -> None:
         artist.set(markersize=wide, markeredgecolor=item.edge, markerfacecolor=item.face)
         artist.set(markeredgewidth=0 if item.shape == "." else item.width)
     else:
-        look: Any = {"zorder": order, "joinstyle": "round", "capstyle": "butt"}
+        look: Any = {
+            "zorder": order,
+            "joinstyle": "round",
+            "capstyle": "round" if item.round else "butt",
+        }
         look |= {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
         look |= {"linewidth": item.width if item.color else 0.0}
         if item.dashes:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.figures.machine import draw_machine
 from equipoise.figures.metrics import DOWN, UP, width_of
 from equipoise.figures.scales import Scale, Ticks, ticks_of
 from equipoise.figures.sheet import Anchor, Box, Sheet, Signs, Stroke, Words
@@ -107,6 +108,7 @@ def draw(view: View) -> None:
             Stroke(lines, look.color, look.width, (), look.fill, look.opacity, True, view.box),
             look.order,
         )
+    draw_machine(view.sheet, view.labels, panel, view.places, view.box)
     for line in panel.lines:
         _level(view, line.at, look_of(line.role), line.axis)
     for bars in panel.bars:

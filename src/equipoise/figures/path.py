@@ -2,55 +2,44 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from equipoise.figures.crank import angle_step
-from equipoise.figures.drawing import UNIT, Drawn, arrow, draw_machine, draw_still, keep_clear
-from equipoise.figures.labels import Labels
-from equipoise.figures.paths import BOTTOM, CM, GAP, LEFT, RIGHT, TOP, Mark, Paths, panels
-from equipoise.i18n import say
-from equipoise.plotting.style import (
-    FAINT,
-    INK,
-    INSTANTS,
-    LINES,
-    MAIN,
-    MARKS,
-    NORMAL,
-    SMALL,
-    STRESS,
-    blank,
-    heading,
-    short,
-    shown,
-)
-from equipoise.symbols.shapes import line, soil
+from equipoise.figures.linkage import drawn
+from equipoise.figures.paths import Instant, Paths
+from equipoise.figures.style import short
+from equipoise.i18n import say, to_say
+from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.symbols.shapes import soil
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
-Array = np.ndarray[Any, Any]
-
+CM = 100.0
 MOST_UNITS = 12
 SMALLER = 0.85
 """Size of the machine's signs, over that in a picture of their own."""
+ABOVE, BELOW = 0.06, 0.16
+"""Free above and below what is drawn, over its height."""
 ARROWS_IN = ((0.12, 0.45), (0.55, 0.88))
 """Between which parts of the way from exit to entry the heads of arrows are."""
+INSTANTS = {
+    "pick-up": to_say("pick-up"),
+    "entry": to_say("entry"),
+    "lowest": to_say("lowest"),
+    "release": to_say("release"),
+    "exit": to_say("exit"),
+}
+"""Instant of a planting stroke -> in words."""
 
 
-def path_figure(figures: PlantingFigures) -> Figure:
+def path(figures: PlantingFigures) -> Chart:
     """The path relative to the machine with the linkage, and the path over ground."""
     paths = Paths(figures)
-    row = panels(paths)
-    width = LEFT + RIGHT + sum(panel.width for panel in row) + GAP * (len(row) - 1)
-    height = BOTTOM + TOP + row[0].height
-    figure = blank(width, height)
     tip, drive = short(figures.planting.tip), short(figures.machine.drive.link)
     what = say(
         "Path of the tip {tip}, linkage at the lowest point; numbers: angle of {link}, deg",
@@ -59,120 +48,135 @@ def path_figure(figures: PlantingFigures) -> Figure:
     )
     if paths.drives and figures.planting.units_per_turn > 1:
         what += "; " + say("dashed: other units")
-    heading(figure, figures.machine.title, what, LEFT)
-    at = LEFT
-    for panel, draw in zip(row, (_machine_panel, _ground_panel), strict=False):
-        place = (at / width, BOTTOM / height, panel.width / width, panel.height / height)
-        axes = figure.add_axes(place)
-        panel.settle(axes)
-        unit = UNIT * panel.inch / 72 / CM
-        ground = soil(panel.left / CM, panel.right / CM, paths.level, panel.bottom / CM, unit)
-        draw_still(axes, ground, CM, panel.inch)
-        draw(axes, paths, panel.inch)
-        at += panel.width + GAP
-    return figure
+    held = _held(paths)
+    panels = [_machine_panel(paths, held[0])]
+    if paths.drives:
+        panels.append(_ground_panel(paths, held[1]))
+    return Chart("path", figures.machine.title, what, tuple(panels), stacked=False)
 
 
-def _machine_panel(axes: Axes, paths: Paths, inch: float) -> None:
-    axes.set_xlabel(say("x in the frame, cm"))
-    axes.set_ylabel(say("height y in the frame, cm"))
-    labels = Labels(axes)
-    labels.avoid(axes.get_xlim(), [CM * paths.level] * 2)
-    drawn = Drawn(paths.scene, -1, CM, inch, SMALLER)
-    keep_clear(labels, draw_machine(axes, drawn, field=False))
-    _path(axes, labels, paths, paths.on_machine(paths.cycle))
+def _held(paths: Paths) -> list[tuple[complex, complex]]:
+    """Corners of what each panel shows, m: of one size, so that both have one scale."""
+    places = np.concatenate(
+        [paths.on_machine(paths.cycle), paths.scene.corners_at(-1), paths.tray, [1j * paths.level]]
+    )
+    low, high = float(np.min(places.imag)), float(np.max(places.imag))
+    low, high = low - BELOW * (high - low), high + ABOVE * (high - low)
+    spans = [(float(np.min(places.real)), float(np.max(places.real)))]
+    if paths.drives:
+        spans.append(paths.span_over_ground(high - low))
+    half = max(stop - start for start, stop in spans) / 2
+    middles = [(start + stop) / 2 for start, stop in spans]
+    return [(complex(middle - half, low), complex(middle + half, high)) for middle in middles]
+
+
+def _axis(label: str) -> Axis:
+    return Axis.of(label, "length", [0.5], ("cm", "cm", "cm"), room=0.0)
+
+
+def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
+    instants = list(paths.instants(tuple(INSTANTS), over_ground=False))
+    ticks = list(_ticks(paths))
+    across = [np.array([one.place + out, one.place - out, np.nan]) for one, out in ticks]
+    line = np.concatenate(across)
+    marks = [*_signs(instants)]
+    marks += [
+        Mark(z.real, z.imag, short(name), "ink", 45.0, False, near=5.0, bold=True)
+        for name, z in ((name, complex(p[-1])) for name, p in paths.scene.places.items())
+    ]
+    marks += _texts(instants, 0.006 * (held[1] - held[0]).imag)
     if paths.tray.size:
-        tray = [line("tray", *paths.tray)]
-        keep_clear(labels, draw_still(axes, tray, CM, inch, lowest=2.7))
-    marks = list(paths.marks(tuple(MARKS), over_ground=False))
-    _dots(axes, marks, labels)
-    _senses(axes, paths, over_ground=False)
-    angles = _angle_ticks(axes, paths, inch)
-    for name, place in drawn.points.items():
-        _put(labels, Mark(short(name), place / CM, 45), near=5, fontweight="bold")
-    for mark in marks:
-        _put(labels, replace(mark, name=say(INSTANTS[mark.name])))
-    if paths.tray.size:
-        _put(labels, Mark(say("tray"), complex(np.mean(paths.tray)), 0), fontstyle="italic")
-    for mark in angles:
-        _put(labels, mark, near=5, optional=True, color=LINES, fontsize=SMALL - 1)
+        z = complex(np.mean(paths.tray))
+        marks.append(Mark(z.real, z.imag, say("tray"), "ink", 0.0, False))
+    marks += [
+        Mark(one.place.real, one.place.imag, one.name, "lines", one.away, False, True, near=5.0)
+        for one, _ in ticks
+    ]
+    return Panel(
+        _axis(say("x in the frame")),
+        _axis(say("height y in the frame")),
+        (*_path(paths, paths.on_machine(paths.cycle)), Curve(line.real, line.imag, "", "tick")),
+        tuple(marks),
+        arrows=tuple(_senses(paths, over_ground=False)),
+        equal=True,
+        zero=False,
+        held=held,
+        sign_size=SMALLER,
+        **drawn(paths.scene, -1),
+    )
 
 
-def _ground_panel(axes: Axes, paths: Paths, inch: float) -> None:
-    axes.set_xlabel(say("distance over ground, cm"))
-    axes.tick_params(labelleft=False)
-    labels = Labels(axes)
-    labels.avoid(axes.get_xlim(), [CM * paths.level] * 2)
+def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     places = paths.over_ground(paths.ways)
-    for number in range(1, min(paths.figures.planting.units_per_turn, MOST_UNITS)):
-        _other_unit(axes, paths, places, number)
-    _path(axes, labels, paths, places)
-    marks = list(paths.marks(tuple(MARKS)[1:], over_ground=True))
-    _dots(axes, marks, labels)
-    _senses(axes, paths, over_ground=True)
-    _hill_spacing(axes, paths, labels, inch)
-    _travel(axes, paths, labels)
-    for mark in _beside(marks, paths.figures["forward_speed"] > 0):
-        _put(labels, replace(mark, name=say(INSTANTS[mark.name])))
+    instants = list(paths.instants(tuple(INSTANTS)[1:], over_ground=True))
+    ahead = paths.figures["forward_speed"] > 0
+    marks = [*_signs(instants), *_texts(_beside(instants, ahead))]
     for number, place in enumerate(paths.crossings()):
-        axes.plot(CM * place.real, CM * place.imag, "x", color=INK, markersize=5, zorder=4)
-        if number == 0:
-            _put(labels, Mark(say("crossing of the loop"), place, 0), near=9)
+        text = say("crossing of the loop") if number == 0 else ""
+        marks.append(Mark(place.real, place.imag, text, "crossing", 0.0, near=9.0))
+    spacing, arrows, lines = _hill_spacing(paths, held)
+    way = say("machine drives")
+    over = held[1].real - held[0].real
+    ends = held[0].real - over, held[1].real + over
+    bottom = held[0].imag - over
+    return Panel(
+        _axis(say("distance over ground")),
+        _axis(say("height y in the frame")),
+        (*_others(paths), *_path(paths, places), *lines),
+        (*marks, spacing),
+        arrows=(*_senses(paths, over_ground=True), *arrows),
+        title=f"{way} →" if ahead else f"← {way}",
+        equal=True,
+        zero=False,
+        held=held,
+        ground=tuple(soil(*ends, paths.level, bottom, paths.scene.unit)),
+    )
 
 
-def _beside(marks: list[Mark], ahead: bool) -> list[Mark]:
-    """The marks over ground with their names outside, and clear of the dimension."""
-    places = {mark.name: mark.place for mark in marks}
+def _beside(instants: list[Instant], ahead: bool) -> list[Instant]:
+    """Instants over ground with their names outside, and clear of the dimension."""
+    places = {one.name: one.place for one in instants}
     wishes = {"lowest": -135.0 if ahead else -45.0}
     left, right = sorted(("entry", "exit"), key=lambda name: places[name].real)
     wishes |= {left: 160.0, right: 20.0}
-    return [replace(mark, away=wishes.get(mark.name, mark.away)) for mark in marks]
+    return [replace(one, away=wishes.get(one.name, one.away)) for one in instants]
 
 
-def _put(labels: Labels, mark: Mark, **look: Any) -> None:
-    labels.put(mark.name, CM * mark.place.real, CM * mark.place.imag, wish=mark.away, **look)
-
-
-def _path(axes: Axes, labels: Labels, paths: Paths, places: Array) -> None:
-    """A path, bolder where it is in the soil."""
-    axes.plot(CM * places.real, CM * places.imag, color=MAIN, linewidth=1.5, zorder=3)
-    below = paths.in_soil(places)
-    axes.plot(CM * below.real, CM * below.imag, color=STRESS, linewidth=2.8, zorder=3.1)
-    labels.avoid(CM * places.real, CM * places.imag)
-
-
-def _other_unit(axes: Axes, paths: Paths, places: Array, number: int) -> None:
-    """The path of another planting unit of the same drive, which plants the hills between."""
-    sense = np.sign(paths.figures["forward_speed"])
-    x = CM * (places.real + sense * number * paths.figures["hill_spacing"])
-    axes.plot(x, CM * places.imag, color=FAINT, linewidth=0.9, linestyle=(0, (4, 2)), zorder=2)
-
-
-# -- what is marked on the paths -------------------------------------------------------------------
-
-
-def _dots(axes: Axes, marks: Sequence[Mark], labels: Labels) -> None:
+def _signs(instants: Sequence[Instant]) -> Iterator[Mark]:
     """Instants, each with a marker of its own."""
-    for mark in marks:
-        axes.plot(
-            CM * mark.place.real,
-            CM * mark.place.imag,
-            MARKS[mark.name],
-            color=INK,
-            markerfacecolor="white",
-            markersize=5,
-            markeredgewidth=1.1,
-            zorder=4,
-        )
-        labels.reserve(CM * mark.place.real, CM * mark.place.imag)
+    for one in instants:
+        yield Mark(one.place.real, one.place.imag, "", f"instant {one.name}")
 
 
-def _senses(axes: Axes, paths: Paths, over_ground: bool) -> None:
+def _texts(instants: Sequence[Instant], lower: float = 0.0) -> Iterator[Mark]:
+    """lower : so much, m, that a point at the same place keeps its own name."""
+    for one in instants:
+        z, text = one.place - 1j * lower, say(INSTANTS[one.name])
+        yield Mark(z.real, z.imag, text, "ink", one.away, sign=False)
+
+
+def _path(paths: Paths, places: np.ndarray) -> Iterator[Curve]:
+    """A path, bolder where it is in the soil."""
+    yield Curve(places.real, places.imag, "", "main")
+    below = paths.in_soil(places)
+    yield Curve(below.real, below.imag, "", "path in soil")
+
+
+def _others(paths: Paths) -> Iterator[Curve]:
+    """Paths of other planting units of the same drive, which plant the hills between."""
+    places, sense = paths.over_ground(paths.ways), np.sign(paths.figures["forward_speed"])
+    for number in range(1, min(paths.figures.planting.units_per_turn, MOST_UNITS)):
+        x = places.real + sense * number * paths.figures["hill_spacing"]
+        yield Curve(x, places.imag, "", "other unit")
+
+
+def _senses(paths: Paths, over_ground: bool) -> Iterator[Arrow]:
     """Heads of arrows that tell how the tip runs along its path, clear of the crank angles."""
     leave = paths.way_of("exit", paths.way_of("lowest", paths.start))
     above = paths.way_of("entry", leave) - leave
     step = np.radians(angle_step(paths.curve.turns))
     place = paths.over_ground if over_ground else paths.on_machine
+    size = float(np.ptp(place(paths.cycle).imag))
     shunned = [*paths.crossings()] if over_ground else []
     for shares in ARROWS_IN:
         first, last = (round((leave + above * share) / step) for share in shares)
@@ -181,74 +185,35 @@ def _senses(axes: Axes, paths: Paths, over_ground: bool) -> None:
         apart = np.abs(places[:, None] - np.array(shunned, complex))
         best = int(np.argmax(np.min(apart, axis=1))) if shunned else len(ways) // 2
         shunned += [complex(places[best])] if over_ground else []
-        tail, head = CM * place(ways[best] + np.array([-0.01, 0.01]))
-        arrow(axes, tail, head, color=MAIN, mutation_scale=13, zorder=3.2)
+        tail, head = (complex(z) for z in place(ways[best] + np.array([-0.01, 0.01])))
+        yield Arrow(head - 0.03 * size * (head - tail) / (abs(head - tail) or 1.0), head, "main")
 
 
-def _angle_ticks(axes: Axes, paths: Paths, inch: float) -> list[Mark]:
-    """Short lines across the path at round crank angles; they come back with their numbers."""
-    marks = []
+def _ticks(paths: Paths) -> Iterator[tuple[Instant, complex]]:
+    """Round crank angles on the path, and half a short line across it there."""
+    size = float(np.ptp(paths.on_machine(paths.cycle).imag))
     for angle in range(0, 360 * paths.curve.turns, angle_step(paths.curve.turns)):
         place, away = paths.place_and_away(paths.sense * np.radians(angle), over_ground=False)
-        marks.append(Mark(str(angle), place, away))
-        out = np.exp(1j * np.radians(away)) * 0.045 * inch
-        ends = np.array([CM * place - out, CM * place + out])
-        axes.plot(ends.real, ends.imag, color=MAIN, linewidth=0.8, zorder=3)
-    return marks
+        yield Instant(str(angle), place, away), 0.012 * size * np.exp(1j * np.radians(away))
 
 
-def _hill_spacing(axes: Axes, paths: Paths, labels: Labels, inch: float) -> None:
+def _hill_spacing(
+    paths: Paths, held: tuple[complex, complex]
+) -> tuple[Mark, list[Arrow], list[Curve]]:
     """A dimension between the first hill and the next, below the path."""
-    spacing = CM * paths.figures["hill_spacing"] * float(np.sign(paths.figures["forward_speed"]))
-    left, right = axes.get_xlim()
-    deep = CM * float(np.min(paths.over_ground(paths.ways).imag))
-    y = deep - 0.24 * inch
-    text = say("hill spacing {spacing} cm", spacing=shown(abs(spacing)))
-    shown_whole = left < spacing < right and paths.curve.turns == 1
-    if shown_whole:
-        for x in (0.0, spacing):
-            ends = [deep - 0.07 * inch, y - 0.05 * inch]
-            axes.plot([x, x], ends, color=INK, linewidth=0.6, zorder=4)
-            labels.avoid([x, x], ends)
-        look = {"arrowstyle": "<|-|>", "lw": 0.7, "mutation_scale": 8}
-        arrow(axes, complex(0, y), complex(spacing, y), **look)
-    labels.occupy(
-        axes.text(
-            spacing / 2 if shown_whole else (left + right) / 2,
-            y - 0.07 * inch,
-            text,
-            fontsize=SMALL,
-            ha="center",
-            va="top",
-            zorder=5,
-        )
-    )
-
-
-def _travel(axes: Axes, paths: Paths, labels: Labels) -> None:
-    """An arrow above the path in the direction in which the machine drives."""
-    text = axes.annotate(
-        say("machine drives"),
-        (0.5, 1),
-        xycoords="axes fraction",
-        xytext=(0, -6),
-        textcoords="offset points",
-        ha="center",
-        va="top",
-        fontsize=NORMAL,
-    )
-    labels.occupy(text)
-    box = text.get_window_extent()
-    ahead = paths.figures["forward_speed"] > 0
-    gap, length = 6 * labels.dot, 32 * labels.dot
-    tail, way = (box.x1 + gap, length) if ahead else (box.x0 - gap, -length)
-    middle = (box.y0 + box.y1) / 2
-    ends = axes.transAxes.inverted().transform([(tail, middle), (tail + way, middle)])
-    arrow(
-        axes,
-        complex(*ends[0]),
-        complex(*ends[1]),
-        lw=1.6,
-        mutation_scale=13,
-        coordinates="axes fraction",
-    )
+    spacing = paths.figures["hill_spacing"] * float(np.sign(paths.figures["forward_speed"]))
+    deep = float(np.min(paths.over_ground(paths.ways).imag))
+    room = deep - held[0].imag
+    y, top = deep - 0.5 * room, deep - 0.15 * room
+    text = say("hill spacing {spacing} cm", spacing=shown(CM * abs(spacing)))
+    whole = held[0].real < spacing < held[1].real and paths.curve.turns == 1
+    x = spacing / 2 if whole else (held[0].real + held[1].real) / 2
+    mark = Mark(x, y, text, "ink", -90.0, sign=False, near=3.0)
+    if not whole:
+        return mark, [], []
+    ends = complex(0, y), complex(spacing, y)
+    lines = [
+        Curve(np.array([at, at]), np.array([top, y - 0.1 * room]), "", "dimension")
+        for at in (0.0, spacing)
+    ]
+    return mark, [Arrow(*ends, "dimension"), Arrow(*ends[::-1], "dimension")], lines

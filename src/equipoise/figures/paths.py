@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.drawing import Panel
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.ground import GroundPath
@@ -23,23 +22,14 @@ Array = np.ndarray[Any, Any]
 
 IN_TURN = 720
 """Places of the path in a turn that are drawn."""
-CM = 100.0
 SKETCHED = 180
 """Crank angles in a turn by which the ways of blocks are found."""
-LEFT, RIGHT, BOTTOM, TOP, GAP = 0.62, 0.15, 0.5, 0.62, 0.22
-"""Inches: margins of the picture, and the gap between the panels."""
-WIDEST, HIGHEST = 9.4, 5.0
-"""Inches: both panels together at most, and their height at most."""
-LEAST = {1: (5.3,), 2: (1.8, 2.3)}
-"""Inches: least width of each panel, by how many there are, for what is written above and below."""
 AHEAD = 2.5
-"""Largest width of the ground panel, over its height."""
-ROOM, ABOVE, BELOW = 0.38, 0.42, 0.52
-"""Inches kept free at the sides of what is drawn, for its labels; and above and below it."""
+"""Largest width of what is shown over ground, over its height."""
 
 
 @dataclass(frozen=True)
-class Mark:
+class Instant:
     """An instant on a path: its name, place (m, complex) and direction away from the path, deg."""
 
     name: str
@@ -120,7 +110,7 @@ class Paths:
         """The places below the surface, others as NaN."""
         return np.where(places.imag <= self.level, places, complex(np.nan, np.nan))
 
-    def marks(self, names: tuple[str, ...], over_ground: bool) -> Iterator[Mark]:
+    def instants(self, names: tuple[str, ...], over_ground: bool) -> Iterator[Instant]:
         """Instants on either path."""
         for name in names:
             key = name.replace("-", "_")
@@ -128,7 +118,7 @@ class Paths:
                 continue
             if key == "release" and self.figures.planting.release is None:
                 continue
-            yield Mark(name, *self.place_and_away(self._way_of_hill(key), over_ground))
+            yield Instant(name, *self.place_and_away(self._way_of_hill(key), over_ground))
 
     def _way_of_hill(self, name: str) -> float:
         """When an instant of the first hill that is drawn comes."""
@@ -160,32 +150,14 @@ class Paths:
                 yield complex(self.over_ground(np.array([first]))[0])
                 first += period
 
+    def span_over_ground(self, high: float) -> tuple[float, float]:
+        """From where to where that path is shown, m: less than two hills of a long way.
 
-def panels(paths: Paths) -> list[Panel]:
-    """The panel of the machine, and that of the ground where the machine drives."""
-    held = CM * np.concatenate(
-        [paths.on_machine(paths.cycle), paths.scene.corners_at(-1), paths.tray, [1j * paths.level]]
-    )
-    low, high = float(np.min(held.imag)), float(np.max(held.imag))
-    spans = [(float(np.min(held.real)), float(np.max(held.real)))]
-    if paths.drives:
-        spans.append(_ground_span(paths, AHEAD * (high - low)))
-    across = sum(stop - start for start, stop in spans)
-    sides = 2 * ROOM * len(spans)
-    inch = max(across / (WIDEST - sides), (high - low) / (HIGHEST - ABOVE - BELOW))
-    ends = (low - BELOW * inch, high + ABOVE * inch)
-    row = []
-    for (start, stop), least in zip(spans, LEAST[len(spans)], strict=True):
-        middle, half = (start + stop) / 2, max((stop - start) / 2 + ROOM * inch, least * inch / 2)
-        row.append(Panel(middle - half, middle + half, *ends, inch))
-    return row
-
-
-def _ground_span(paths: Paths, most: float) -> tuple[float, float]:
-    """From where to where the path over ground is shown, cm: less than two hills of a long way."""
-    x = CM * paths.over_ground(paths.ways).real
-    start, stop = float(np.min(x)), float(np.max(x))
-    if stop - start <= most:
-        return start, stop
-    shares = (0.3, 0.7) if paths.figures["forward_speed"] > 0 else (0.7, 0.3)
-    return -most * shares[0], most * shares[1]
+        high : of the panel, m.
+        """
+        x, most = self.over_ground(self.ways).real, AHEAD * high
+        start, stop = float(np.min(x)), float(np.max(x))
+        if stop - start <= most:
+            return start, stop
+        shares = (0.3, 0.7) if self.figures["forward_speed"] > 0 else (0.7, 0.3)
+        return -most * shares[0], most * shares[1]

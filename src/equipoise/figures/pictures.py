@@ -53,14 +53,6 @@ def pictures_of(result: Any) -> Pictures:
     return {**charts}
 
 
-def drawn(make: Callable[..., Any], *given: Any) -> Any:
-    """A drawing of Matplotlib's, made in the style of all of them."""
-    from equipoise.plotting.style import styled
-
-    with styled():
-        return make(*given)
-
-
 def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
     """Every picture of an analysis by name, which also does for a file.
 
@@ -75,9 +67,9 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     """
     from equipoise.figures import analysis as view
     from equipoise.figures import joints
-    from equipoise.figures.linkage import linkage_figure
+    from equipoise.figures.linkage import linkage
 
-    found: Pictures = {"linkage": drawn(linkage_figure, analysis, at)}
+    found: Pictures = {"linkage": linkage(analysis, at)}
     if len(analysis.crank_angle) < 2:
         return found
     if view.moving(analysis.motion):
@@ -94,17 +86,17 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
 def planting_pictures(figures: PlantingFigures) -> Pictures:
     """``path``, and the charts of a planting machine."""
-    from equipoise.figures.path import path_figure
+    from equipoise.figures.path import path
     from equipoise.figures.planting import charts
 
-    return {"path": drawn(path_figure, figures), **charts(figures)}
+    return {"path": path(figures), **charts(figures)}
 
 
 def mode_pictures(free: FreeVibration) -> Pictures:
     """Every mode by name: ``mode-1``, ``mode-2`` and so on."""
-    from equipoise.plotting.vibration.modes import mode_figure
+    from equipoise.figures.modes import mode_chart
 
-    return {f"mode-{k}": drawn(mode_figure, free, k) for k in range(1, len(free.modes) + 1)}
+    return {f"mode-{k}": mode_chart(free, k) for k in range(1, len(free.modes) + 1)}
 
 
 def balance_pictures(
@@ -120,7 +112,7 @@ def balance_pictures(
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
     from equipoise.figures import balancing as view
-    from equipoise.figures.changes import changes_figure
+    from equipoise.figures.changes import changes
 
     if isinstance(found, Front):
         return {"front": view.front(found)}
@@ -128,7 +120,7 @@ def balance_pictures(
         return {**view.phasing_charts(found, original)}
     pictures: Pictures = {**view.charts(found)}
     if any(change.kind != "phases" for change in found.changes):
-        pictures["changes"] = drawn(changes_figure, found)
+        pictures["changes"] = changes(found)
     return pictures
 
 

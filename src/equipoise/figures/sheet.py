@@ -21,7 +21,7 @@ class Stroke:
     """Lines, each (N, 2), open or closed, drawn and filled as one.
 
     color : of the line; none is drawn where empty.  fill : of the inside.
-    clip : outside of which nothing is seen.
+    clip : outside of which nothing is seen.  round : whether lines end in half circles.
     """
 
     lines: tuple[Array, ...]
@@ -32,6 +32,7 @@ class Stroke:
     opacity: float = 1.0
     closed: bool = False
     clip: Box | None = None
+    round: bool = False
 
 
 @dataclass(frozen=True, eq=False)

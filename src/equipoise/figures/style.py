@@ -136,6 +136,21 @@ LOOKS: dict[str, Look] = {
     "stand": Look(LINES, 0.9, sign="stand", size=10, hollow=True, order=2.5),
     "point": Look(MAIN, 1.0, sign="o", size=2.6),
     "pivot": Look(LINES, 1.0, sign="o", size=3),
+    "point path": Look("#6b9fc9", 0.8, order=1.2),
+    "path in soil": Look(STRESS, 2.8, order=3.1),
+    "other unit": Look(FAINT, 0.9, MEDIUM, order=2),
+    "tick": Look(MAIN, 0.8, order=3),
+    "dimension": Look(INK, 0.7, order=4),
+    "crossing": Look(INK, 1.2, sign="x", size=5, order=4),
+    "room": Look(LINES, 0.9, (5.5, 3.3), order=2.3),
+    "gear": Look(STRESS, 0.9, (9.0, 2.2, 1.7, 2.2), order=2.3),
+    "added mass": Look(MAIN, 1.0, fill=MAIN, opacity=0.45, order=3.1),
+    "point mass": Look(MAIN, 1.0, sign="o", size=7.5, order=3.4),
+    "move": Look(STRESS, 1.4, sign="o", size=4.5, order=3.6),
+    "old center": Look(STRESS, 1.0, sign="o", size=4.5, hollow=True, order=3.6),
+    "swing": Look(MAIN, 1.5, order=1.2),
+    "other swing": Look(STRESS, 1.5, MEDIUM, order=1.2),
+    "gauge way": Look(INK, 0.9, order=1.25),
     "mean size": Look(LINES, 0.9, LONG, order=2),
 }
 """Role -> look."""
@@ -143,6 +158,12 @@ LOOKS |= {
     f"kind {number}": Look(color, 1.5, sign=sign, size=4.5, hollow=True, spaced=True, order=order)
     for number, ((color, sign), order) in enumerate(
         zip(KINDS, (3.9, 3.8, 3.7, 3.6, 3.5, 3.4), strict=True)
+    )
+}
+LOOKS |= {
+    f"instant {name}": Look(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
+    for name, sign in zip(
+        ("pick-up", "entry", "lowest", "release", "exit"), ("D", "v", "o", "s", "^"), strict=True
     )
 }
 LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)

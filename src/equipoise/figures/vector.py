@@ -91,6 +91,7 @@ def _stroke(stroke: Stroke) -> str:
     if stroke.color:
         look += f' stroke="{stroke.color}" stroke-width="{_number(stroke.width)}"'
         look += ' stroke-linejoin="round"'
+        look += ' stroke-linecap="round"' if stroke.round else ""
     if stroke.dashes:
         dashes = " ".join(_number(dash) for dash in stroke.dashes)
         look += f' stroke-dasharray="{dashes}"'

@@ -66,7 +66,7 @@ def _fonts() -> typst.Fonts:
         import typst
     except ImportError as error:
         raise EquipoiseError(NO_TYPST) from error
-    from equipoise.plotting.style import font_folder
+    from equipoise.figures.paint import font_folder
 
     return typst.Fonts(font_paths=[font_folder()])
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from functools import partial
 from typing import TYPE_CHECKING
 
-from equipoise.figures.pictures import drawn
 from equipoise.i18n import to_say
 from equipoise.present.findings import Findings, ToolFindings
 
@@ -58,12 +57,12 @@ def _made(chart: Chart) -> Chart:
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     from equipoise.figures.analysis import curves, hodograph
-    from equipoise.figures.linkage import linkage_figure
+    from equipoise.figures.linkage import linkage
     from equipoise.figures.outputs import main_kinematics
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
-    yield "linkage", caption, partial(drawn, linkage_figure, analysis, at)
+    yield "linkage", caption, partial(linkage, analysis, at)
     caption = to_say("Paths of the points of the moving links, with marks at equal times.")
     yield "curves", caption, partial(curves, analysis)
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
@@ -74,11 +73,11 @@ def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
 
 
 def _planting(figures: PlantingFigures) -> Iterator[Entry]:
-    from equipoise.figures.path import path_figure
+    from equipoise.figures.path import path
     from equipoise.figures.planting import joints, ratio, tips, torque
 
     caption = to_say("Path of the planting finger relative to the machine and over the ground.")
-    yield "path", caption, partial(drawn, path_figure, figures)
+    yield "path", caption, partial(path, figures)
     machine = figures.machine
     caption = to_say("Angular velocity of a link over that of the crank.")
     for link in machine.links:
@@ -148,24 +147,24 @@ def _speeds(sweep: Sweep) -> Iterator[Entry]:
 
 
 def _modes(found: Findings) -> Iterator[Entry]:
-    from equipoise.plotting.vibration.modes import mode_figure
+    from equipoise.figures.modes import mode_chart
 
     free = found.modes
     assert free is not None
     caption = to_say("Shape of a natural vibration of the machine on its support.")
     for number in range(1, len(free.modes) + 1):
-        yield f"mode-{number}", caption, partial(drawn, mode_figure, free, number)
+        yield f"mode-{number}", caption, partial(mode_chart, free, number)
 
 
 def _balance(balanced: Balanced) -> Iterator[Entry]:
     from equipoise.figures.balancing import orders, phases, together
-    from equipoise.figures.changes import changes_figure
+    from equipoise.figures.changes import changes
 
     if any(change.kind != "phases" for change in balanced.changes):
         yield (
             "changes",
             to_say("What to change, to scale."),
-            partial(drawn, changes_figure, balanced),
+            partial(changes, balanced),
         )
         yield from _before_and_after(balanced)
     caption = to_say("Orders of what was made small, before and after.")

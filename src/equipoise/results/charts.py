@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, typeset
+from equipoise.symbols.shapes import Shape
 
 Array = np.ndarray[Any, Any]
 Across = Literal["x", "y"]
@@ -232,6 +233,8 @@ class Panel:
     bare : without axes.  height : points; as wide as it needs where `equal`.
     flag_words : what the rows of flags are.  left, right : lines of words beside the axes.
     right_axis : places on the y axis, and what is written at the right end; its label.
+    ground, signs : shapes of a machine, at x + iy in SI units, behind curves and before them.
+    sign_size : over the usual one.  held : lower left and upper right of what is shown in any case.
     zero : whether a thin line at 0 is drawn.
     """
 
@@ -262,6 +265,10 @@ class Panel:
     left: tuple[str, ...] = ()
     right: tuple[str, ...] = ()
     right_axis: Axis | None = None
+    ground: tuple[Shape, ...] = ()
+    signs: tuple[Shape, ...] = ()
+    sign_size: float = 1.0
+    held: tuple[complex, complex] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,8 @@ import os
 import stat
 from pathlib import Path
 
+from equipoise.errors import UsageError
+
 LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
 
@@ -116,3 +118,11 @@ def reason(error: Exception) -> str:
     if isinstance(error, OSError) and error.strerror:
         return error.strerror.lower()
     return str(error).lower()
+
+
+def write_beside(path: Path, text: str) -> None:
+    """Write a file; a `UsageError` says why it cannot be written."""
+    try:
+        write_text(path, text)
+    except FileError as problem:
+        raise UsageError(f"{printable(path)}: {problem}") from problem

@@ -18,9 +18,10 @@ from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Wh
 from equipoise.keys import Kind as KeyKind
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities.problems import described
+from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.schema.opening import Kind, document_of
-from equipoise.schema.reading import Place, written_place
+from equipoise.schema.places import Place, written_place
 from equipoise.schema.writing import plain_default
 
 Content = Mapping[str, Any]
@@ -242,3 +243,54 @@ def with_changes(content: Content, changes: Mapping[Place, Any]) -> dict[str, An
             here = here[key]
         here[place[-1]] = value
     return root
+
+
+SHARE = "%"
+_QUANTITY = re.compile(rf"{NUMBER} +(\S.*)")
+
+
+def unit_in(content: Mapping[str, Any], found: Found) -> str:
+    """Unit in which a model file gives a number; one that is usual where it has none.
+
+    Returns
+    -------
+    str
+        ``mm``, ``%`` of a share, nothing of a plain number.
+    """
+    number = found.number
+    if number is None or number.share:
+        return SHARE if number is not None else ""
+    if number.dimension is None:
+        return ""
+    for given in _given(content, found):
+        read = read_number(given)
+        if read is not None and read.dimension == number.dimension:
+            return unit_of(given)
+    return handy(number.dimension)
+
+
+def unit_of(given: str) -> str:
+    """Unit of a quantity that can be read, as the lists have it."""
+    match = _QUANTITY.fullmatch(given)
+    return "" if match is None else plain_unit(match[1])
+
+
+def handy(dimension: Dimension) -> str:
+    """Unit in which quantities of a dimension are usually told."""
+    return KINDS[dimension].printed[0]
+
+
+def _given(content: Mapping[str, Any], found: Found) -> Iterator[Any]:
+    """What stands in the file where a number does: first its own text, then those beside it."""
+    here: Any = content
+    for key in found.place:
+        if isinstance(here, dict) and key not in here:
+            return  # left out, so that a default stands for it
+        here = here[key]
+    if isinstance(here, dict):
+        yield from (here[key] for key in sorted(here, key=lambda key: key != found.part))
+    elif isinstance(here, list):
+        yield from here[XYZ.index(found.part) :] if found.part in XYZ else ()
+        yield from here
+    else:
+        yield here

@@ -14,8 +14,9 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.keys import Frozen
 from equipoise.mechanism.model import Machine
 from equipoise.quantities import format_exact, parse
-from equipoise.schema.files import FileError, printable, write_text
+from equipoise.schema.files import printable, write_beside
 from equipoise.schema.numbers import format_share, parse_share
+from equipoise.schema.objects import Context
 from equipoise.schema.opening import (
     Beside,
     FileKind,
@@ -27,7 +28,7 @@ from equipoise.schema.opening import (
     opened,
     opened_example,
 )
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.reading import read_table
 from equipoise.schema.writing import Writer, beside, toml_text
 
 if TYPE_CHECKING:
@@ -319,14 +320,6 @@ def _table_text(table: Any) -> str:
 
     impedance = type(table).__name__ == "Impedance"
     return tables.format_impedance(table) if impedance else tables.format_table(table)
-
-
-def write_beside(path: Path, text: str) -> None:
-    """Write a file; a `UsageError` says why it cannot be written."""
-    try:
-        write_text(path, text)
-    except FileError as problem:
-        raise UsageError(f"{printable(path)}: {problem}") from problem
 
 
 # -- examples and schema ---------------------------------------------------------------------------

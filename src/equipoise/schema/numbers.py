@@ -15,7 +15,7 @@ from equipoise.keys import PLANES
 from equipoise.quantities import parse
 from equipoise.quantities.problems import too_far
 from equipoise.quantities.units import HUGE, KINDS, NUMBER, TINY, Dimension, plain_unit
-from equipoise.schema.reading import from_polar
+from equipoise.schema.places import from_polar
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60

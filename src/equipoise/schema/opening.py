@@ -118,7 +118,7 @@ def document_of(kind: FileKind) -> type[Frozen]:
 
         return Tool
     if kind == "study":
-        from equipoise.schema.studies import StudyTable
+        from equipoise.schema.study_keys import StudyTable
 
         return StudyTable
     from equipoise.mechanism.model import Machine

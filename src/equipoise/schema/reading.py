@@ -7,11 +7,9 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
 from json import dumps as quoted
-from math import atan2, cos, hypot, isfinite, pi, sin
+from math import isfinite
 from typing import Any
 
 from equipoise.errors import ModelError, UsageError
@@ -38,53 +36,12 @@ from equipoise.keys import (
     Whole,
     all_keys,
     choice,
-    declared,
-    key,
     keys_of,
 )
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, described, format_exact, parse, rounded
-
-Place = tuple[str | int, ...]
-"""Keys, and numbers in lists from 0."""
-WRONG = object()
-"""Instead of a value that could not be read."""
-LONGEST_KEY = 60
-
-
-def written_key(name: str) -> str:
-    """Return a key as it stands in TOML, cut where it is endless."""
-    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
-
-
-def written_place(place: Iterable[str | int]) -> str:
-    """Dotted path with numbers from 1, as the machine's own checks write it."""
-    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
-    return text.removeprefix(".")
-
-
-@dataclass
-class Context:
-    """What reading needs besides the content.
-
-    beside : reads what lies in a file of its own, by its sort and the file's name.
-    makers : make the objects of some classes otherwise than by `Frozen.from_table`.
-    problems : what has been found wrong, with its place.
-    """
-
-    beside: Callable[[str, str], Any] | None = None
-    makers: Mapping[type[Frozen], Callable[[dict[str, Any]], Any]] = field(default_factory=dict)
-    problems: list[tuple[Place, str]] = field(default_factory=list)
-
-    def wrong(self, place: Place, given: Any, right: str) -> Any:
-        """Note that a value is none that can be read."""
-        self.problems.append((place, f"got {described(given)}; {right}"))
-        return WRONG
-
-    def say(self, place: Place, sentence: str) -> Any:
-        self.problems.append((place, sentence))
-        return WRONG
+from equipoise.quantities import KINDS, parse
+from equipoise.schema.objects import WRONG, Context, NamedFile, Values, made
+from equipoise.schema.places import Place, Polar, written_place
 
 
 def read_table(
@@ -104,64 +61,6 @@ def read_table(
     return made(found, context)
 
 
-# -- second step: objects --------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Object:
-    """Values of a table, of which an object is to be made."""
-
-    of: type[Frozen]
-    place: Place
-    given: dict[str, Any]
-
-
-@dataclass(frozen=True)
-class _Beside:
-    """What lies in a file that is named at a place."""
-
-    sort: str
-    place: Place
-    file: str
-
-
-def made(value: Any, context: Context) -> Any:
-    """The objects of what has been read."""
-    if isinstance(value, _Object):
-        return _object(value, context)
-    if isinstance(value, _Beside):
-        return _read_beside(value, context)
-    if isinstance(value, dict):
-        return {name: made(item, context) for name, item in value.items()}
-    if isinstance(value, tuple) and value and isinstance(value[0], _Object | _Beside):
-        return tuple(made(item, context) for item in value)
-    return value
-
-
-def _object(found: _Object, context: Context) -> Any:
-    given = {name: made(value, context) for name, value in found.given.items()}
-    for name, one in keys_of(found.of).items():
-        if isinstance(one.kind, File) and one.kind.named and name in given:
-            given[one.kind.named] = found.given[name].file
-    try:
-        return context.makers.get(found.of, found.of.from_table)(given)
-    except ModelError as error:
-        within = written_place(found.place)
-        inner = "." if within and error.where and error.where[0] != "[" else ""
-        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
-
-
-def _read_beside(named: _Beside, context: Context) -> Any:
-    assert context.beside is not None
-    try:
-        return context.beside(named.sort, named.file)
-    except ModelError as error:
-        raise ModelError(written_place(named.place), error.what) from error
-
-
-# -- first step: tables ----------------------------------------------------------------------------
-
-
 def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, "give a table")
@@ -173,7 +72,7 @@ def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
     for name, one in known.items():
         if one.required and name not in given:
             return context.say((*place, name), f"missing; add {_example(one)}")
-    return _Object(of, place, _values(of, given, place, context))
+    return Values(of, place, _values(of, given, place, context))
 
 
 def _values(
@@ -184,7 +83,7 @@ def _values(
     for name, one in keys_of(of).items():
         kind, at = one.kind, one.field or name
         if isinstance(kind, Table) and kind.flat:
-            values[at] = _Object(kind.type, place, _values(kind.type, given, place, context))
+            values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
             values[at] = READERS[type(kind)](kind, given[name], (*place, name), context)
     return values
@@ -272,7 +171,7 @@ def _told(kind: Told, given: Any, place: Place, context: Context) -> Any:
 def _file(kind: File, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, str):
         return context.wrong(place, given, "give text in quotes")
-    return _Beside(kind.sort, place, given)
+    return NamedFile(kind.sort, place, given)
 
 
 # -- several values --------------------------------------------------------------------------------
@@ -300,18 +199,6 @@ _PLACE = '["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]'
 _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
 
 
-@declared
-class Polar(Frozen):
-    """A point by its distance and direction from the origin."""
-
-    distance: float = key("length", "from the origin", example="88 mm")
-    direction: float = key("angle", "from the x axis, positive counterclockwise", example="-83 deg")
-
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> tuple[float, float]:
-        return from_polar(given["distance"], given["direction"])
-
-
 def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, dict):
         count = len(context.problems)
@@ -326,36 +213,6 @@ def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
         return _listing(_PAIR, given, place, context)
     values = _listing(Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values
-
-
-def from_polar(distance: float, direction: float) -> tuple[float, float]:
-    """Return x and y (m) of a point by its distance (m) and direction (rad) from the origin."""
-    return distance * _clean(cos(direction)), distance * _clean(sin(direction))
-
-
-def _clean(ratio: float) -> float:
-    # The cosine of 90 degrees is 6e-17 in floats; in a file it means 0.
-    return 0.0 if abs(ratio) < 4e-16 else ratio
-
-
-def written_point(point: tuple[float, float]) -> list[str] | dict[str, str]:
-    """Write a point such that reading it gives exactly the same floats, in the shorter form."""
-    components = [format_exact(component, "length") for component in point]
-    if max(map(len, components)) < 20:
-        return components
-    distance = rounded(hypot(*point), "mm", 9)
-    for turn in (0.0, 2 * pi):
-        direction = rounded(atan2(point[1], point[0]) + turn, "deg", 9)
-        if _reads_as(point, distance, direction):
-            return {"distance": distance, "direction": direction}
-    return components
-
-
-def _reads_as(point: tuple[float, float], distance: str, direction: str) -> bool:
-    try:
-        return from_polar(parse(distance, "length"), parse(direction, "angle")) == point
-    except UsageError:  # such as 1e-40 deg, where one component is tiny beside the other
-        return False
 
 
 _VECTOR = 'an angle such as "90 deg", or three plain numbers such as [0, 1, 0]'

@@ -33,7 +33,7 @@ from equipoise.keys import (
 )
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.opening import FileKind, document_of
-from equipoise.schema.reading import Polar
+from equipoise.schema.places import Polar
 from equipoise.schema.writing import plain_default
 
 Schema = dict[str, Any]

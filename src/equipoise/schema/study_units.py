@@ -12,7 +12,7 @@ from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
 from equipoise.quantities.units import FACTORS, KINDS
 from equipoise.schema.files import printable
-from equipoise.schema.given_units import SHARE, handy, unit_of
+from equipoise.schema.finding import SHARE, handy, unit_of
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
 

@@ -19,7 +19,7 @@ from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.model import LoadTable
 from equipoise.schema import csv_columns
 from equipoise.schema.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
-from equipoise.schema.reading import from_polar
+from equipoise.schema.places import from_polar
 
 _LOAD: Forms = (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque"))
 _SOIL: Forms = (("depth", "resistance"),)

@@ -29,8 +29,9 @@ from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal, dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
+from equipoise.schema.objects import Context
 from equipoise.schema.opening import toml_content
-from equipoise.schema.reading import Context, read_table
+from equipoise.schema.reading import read_table
 
 Quantity = str | float
 VALUE = Anything()
@@ -117,7 +118,8 @@ def _document(text: str) -> TargetTable:
     content = toml_content(text)
     if "goals" not in content:
         raise ModelError("goals", "missing; add at least one table [[goals]]")
-    return read_table(TargetTable, content, Context())
+    table: TargetTable = read_table(TargetTable, content, Context())
+    return table
 
 
 def _targets(document: TargetTable, figures: Collection[str]) -> Targets:

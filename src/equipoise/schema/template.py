@@ -21,12 +21,18 @@ from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema.files import printable
-from equipoise.schema.finding import Found, all_numbers, find, replaced, with_changes, written_place
-from equipoise.schema.given_units import unit_in
+from equipoise.schema.finding import (
+    Found,
+    all_numbers,
+    find,
+    replaced,
+    unit_in,
+    with_changes,
+)
 from equipoise.schema.models import machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
 from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
-from equipoise.schema.reading import Place
+from equipoise.schema.places import Place, written_place
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""

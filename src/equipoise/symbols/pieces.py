@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -306,3 +306,26 @@ def _sense(scene: Scene) -> Iterator[Piece]:
     radius = max(SENSE[0] * abs(arm), SENSE[1] * scene.unit)
     angles = np.angle(arm) + drive.sense * AHEAD
     yield Piece("drive", tuple(driver(center, radius, angles)), _with(body))
+
+
+# -- at one crank angle ----------------------------------------------------------------------------
+
+GROUND = ("field", "support")
+"""Layers of pieces that paths are drawn on."""
+
+
+def placed(scene: Scene, every: list[Piece], k: int) -> list[Shape]:
+    """The shapes of pieces where they are at the k-th crank angle, in the axes of the frame."""
+    return [shape for piece in every for shape in _placed(scene, piece, k)]
+
+
+def _placed(scene: Scene, piece: Piece, k: int) -> Iterator[Shape]:
+    track = piece.track(scene)
+    if track is None:
+        yield from piece.shapes
+        return
+    turn = np.exp(1j * track.angle[k])
+    for shape in piece.shapes:
+        stretched = shape.places.real * track.stretch[k] + 1j * shape.places.imag
+        places = track.place[k] + stretched * turn
+        yield replace(shape, places=places, offsets=shape.offsets * turn)

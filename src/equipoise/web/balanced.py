@@ -16,6 +16,7 @@ from equipoise.balancing.problem import Problem
 from equipoise.balancing.workshop import sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
+from equipoise.mechanism.outputs import declared
 from equipoise.quantities import number
 from equipoise.results.naming import (
     MEASURES,
@@ -30,6 +31,8 @@ from equipoise.web.rounding import clean
 from equipoise.web.state import figures_of
 
 Values = dict[str, Any]
+MAIN = ("rms", "peak")
+"""Measures that come first."""
 EXACT, ROUNDED = 1e-12, 1e-9
 GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
@@ -67,7 +70,7 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     if plan.phases is None:
         return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
-    return {term.objective.name: term.told(search.present) for term in search.cost.terms}
+    return {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
 
 
 def nothing_gained(found: Balanced) -> str | None:
@@ -190,16 +193,22 @@ def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, flo
 
 
 def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
+    """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
+    main = True
     if name == "mass":
         label, factor, unit = "mass of the links", 1e3, "g"
     else:
         output, _, measure = name.rpartition(".")
+        one, _ = declared(output) or (None, "")
+        whole = one is not None and one.part not in ("x", "y") and one.group in ("forces", "rows")
+        main = whole and measure in MAIN
         label = f"{output_named(output, len(found.machine.rows))}, {MEASURES[measure]}"
         if output.startswith("gauges"):
             factor, unit = scaled(si_unit(Objective(output), found.original))
         else:
             factor, unit = scaled(unit_of_measure(output, measure))
-    return {"label": label, "unit": unit, "before": factor * before, "after": factor * after}
+    values = {"before": factor * before, "after": factor * after}
+    return {"label": label, "unit": unit, "main": main, **values}
 
 
 def _proof(found: Balanced, replaced: bool) -> str:

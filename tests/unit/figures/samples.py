@@ -5,11 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
-from matplotlib.figure import Figure
-from matplotlib.text import Text
-
 import equipoise as eq
-from equipoise.figures import Picture
 from equipoise.figures.layout import lay_out
 from equipoise.figures.planting import charts
 from equipoise.mechanism.field import Soil
@@ -80,21 +76,6 @@ def drawn(name: str) -> dict[str, Chart]:
     return charts(read_off(name))
 
 
-def words(picture: Picture) -> str:
-    """Every text of a picture as it is drawn."""
-    if isinstance(picture, Chart):
-        return "\n".join(text.text for text in lay_out(picture).words)
-    return "\n".join(text.get_text() for text in texts(picture))
-
-
-def texts(figure: Figure) -> list[Text]:
-    """Every text that is drawn: not those of ticks outside their axes."""
-    outside = {
-        tick.label1
-        for axes in figure.axes
-        for axis in (axes.xaxis, axes.yaxis)
-        for tick in axis.get_major_ticks()
-        if not min(axis.get_view_interval()) <= tick.get_loc() <= max(axis.get_view_interval())
-    }
-    found = (text for text in figure.findobj(Text) if text.get_visible() and text.get_text())
-    return [text for text in found if text not in outside]
+def words(chart: Chart) -> str:
+    """Every text of a chart as it is drawn."""
+    return "\n".join(text.text for text in lay_out(chart).words)

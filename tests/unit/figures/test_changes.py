@@ -5,22 +5,16 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from functools import cache
-from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
-from matplotlib.patches import PathPatch
-from matplotlib.text import Annotation, Text
 
 import equipoise as eq
 from equipoise.balancing.design_variables import Change
 from equipoise.figures.additions import grams, sector
-from equipoise.figures.changes import changes_figure
-from equipoise.figures.linkage import linkage_figure
-from equipoise.figures.pictures import drawn
-from equipoise.plotting.style import styled
+from equipoise.figures.changes import changes
+from equipoise.figures.linkage import linkage
+from equipoise.results.charts import Chart, Outline
 from unit.figures.balance_samples import (
     MM,
     STEEL,
@@ -30,34 +24,19 @@ from unit.figures.samples import words
 
 
 @cache
-def changes_of(kind: str) -> Figure:
-    return drawn(changes_figure, found(kind))
+def changes_of(kind: str) -> Chart:
+    return changes(found(kind))
 
 
-def line(axes: Axes, number: int = 0) -> np.ndarray:
-    """A line as complex numbers."""
-    drawn = axes.get_lines()[number]
-    return np.asarray(drawn.get_xdata(), float) + 1j * np.asarray(drawn.get_ydata(), float)
+def curves(chart: Chart, role: str) -> list[np.ndarray]:
+    """Lines of a role as complex numbers, mm."""
+    (panel,) = chart.panels
+    return [MM * (one.x + 1j * one.y) for one in panel.curves if one.role == role]
 
 
-def labelled(axes: Axes, label: str) -> list[np.ndarray]:
-    lines = [k for k, drawn in enumerate(axes.get_lines()) if drawn.get_label() == label]
-    return [line(axes, k) for k in lines]
-
-
-def arrows(axes: Axes) -> list[tuple[complex, complex]]:
-    """Tails and heads, without the leads of labels."""
-    return [
-        (complex(*text.xyann), complex(*text.xy))
-        for text in axes.texts
-        if isinstance(text, Annotation) and (text.arrowprops or {}).get("arrowstyle") == "-|>"
-    ]
-
-
-def key(figure: Figure) -> list[tuple[Text, Any]]:
-    """Names and signs of a legend."""
-    (legend,) = figure.legends
-    return list(zip(legend.get_texts(), legend.legend_handles, strict=True))
+def springs(chart: Chart) -> list[np.ndarray]:
+    (panel,) = chart.panels
+    return [MM * shape.places for shape in panel.signs if shape.role == "added"]
 
 
 def crank_angle(kind: str) -> float:
@@ -77,26 +56,24 @@ def at_pose(kind: str, link: str, place: tuple[float, float]) -> complex:
     return complex(MM * there)
 
 
-def shapes(axes: Axes) -> list[PathPatch]:
-    return [one for one in axes.patches if isinstance(one, PathPatch) and one.get_alpha()]
-
-
-def moments(patch: PathPatch) -> tuple[float, complex]:
-    """Area, mm2, and its centre, of outlines less holes."""
+def moments(outline: Outline) -> tuple[float, complex]:
+    """Area, mm2, and its centre, of an outline less its holes."""
     area, first = 0.0, 0j
-    for corners in patch.get_path().to_polygons():
-        z = corners[:, 0] + 1j * corners[:, 1]
+    for sign, places in ((1, outline.places), *((-1, hole) for hole in outline.holes)):
+        z = MM * places
         cross = (np.conj(z[:-1]) * z[1:]).imag
-        area += float(np.sum(cross)) / 2
-        first += complex(np.sum((z[:-1] + z[1:]) * cross)) / 6
-    return abs(area), first / area
+        whole = float(np.sum(cross)) / 2
+        sense = sign * np.sign(whole)
+        area += sense * whole
+        first += sense * complex(np.sum((z[:-1] + z[1:]) * cross)) / 6
+    return area, first / area
 
 
 @pytest.mark.parametrize("kind", ["sector", "one of each", "ring", "geared"])
 def test_plates_are_to_scale(kind: str) -> None:
     """What is filled has the area of the piece, and its centre is the centre of mass."""
     result = found(kind)
-    drawn = shapes(changes_of(kind).axes[0])
+    drawn = changes_of(kind).panels[0].outlines
     cut = [
         (change.link, piece)
         for change in result.changes
@@ -104,8 +81,8 @@ def test_plates_are_to_scale(kind: str) -> None:
         if piece["shape"] != "point"
     ]
     assert len(drawn) == len(cut) > 0
-    for patch, (link, piece) in zip(drawn, cut, strict=True):
-        area, middle = moments(patch)
+    for outline, (link, piece) in zip(drawn, cut, strict=True):
+        area, middle = moments(outline)
         assert area * 1e-6 == pytest.approx(piece["mass"] / (STEEL * 0.02), rel=2e-3)
         assert middle == pytest.approx(at_pose(kind, link, piece["place"]), abs=0.1)
         assert f"{MM * piece['mass']:.4g} g on {link}" in words(changes_of(kind))
@@ -113,13 +90,13 @@ def test_plates_are_to_scale(kind: str) -> None:
 
 def test_points_and_moved_centres() -> None:
     result = found("one of each")
-    axes = changes_of("one of each").axes[0]
+    (panel,) = changes_of("one of each").panels
     by_kind = {change.kind + change.link: change for change in result.changes}
     move = by_kind["center of masscoupler"].values
     ends = [at_pose("one of each", "coupler", move[k]) for k in ("from", "to")]
-    (drawn,) = arrows(axes)
-    assert list(drawn) == pytest.approx(ends)
-    dots = [complex(line(axes, k)[0]) for k in range(len(axes.lines)) if len(line(axes, k)) == 1]
+    (drawn,) = panel.arrows
+    assert [MM * drawn.tail, MM * drawn.head] == pytest.approx(ends)
+    dots = [MM * complex(one.x, one.y) for one in panel.marks if one.role == "point mass"]
     for piece in by_kind["added massrocker"].values["pieces"]:
         place = at_pose("one of each", "rocker", piece["place"])
         assert min(abs(place - dot) for dot in dots) < 1e-6
@@ -127,12 +104,12 @@ def test_points_and_moved_centres() -> None:
 
 
 def test_rooms() -> None:
-    circle, other, box = labelled(changes_of("one of each").axes[0], "room")
+    circle, other, box = curves(changes_of("one of each"), "room")
     assert np.abs(circle) == pytest.approx(60.0)
     pivot = MM * complex(*eq.load("yamashita-1").frame["D"])
     assert np.abs(other - pivot) == pytest.approx(50.0)
     assert np.abs(np.diff(box)) == pytest.approx([100, 60, 100, 60])
-    (round_about,) = labelled(changes_of("moved").axes[0], "room")
+    (round_about,) = curves(changes_of("moved"), "room")
     middle = at_pose("moved", "coupler", (0, 0))
     assert np.abs(round_about - middle) == pytest.approx(30.0)
 
@@ -147,18 +124,18 @@ def test_the_pose_is_that_of_the_linkages_picture() -> None:
             masses=(weight,), objectives=(eq.balancing.Objective("shaking_force"),)
         ),
     )
-    with styled():
-        figure = changes_figure(result)
-    angle = re.search(r"in the frame: [0-9.]+°", words(figure))
-    assert angle and angle[0] in words(linkage_figure(eq.analyze(machine, 720)))
-    signs = {text.get_text(): sign for text, sign in key(figure)}
-    assert {"added mass", "room allowed", "pitch circles of gears"} == signs.keys()
-    assert signs["added mass"].get_marker() == "o"
+    chart = changes(result)
+    angle = re.search(r"in the frame: [0-9.]+°", words(chart))
+    assert angle and angle[0] in words(linkage(eq.analyze(machine, 720)))
+    told = words(chart).split("\n")
+    for name in ("added mass", "room allowed", "pitch circles of gears"):
+        assert told.count(name) == 1
+    assert "pitch circles of new gears" not in told
 
 
 def test_gears_touch() -> None:
     result = found("geared")
-    driver, shaft = labelled(changes_of("geared").axes[0], "gear")
+    driver, shaft = curves(changes_of("geared"), "gear")
     values = result.changes[0].values
     middles = [np.mean(circle[:-1]) for circle in (driver, shaft)]
     assert middles[1] == pytest.approx(MM * complex(*values["axis"]))
@@ -168,15 +145,14 @@ def test_gears_touch() -> None:
 
 
 def test_weights_on_shafts() -> None:
-    axes = changes_of("shafts").axes[0]
-    rooms = labelled(axes, "room")
+    rooms = curves(changes_of("shafts"), "room")
     assert [np.mean(room[:-1]) for room in rooms] == pytest.approx([50 + 50j, 150 + 50j])
     assert "on balance-shaft-2" in words(changes_of("shafts"))
 
 
 def test_springs() -> None:
     result = found("spring")
-    (spring_drawn,) = labelled(changes_of("spring").axes[0], "spring")
+    (spring_drawn,) = springs(changes_of("spring"))
     spring = result.machine.springs[-1]
     ends = [
         at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]),
@@ -185,16 +161,16 @@ def test_springs() -> None:
     assert spring_drawn[[0, -1]] == pytest.approx(np.array(ends))
     assert f"{spring.stiffness:.4g} N/m" in words(changes_of("spring"))
     none = Change("spring", "rocker", {"point": "C", "to": "S", "stiffness": 0.0, "free_length": 0})
-    figure = drawn(changes_figure, replace(result, changes=(none,)))
-    assert not labelled(figure.axes[0], "spring") and "Nothing to change" in words(figure)
+    chart = changes(replace(result, changes=(none,)))
+    assert not springs(chart) and "Nothing to change" in words(chart)
 
 
 def test_nothing_to_add() -> None:
     result = found("sector")
     (change,) = result.changes
     none = replace(change, values={**change.values, "pieces": [], "mass": 0.0})
-    figure = drawn(changes_figure, replace(result, changes=(none,)))
-    assert not shapes(figure.axes[0]) and "Nothing to change" in words(figure)
+    chart = changes(replace(result, changes=(none,)))
+    assert not chart.panels[0].outlines and "Nothing to change" in words(chart)
     assert "What to change" in words(changes_of("sector"))
 
 
@@ -202,8 +178,8 @@ def test_a_room_far_larger_than_the_machine_leaves_it_its_scale() -> None:
     result = found("sector")
     (mass,) = result.plan.masses
     wide = replace(mass, weight=replace(mass.weight, radius=30.0))
-    axes = drawn(changes_figure, replace(result, plan=replace(result.plan, masses=(wide,)))).axes[0]
-    assert axes.get_xlim() == changes_of("sector").axes[0].get_xlim()
+    (panel,) = changes(replace(result, plan=replace(result.plan, masses=(wide,)))).panels
+    assert panel.x == changes_of("sector").panels[0].x
 
 
 def test_two_points_at_one_place_share_a_label() -> None:
@@ -211,7 +187,7 @@ def test_two_points_at_one_place_share_a_label() -> None:
     change = next(change for change in result.changes if change.link == "rocker")
     piece = {"shape": "point", "mass": 0.2, "place": (0.0, 0.0)}
     twins = replace(change, values={**change.values, "pieces": [piece, piece]})
-    assert "2 × 200 g on rocker" in words(drawn(changes_figure, replace(result, changes=(twins,))))
+    assert "2 × 200 g on rocker" in words(changes(replace(result, changes=(twins,))))
 
 
 def test_masses_in_words() -> None:

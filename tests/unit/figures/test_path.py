@@ -9,26 +9,27 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.path import path_figure
+from equipoise.figures.path import path
 from equipoise.figures.paths import Paths
-from equipoise.figures.pictures import drawn
 from equipoise.planting.summary import plant
 from unit.figures.samples import (
     BUNDLED,
     read_off,
     words,
 )
+from unit.figures.test_pictures import views
 
 
 def test_both_paths_are_drawn_to_one_scale() -> None:
     for name in BUNDLED:
-        for axes in drawn(path_figure, read_off(name)).axes:
-            (x0, y0), (x1, y1) = axes.transData.transform([(0, 0), (1, 1)])
-            assert x1 - x0 == pytest.approx(y1 - y0, rel=1e-9)
-        machine, ground = drawn(path_figure, read_off(name)).axes
-        assert machine.get_ylim() == ground.get_ylim()
-        left, right = (axes.transData.transform([(0, 0), (1, 0)]) for axes in (machine, ground))
-        assert np.ptp(left[:, 0]) == pytest.approx(np.ptp(right[:, 0]), rel=1e-9)
+        machine, ground = views(path(read_off(name)))
+        assert (machine.y.low, machine.y.high) == pytest.approx((ground.y.low, ground.y.high))
+        scales = [
+            scale.length / (scale.high - scale.low)
+            for view in (machine, ground)
+            for scale in (view.x, view.y)
+        ]
+        assert scales == pytest.approx([scales[0]] * 4)
 
 
 @pytest.mark.parametrize("name", BUNDLED)
@@ -50,10 +51,18 @@ def test_paths_are_the_motion(name: str) -> None:
 
 def test_without_travel_there_is_no_ground_panel() -> None:
     still = plant(eq.load("kim-chung-a").with_planting(forward_speed=0.0))
-    figure = drawn(path_figure, still)
-    assert len(figure.axes) == 1
-    assert "over ground" not in words(figure)
-    assert len(drawn(path_figure, read_off("kim-chung-a")).axes) == 2
+    chart = path(still)
+    assert len(chart.panels) == 1
+    assert "over ground" not in words(chart)
+    assert len(path(read_off("kim-chung-a")).panels) == 2
+
+
+def test_the_machine_is_drawn_at_the_lowest_point() -> None:
+    figures = read_off("kim-chung-a")
+    motion = eq.move(figures.machine, [figures["lowest.crank_angle"]])
+    pins = [one.places[0] for one in path(figures).panels[0].signs if one.role in ("pin", "dot")]
+    for point in motion.points.values():
+        assert np.min(np.abs(np.array(pins) - point.place[0])) < 1e-12
 
 
 def test_matplotlib_waits_until_it_is_needed() -> None:
@@ -66,7 +75,8 @@ def test_matplotlib_waits_until_it_is_needed() -> None:
         "from equipoise.figures import render\n"
         "analysis = eq.analyze(eq.load('kim-chung-a'))\n"
         "from equipoise.figures.analysis import curves\n"
-        "assert render(curves(analysis)).startswith(b'<svg')\n"
+        "from equipoise.figures.linkage import linkage\n"
+        "assert all(render(draw(analysis)).startswith(b'<svg') for draw in (curves, linkage))\n"
         "assert not any(name.startswith('matplotlib') for name in sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -6,8 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from equipoise.figures.labels import Labels, spread
-from equipoise.plotting.style import blank
+from equipoise.figures.sheet import Sheet
+from equipoise.figures.texts import Labels, Text, spread
 from equipoise.symbols.scene import hull
 
 
@@ -22,13 +22,13 @@ def test_texts_side_by_side() -> None:
 def test_texts_without_room() -> None:
     crowd = spread([0, 0, 0], [5, 5, 5], 0, 10)
     assert np.all((crowd >= 2.5) & (crowd <= 7.5))
-    axes = blank(1.0, 1.0).add_axes((0, 0, 1, 1))
-    labels = Labels(axes)
-    labels.reserve(0.5, 0.5, half=100)
-    labels.put("no room", 0.5, 0.5, optional=True)
-    assert not axes.texts
-    labels.put("all the same", 0.5, 0.5)
-    assert [text.get_text() for text in axes.texts if text.get_text()] == ["all the same"]
+    sheet = Sheet(72.0, 72.0)
+    labels = Labels(sheet, (0.0, 0.0, 72.0, 72.0))
+    labels.reserve(36.0, 36.0, half=100)
+    assert not labels.put(36.0, 36.0, Text("no room", "#000000", optional=True))
+    assert not sheet.words
+    assert labels.put(36.0, 36.0, Text("all the same", "#000000"))
+    assert [words.text for words in sheet.words] == ["all the same"]
 
 
 def test_hull() -> None:

@@ -16,7 +16,7 @@ from equipoise.figures import render
 from equipoise.figures.outputs import kinematics, outputs_chart
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.outputs import DECLARED, declaring, output
-from equipoise.present.composition import report
+from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.outputs import documented, unit_of
 from equipoise.schema.models import dumps
@@ -86,7 +86,7 @@ def test_it_is_printed(power: None) -> None:
 @pytest.mark.parametrize("language", ["en", "ja", "ko"])
 def test_it_stands_in_the_report(power: None, language: str) -> None:
     machine = eq.load("yamashita-1")
-    text = report(Findings(machine, dumps(machine), "machine.toml"), language)
+    text = report_page(Findings(machine, dumps(machine), "machine.toml"), language)
     assert ("drive power (en)" in text) == (language != "en")
     assert "drive power" in text
 
@@ -102,8 +102,13 @@ def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
     asked = message_of({"type": "outputs", "seq": 1, "names": [POWER, "points.P.vx"]})
     content = next(iter(session.receive(asked))).content
     offered = {one["name"]: one for one in content["outputs"]}
-    told = {"name": POWER, "label": "drive power", "unit": "W", "group": "frame and drive"}
-    assert offered[POWER] == told
+    assert offered[POWER] == {
+        "name": POWER,
+        "label": "drive power",
+        "group": "frame and drive",
+        "unit": "W",
+        "factor": 1.0,
+    }
     assert {f"output.{POWER}", "output.points.P.vx"} <= content["arrays"].keys()
     assert "output.shaking_moment" not in content["arrays"]
     refused = message_of({"type": "outputs", "seq": 2, "names": ["drive_powers"]})

@@ -22,7 +22,7 @@ from equipoise.quantities.units import KINDS
 from equipoise.schema.finding import is_whole
 from equipoise.schema.models import examples
 from equipoise.schema.numbers import OF_UNIT
-from equipoise.schema.reading import from_polar
+from equipoise.schema.places import from_polar
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL

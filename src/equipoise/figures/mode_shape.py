@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.support import Direction, unit_vector
 from equipoise.symbols.scene import Scene, hull
 from equipoise.vibration.linkages import rows_of
 
@@ -21,7 +22,6 @@ if TYPE_CHECKING:
 Array = np.ndarray[Any, Any]
 View = Literal["side", "rear", "top"]
 
-MM = 1000.0
 ACROSS: dict[View, tuple[int, int, int]] = {"side": (0, 1, 1), "rear": (2, 1, 1), "top": (0, 2, -1)}
 """View -> which of x, y, z run to the right and upward, and the sense of the second: from above,
 what lies to the right of who looks forward is below."""
@@ -37,7 +37,7 @@ PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
 
 
 @dataclass(frozen=True, eq=False)
-class Shape:
+class ModeShape:
     """A mode as it is drawn, displacements far larger than true."""
 
     free: FreeVibration
@@ -93,19 +93,19 @@ class Shape:
         return np.asarray(points + moved.real)
 
     def path(self, point: Array, view: View) -> Array:
-        """Where a point (3,) goes in a cycle, complex, mm."""
+        """Where a point (3,) goes in a cycle, complex, m."""
         moved = _moved(self.motion, (point - self.reference)[None])[0]
         return seen(point + np.outer(PHASES, moved).real, view)
 
     def outline(self, view: View, phase: complex = 0.0) -> Array:
-        """Closed outline in a view, complex, mm: a line drawn tightly around discs at corners."""
+        """Closed outline in a view, complex, m: a line drawn tightly around discs at corners."""
         corners = hull(seen(self.displaced(self.corners, phase), view))
-        disc = ROUND * self.size * MM * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+        disc = ROUND * self.size * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
         around = hull((corners[:, None] + disc).ravel())
         return np.append(around, around[0])
 
     def extent(self, view: View) -> tuple[complex, complex]:
-        """Lower left and upper right corner of all that moves in a view, mm."""
+        """Lower left and upper right corner of all that moves in a view, m."""
         every = np.concatenate([self.outline(view, phase) for phase in (0, *PHASES[::6])])
         low = complex(np.min(every.real), np.min(every.imag))
         return low, complex(np.max(every.real), np.max(every.imag))
@@ -123,7 +123,12 @@ def _moved(motion: Array, arms: Array) -> Array:
 
 
 def seen(points: Array, view: View) -> Array:
-    """Points (..., 3) or directions in a view, complex, mm."""
+    """Points (..., 3) or directions in a view, complex, m."""
     right, up, sense = ACROSS[view]
     points = np.asarray(points)
-    return np.asarray(MM * (points[..., right] + 1j * sense * points[..., up]))
+    return np.asarray(points[..., right] + 1j * sense * points[..., up])
+
+
+def along(direction: Direction, view: View) -> complex:
+    """A unit vector in a view."""
+    return complex(seen(np.array(unit_vector(direction)), view))

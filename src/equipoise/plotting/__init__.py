@@ -1,1 +1,0 @@
-"""Pictures, drawn with Matplotlib: the only rooms that know it."""

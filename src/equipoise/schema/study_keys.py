@@ -1,0 +1,155 @@
+"""Keys of study files; values come through as they are, for what varies tells what they measure."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from equipoise.keys import (
+    SCHEMA_VERSION,
+    VERSION,
+    Anything,
+    Conditions,
+    Frozen,
+    Keys,
+    Listing,
+    Number,
+    Table,
+    Tables,
+    Text,
+    Whole,
+    declared,
+    key,
+)
+from equipoise.quantities.units import NUMBER
+from equipoise.studies.checks import COMMANDS, METHODS
+from equipoise.studies.design_space import Sampling
+
+SPREADS = ("range", "list", "normal", "uniform")
+VALUE = Anything(
+    schema={
+        "anyOf": [{"type": "number"}, {"type": "string", "pattern": rf"^{NUMBER} +\S"}],
+        "examples": ["60 mm"],
+    }
+)
+"""Number and unit in quotes, or a plain number: which, is told by what it is a value of."""
+LIMITS = Listing(VALUE, (2,), 'two limits, such as ["60 mm", "80 mm"]')
+ANY_WHOLE = Whole(most=10**18)
+PATHS = Listing(Text(), (2,), "a list of two paths")
+
+
+@declared
+class NormalTable(Frozen):
+    """A normal spread."""
+
+    deviation: Any = key(VALUE, "standard deviation", example="2 g")
+    mean: Any = key(VALUE, "that of the model if left out", default=None)
+    cut: float | None = key(Number(), "deviations beyond which nothing lies", default=None)
+
+
+@declared
+class UniformTable(Frozen):
+    """A uniform spread."""
+
+    half_width: Any = key(VALUE, "to either side of the centre", example="0.1 mm")
+    centre: Any = key(VALUE, "that of the model if left out", default=None)
+
+
+@declared
+class VaryTable(Frozen):
+    """A number of the model that varies: over a range or a list, or by a tolerance."""
+
+    conditions: ClassVar[Conditions] = {
+        "oneOf": [{"required": [one]} for one in SPREADS],
+        "dependentRequired": {"steps": ["range"]},
+    }
+
+    path: str = key(Text(), "of it in the model file", example="links.crank.mass")
+    range: Any = key(LIMITS, "lowest and highest", default=None)
+    steps: int | None = key(ANY_WHOLE, "of a range on a grid", default=None)
+    list: Any = key(
+        Listing(VALUE, right='a list such as ["100 g", "200 g"]'),
+        "all that it can be",
+        default=None,
+    )
+    normal: NormalTable | None = key(Table(NormalTable), "a normal spread", default=None)
+    uniform: UniformTable | None = key(Table(UniformTable), "a uniform spread", default=None)
+
+
+@declared
+class CorrelationTable(Frozen):
+    """Two numbers that go together."""
+
+    between: tuple[str, str] = key(PATHS, "paths of both", example=["links.a.mass", "links.b.mass"])
+    coefficient: float = key(Number(), "between -1 and 1", example=0.9)
+
+
+@declared
+class SamplingTable(Frozen):
+    """Which designs are computed."""
+
+    method: str = key(Text(suggested=(*METHODS,)), "how designs are spread", example="sobol")
+    designs: int | None = key(ANY_WHOLE, "their number; not of a grid", default=None)
+    seed: int | None = key(
+        ANY_WHOLE, "of random numbers; not of a grid", default=None, shown=Sampling.seed
+    )
+
+
+@declared
+class OutputTable(Frozen):
+    """A figure that is computed of every design."""
+
+    value: str = key(
+        Text(), "place in the JSON object of the command", example="shaking_force.y.rms"
+    )
+    name: str | None = key(Text(), "of its column; its place if left out", default=None)
+    of: str | None = key(Text(suggested=(*COMMANDS,)), "the command that has it", default=None)
+    at_least: Any = key(VALUE, "designs below are not kept", default=None)
+    at_most: Any = key(VALUE, "designs above are not kept", default=None)
+    make: str | None = key(
+        Text(("smallest", "largest")), "whether it is to become small or large", default=None
+    )
+
+
+@declared
+class AccuracyTable(Frozen):
+    """How exactly figures of an analysis are computed."""
+
+    conditions: ClassVar[Conditions] = {"maxProperties": 1}
+
+    angles: int | None = key(ANY_WHOLE, "crank angles in a turn", default=None)
+    tolerance: float | None = key(Number(), "to which figures stand still", default=None)
+
+
+@declared
+class StudyTable(Frozen):
+    """Many designs of one model."""
+
+    beside: ClassVar[Keys] = {"schema": VERSION}
+    file_order = ("schema", "title", "model", "vary", "correlations")
+
+    model: str = key(
+        Text(),
+        "model file beside this one, or name of a bundled example",
+        example="yamashita-1",
+    )
+    vary: tuple[VaryTable, ...] = key(Tables(Table(VaryTable)), "what varies")
+    sampling: SamplingTable = key(
+        Table(SamplingTable), "which designs are computed", example={"method": "sobol"}
+    )
+    outputs: tuple[OutputTable, ...] = key(Tables(Table(OutputTable)), "what is computed")
+    title: str | None = key(Text(), "that of the model if left out", default=None)
+    correlations: tuple[CorrelationTable, ...] = key(
+        Tables(Table(CorrelationTable)), "what goes together", default=()
+    )
+    accuracy: AccuracyTable | None = key(
+        Table(AccuracyTable), "how exactly figures are computed", default=None
+    )
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> StudyTable:
+        del given["schema"]
+        return cls(**given)
+
+    @classmethod
+    def to_table(cls, value: StudyTable) -> dict[str, Any]:
+        return {**super().to_table(value), "schema": SCHEMA_VERSION}
