@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 
-.PHONY: demo page test coverage lint bench clean
+.PHONY: demo page pictures test narrow coverage lint bench clean
 
 $(VENV)/.installed: pyproject.toml hatch_build.py
 	$(PYTHON) -c "import sys; sys.exit(sys.version_info < (3, 11) and 'Equipoise needs Python 3.11 or newer; say which with: make PYTHON=python3.12')"
@@ -19,6 +19,10 @@ $(VENV)/.installed-test: $(VENV)/.installed
 
 page: $(VENV)/.installed
 	$(BIN)/python page/bundle.py
+
+# The pictures of README, of the product as it is; screenshots need Chromium.
+pictures: $(VENV)/.installed-test page
+	$(BIN)/python docs/pictures/make.py
 
 demo: $(VENV)/.installed
 	-@$(BIN)/python page/bundle.py
@@ -38,6 +42,11 @@ demo: $(VENV)/.installed
 test: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py
 	$(BIN)/python -m pytest --numprocesses auto
+
+# Unit tests and laws as on a processor without wide instructions, where sums round otherwise.
+WIDE = import numpy; print(*numpy.show_config("dicts")["SIMD Extensions"].get("found", []))
+narrow: $(VENV)/.installed-test
+	NPY_DISABLE_CPU_FEATURES="$$($(BIN)/python -c '$(WIDE)')" $(BIN)/python -m pytest --numprocesses auto tests/unit tests/laws
 
 coverage: $(VENV)/.installed-test
 	-@$(BIN)/python page/bundle.py

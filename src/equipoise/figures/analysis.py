@@ -229,8 +229,8 @@ def force(analysis: Analysis) -> Chart:
     """Both components of the shaking force and its size over crank angle."""
     found = each(analysis, "shaking_force")
     parts: dict[str, Callable[[Array], Array]] = {
-        say("along x"): np.real,
-        say("along y"): np.imag,
+        say("along {axis}", axis="x"): np.real,
+        say("along {axis}", axis="y"): np.imag,
         say("size"): np.abs,
     }
     return over_crank(
@@ -308,7 +308,7 @@ def polar(analysis: Analysis) -> Chart:
     marks, curves, arrows, message = _told_sizes(analysis, found[ALL], x)
     if analysis.motion.whole_cycle:
         told = told_angles(analysis.crank_angle)
-        for role, values in reversed(found.items()):
+        for role, values in reversed([*found.items()]):
             marks += numbers(told, values, role, extent(every, np.zeros(1)))
     lines = [Curve(*_parts(over(analysis, values)[1]), "", role) for role, values in found.items()]
     panel = Panel(
@@ -339,7 +339,8 @@ def _told_sizes(
         return [], [], (), say("zero at every crank angle")
     mean, peak = float(np.mean(sizes)), complex(values[k])
     circle = mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
-    marks, arrows = [], ()
+    marks: list[Mark] = []
+    arrows: tuple[Arrow, ...] = ()
     if np.ptp(sizes) > ALIKE * sizes[k]:
         arrows = (Arrow(0j, peak, "stress"),)
         at = degrees_told(float(analysis.crank_angle[k]))

@@ -156,7 +156,8 @@ def signals(found: Balanced) -> dict[str, Chart]:
 
     force = {axis: pair_of(f"shaking_force.{axis}", least_force) for axis in ("x", "y")}
     panels = tuple(
-        compare(drive, angles, pair, say(f"along {axis}"), "force") for axis, pair in force.items()
+        compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
+        for axis, pair in force.items()
     )
     what = f"{say('Shaking force')}, {_told(found)}"
     drawn = {
@@ -182,7 +183,8 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     drawn, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
-    at, marks, curves = told_angles(angles), [], []
+    at, curves = told_angles(angles), []
+    marks: list[Mark] = []
     for role, values in drawn.items():
         line = np.append(values, values[0])
         curves.append(Curve(line.real, line.imag, "", role))
@@ -318,7 +320,7 @@ def together(original: Machine | None, machine: Machine) -> Chart:
         pair: Pair = {"after": settled(after, least)}
         if original is not None:
             pair = paired(summed(original, axis)[1], after, least)
-        panels.append(compare(machine.drive, angles, pair, say(f"along {axis}"), "force"))
+        panels.append(compare(machine.drive, angles, pair, say("along {axis}", axis=axis), "force"))
         pairs.append(pair)
     return Chart("rows", machine.title, what, tuple(panels), keys=keys(*pairs))
 

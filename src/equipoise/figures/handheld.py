@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -98,7 +98,7 @@ NUMBERS = {
     "rotational_stiffness": to_say("rotational stiffness"),
     "rotational_damping": to_say("rotational damping"),
 }
-SHOWN_IN: dict[Dimension, tuple[str, str, str]] = {
+SHOWN_IN = {
     "mass": ("kg", "g", "kg"),
     "stiffness": ("kN/m", "kN/m", "kN/m"),
 }
@@ -131,8 +131,8 @@ def kind_of(station: Station) -> str:
 def shaft_axis(tool: Tool) -> Axis:
     """Places along the shaft."""
     beyond = BESIDE * tool.shaft.length
-    ends = {"low": -beyond, "high": tool.shaft.length + beyond}
-    return Axis.of(say("place on the shaft from its left end"), "length", [0.1], **ends)
+    label = say("place on the shaft from its left end")
+    return Axis.of(label, "length", [0.1], low=-beyond, high=tool.shaft.length + beyond)
 
 
 def shaft_lines(tool: Tool) -> tuple[Line, ...]:
@@ -580,9 +580,7 @@ def variation_charts(variation: Variation) -> dict[str, Chart]:
     tool, values = variation.tool, variation.values
     planes = 2 if _apart(variation) else 1
     top = 1.06 * float(np.max(variation.parameter)) or 1.0
-    dimension = KEYS[variation.key]
-    unit = display(dimension, (), SHOWN_IN.get(dimension))
-    x = Axis(named(variation), unit, *_along(values))
+    x = Axis(named(variation), number_unit(KEYS[variation.key]), *_along(values))
     names = [say("both planes")] if planes == 1 else [plane_named(k, alike=False) for k in (0, 1)]
     curves = [
         Curve(values, row, name, f"several {number}")
@@ -601,6 +599,11 @@ def variation_charts(variation: Variation) -> dict[str, Chart]:
     )
     what = say("Natural frequencies without damping against the {number}", number=named(variation))
     return {"variation": Chart("variation", tool.title, what, (panel,))}
+
+
+def number_unit(dimension: str) -> Display:
+    """The unit in which a number of a station is told."""
+    return display(cast(Dimension, dimension), (), SHOWN_IN.get(dimension))
 
 
 def named(variation: Variation) -> str:
@@ -721,11 +724,10 @@ def changes_told(found: ToolDesign) -> list[str]:
     count = len(found.variables)
     words = []
     for one, edge in zip(found.variables, found.edges, strict=True):
-        unit = display(one.dimension, (), SHOWN_IN.get(one.dimension))
-        axis = Axis("", unit)
+        axis = Axis("", number_unit(one.dimension))
         ends = f"{axis.told(one.before)} → {axis.quantity(one.after)}"
         end = f" ({say(ALLOWED[edge])})" if edge else ""
-        words.append(f"{short(one.name.replace('_', ' '), 40)}: {ends}{end}")
+        words.append(f"{short(figure_named(one), 40)}: {ends}{end}")
     if count <= MOST_CHANGES:
         return words
     return [*words[: MOST_CHANGES - 1], say("and {count} more", count=count - MOST_CHANGES + 1)]

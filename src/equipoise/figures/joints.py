@@ -22,7 +22,7 @@ from equipoise.figures.crank import (
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics import JointForce, SliderForce
-from equipoise.results.charts import Axis, Chart, Curve, Panel
+from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -113,7 +113,7 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
         panels = []
         for name in names:
             values = found[name].values
-            marks = ()
+            marks: tuple[Mark, ...] = ()
             if analysis.motion.whole_cycle:
                 size = extent(values, np.zeros(1))
                 marks = numbers(told_angles(analysis.crank_angle), values, "all", size)

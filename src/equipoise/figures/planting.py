@@ -234,7 +234,7 @@ def _air_and_soil(
     angles = figures.forces.motion.crank_angle
     names = {"air": say("in the air"), "soil signal": say("in the soil")}
     marks: list[Mark] = []
-    for role, values in reversed(pair.items()):
+    for role, values in reversed([*pair.items()]):
         places = sampled_extremes(angles, values)
         if both:
             marks += extremes(y, values, places, role, angles=True)

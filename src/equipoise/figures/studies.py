@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -291,7 +291,7 @@ def joined(names: Sequence[str]) -> str:
 
 # -- an objective over two numbers -----------------------------------------------------------------
 
-HANDY: dict[Dimension, str] = {
+HANDY = {
     "mass": "g",
     "inertia": "kg mm^2",
     "angular speed": "rpm",
@@ -300,11 +300,13 @@ HANDY: dict[Dimension, str] = {
 """Units of numbers of a model beside the usual ones."""
 
 
-def number_unit(dimension: Dimension | None) -> Display:
+def number_unit(dimension: str | None) -> Display:
     """The unit in which a number of the model is told."""
     if dimension is None:
         return Display("", 1.0)
-    return in_unit(HANDY[dimension]) if dimension in HANDY else display(dimension)
+    if dimension in HANDY:
+        return in_unit(HANDY[dimension])
+    return display(cast(Dimension, dimension))
 
 
 def told_best(found: Landscape) -> str:

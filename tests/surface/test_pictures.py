@@ -1,0 +1,37 @@
+"""The pictures of README: small, and of the product as it is."""
+
+from __future__ import annotations
+
+import json
+import re
+import runpy
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PICTURES = ROOT / "docs" / "pictures"
+MAKE = runpy.run_path(str(PICTURES / "make.py"))
+STALE = "stale; run `make pictures`"
+NUMBER = re.compile(r"-?\d+(?:\.\d+)?")
+
+
+def test_readme_shows_all_of_them_and_they_are_small() -> None:
+    shown = re.findall(r"docs/pictures/([\w.]+)", (ROOT / "README.md").read_text(encoding="utf-8"))
+    there = {file.name for file in PICTURES.iterdir() if file.suffix in (".svg", ".png")}
+    assert {*shown} == there
+    assert sum((PICTURES / name).stat().st_size for name in there) < 1_000_000
+
+
+def test_the_linkage_moves_as_it_would_now() -> None:
+    """The same text, and the same numbers but for the last digit, which processors round."""
+    kept = (PICTURES / "linkage.svg").read_text(encoding="utf-8")
+    fresh = MAKE["linkage"]()
+    assert NUMBER.sub("#", kept) == NUMBER.sub("#", fresh), STALE
+    numbers = ([float(n) for n in NUMBER.findall(text)] for text in (kept, fresh))
+    assert next(numbers) == pytest.approx(next(numbers), abs=0.11, rel=1e-3), STALE
+
+
+def test_screenshots_are_of_what_there_is() -> None:
+    kept = json.loads((PICTURES / "sources.json").read_text(encoding="utf-8"))
+    assert kept == MAKE["sources"](), STALE

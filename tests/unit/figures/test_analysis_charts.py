@@ -1,0 +1,252 @@
+"""Charts of an analysis and of planting: they hold what was computed, and say so in words."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from math import degrees, tau
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.multi_row import Rows
+from equipoise.errors import UsageError
+from equipoise.figures import analysis as view
+from equipoise.figures import joints as of_joints
+from equipoise.figures import planting
+from equipoise.figures.crank import angle_step
+from equipoise.figures.pictures import analysis_pictures, planting_pictures
+from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.support import Row
+from equipoise.planting.summary import plant
+from equipoise.results.analysis import Analysis
+from equipoise.results.charts import Chart, Panel
+from equipoise.signals import Periodic
+from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
+
+MOTION = ["linkage", "curves", "hodograph"]
+FORCES = ["polar", "force", "moment", "torque"]
+JOINTS = ["joints", "joint-polars"]
+DRY = ["ratio-coupler", "ratio-rocker"]
+DRY += [f"{name}{part}" for name in ("velocity", "acceleration") for part in ("", "-x", "-y")]
+
+
+@cache
+def analysis_of(name: str) -> Analysis:
+    return eq.analyze(eq.load(name), 360)
+
+
+@cache
+def charts_of(name: str) -> dict[str, Chart]:
+    return analysis_pictures(analysis_of(name))
+
+
+def rotor() -> Machine:
+    """A disc out of balance: none of its points moves."""
+    link = eq.Link({"A": (0, 0)}, 1.0, (0.03, 0.0), 1e-3)
+    return replace(one_link(), links={"crank": link}, planting=None)
+
+
+def staggered() -> Machine:
+    rows = (Row(0.0, -0.3), Row(1.0, 0.0, (0.05, -0.02)), Row(2.5, 0.3, (-0.1, 0.03)))
+    return replace(eq.load("four-row-transplanter"), rows=rows, balance=None)
+
+
+def signals(panel: Panel) -> list[np.ndarray]:
+    """Curves without their last value, which is the first again."""
+    return [curve.y[:-1] for curve in panel.curves]
+
+
+def places(panel: Panel) -> list[np.ndarray]:
+    return [(curve.x + 1j * curve.y)[:-1] for curve in panel.curves]
+
+
+def has(found: list[np.ndarray], wanted: np.ndarray) -> bool:
+    size = np.max(np.abs(wanted))
+    return any(z.shape == wanted.shape and np.max(np.abs(z - wanted)) < 1e-9 * size for z in found)
+
+
+def test_names() -> None:
+    assert list(charts_of("yamashita-1")) == [*MOTION, *FORCES, "spectrum", *JOINTS]
+    machine = eq.load("yamashita-1")
+    assert list(analysis_pictures(eq.analyze(machine, 60))) == [*MOTION, *FORCES, *JOINTS]
+    assert list(analysis_pictures(eq.analyze(machine, [0.3]))) == ["linkage"]
+    assert list(analysis_pictures(eq.analyze(rotor(), 360)))[:2] == ["linkage", "polar"]
+    free = eq.Link(machine.links["crank"].points)
+    massless = replace(machine, links={**machine.links, "crank": free})
+    assert list(analysis_pictures(eq.analyze(massless, 90))) == MOTION
+
+
+def test_curves_are_the_forces() -> None:
+    found, charts = analysis_of("yamashita-1").forces, charts_of("yamashita-1")
+    force = found.shaking_force
+    for panel, values in zip(charts["force"].panels, (force.x, force.y, force.size), strict=True):
+        assert has(signals(panel), values)
+    assert has(places(charts["polar"].panels[0]), force.value)
+    assert has(signals(charts["moment"].panels[0]), found.shaking_moment)
+    whole, causes = charts["torque"].panels
+    assert has(signals(whole), found.drive_torque)
+    np.testing.assert_allclose(sum(signals(causes)), found.drive_torque, atol=1e-12)
+    pairs = zip(charts["joints"].panels, charts["joint-polars"].panels, strict=True)
+    for (over, polar), joint in zip(pairs, found.joints.values(), strict=True):
+        assert has(signals(over), joint.size) and has(places(polar), joint.value)
+
+
+def test_peak_and_mean_size_are_the_summary() -> None:
+    told = words(charts_of("yamashita-1")["polar"])
+    size = analysis_of("yamashita-1").summary["shaking_force"]
+    assert f"peak {size.peak:.4g} N at {np.degrees(size.peak_at):.1f}°" in told
+    assert f"mean size {size.mean:.4g} N" in told
+
+
+def test_bars_are_the_orders() -> None:
+    """Against sums over the samples, without any transform."""
+    analysis = analysis_of("quick-return")
+    theta, torque = analysis.crank_angle, analysis.forces.drive_torque
+    (bars,) = charts_of("quick-return")["spectrum"].panels[3].bars
+    for order, (at, size) in enumerate(zip(bars.at, bars.size, strict=True)):
+        mean = abs(np.mean(torque * np.exp(1j * order * theta)))
+        assert size == pytest.approx(mean * (1 if order == 0 else 2), rel=1e-9)
+        assert at == pytest.approx(order)
+
+
+def test_rows_together() -> None:
+    """Against the sum that balancing takes by orders, with offsets and phases."""
+    machine = staggered()
+    analysis = eq.analyze(machine, 360)
+    mine, phases = view.together(analysis), np.array([row.phase for row in machine.rows])
+    force = mine["shaking_force"]
+    for output, values in (
+        ("shaking_force.x", force.real),
+        ("shaking_force.y", force.imag),
+        ("shaking_moment", mine["shaking_moment"]),
+        ("drive_torque", mine["drive_torque"]),
+    ):
+        read = Rows(machine).signals(Objective(output))
+        expected = Periodic(read.total(phases)[0, 0], read.turns).samples(360)
+        np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
+    found = places(view.polar(analysis).panels[0])
+    assert has(found, force) and has(found, view.outputs(analysis)["shaking_force"])
+    assert "all 3 rows" in words(view.spectrum(analysis))
+
+
+def test_what_is_rounding_is_told_to_be_zero() -> None:
+    charts = charts_of("planetary-planting-arm")
+    assert "zero at every crank angle" in words(charts["moment"])
+    assert "zero at every order" in words(charts["spectrum"])
+    opposed = replace(staggered(), rows=(Row(0.0), Row(np.pi)), planting=None)
+    force = view.together(eq.analyze(opposed, 360))["shaking_force"]
+    orders = np.abs(np.fft.fft(force))
+    assert np.max(orders[1::2]) < 1e-9 * np.max(orders) > 0
+    couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
+    assert all(not np.any(one.values) for one in couples)
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])
+def test_paths_and_hodographs_are_the_motion(name: str) -> None:
+    motion = analysis_of(name).motion
+    (point,) = view.traced(motion)
+    assert has(places(charts_of(name)["curves"].panels[0]), motion.points[point].place)
+    velocity, acceleration = (places(one)[0] for one in charts_of(name)["hodograph"].panels)
+    np.testing.assert_allclose(velocity, motion.points[point].velocity, rtol=1e-12)
+    np.testing.assert_allclose(acceleration, motion.points[point].acceleration_vector, rtol=1e-12)
+
+
+def test_points_can_be_chosen() -> None:
+    analysis = analysis_of("yamashita-1")
+    assert "path of B" in words(view.curves(analysis, ["B"]))
+    names = {curve.label for curve in view.hodograph(analysis, ["B", "C"]).panels[0].curves}
+    assert names == {"B", "C"}
+    with pytest.raises(KeyError):
+        view.curves(analysis, ["X"])
+
+
+def test_crank_angles_that_are_no_cycle() -> None:
+    part = eq.analyze(eq.load("yamashita-1"), np.linspace(0.5, 2.0, 40))
+    panel = view.force(part).panels[0]
+    assert (panel.x.low, panel.x.high) == pytest.approx((0.5, 2.0))
+    assert len(panel.curves[0].x) == 40
+    assert "dashed: mean" not in words(view.torque(part))
+    with pytest.raises(UsageError):
+        view.spectrum(part)
+
+
+def test_a_cycle_of_several_turns_is_drawn_whole() -> None:
+    figures = plant(long_cycle())
+    assert figures.curve.turns == 3
+    panel = planting.charts(figures)["velocity"].panels[0]
+    assert (panel.x.low, panel.x.high) == pytest.approx((0, 3 * tau))
+    assert [angle_step(turns) for turns in (1, 2, 3, 100)] == [30, 60, 90, 3600]
+
+
+# -- planting --------------------------------------------------------------------------------------
+
+
+def test_names_of_planting() -> None:
+    assert list(planting.charts(plant(eq.load("kim-chung-a")))) == DRY
+    assert list(drawn("kim-chung-a")) == [*DRY, "torque", "joints"]
+    assert next(iter(planting_pictures(plant(eq.load("kim-chung-a"))))) == "path"
+
+
+def test_names_do_for_files() -> None:
+    base = eq.load("kim-chung-a")
+    names = {"crank": "crank", "coupler": 'a/b:"*', "rocker": "A_b_?" + "x" * 90}
+    links = {names[name]: link for name, link in base.links.items()}
+    found = list(planting.charts(plant(replace(base, links=links))))
+    assert found[0] == "ratio-a_b___" and len(found[1]) == 60
+    twins = {"crank": "crank", "coupler": "a/b", "rocker": "A|b"}
+    links = {twins[name]: link for name, link in base.links.items()}
+    found = list(planting.charts(plant(replace(base, links=links))))
+    assert found[:2] == ["ratio-a_b", "ratio-A_b-2"]
+
+
+@pytest.mark.parametrize("name", BUNDLED)
+def test_curves_are_the_motion(name: str) -> None:
+    motion = eq.move(eq.load(name), 720)
+    tip = motion.points["P"]
+    expected = {
+        "velocity": np.abs(tip.velocity),
+        "velocity-x": tip.vx,
+        "velocity-y": tip.vy,
+        "acceleration": np.abs(tip.acceleration_vector),
+        "acceleration-x": tip.ax,
+        "acceleration-y": tip.ay,
+    }
+    for picture, values in expected.items():
+        (curve,) = drawn(name)[picture].panels[0].curves
+        np.testing.assert_allclose(
+            np.interp(motion.crank_angle, curve.x, curve.y),
+            values,
+            atol=2e-3 * np.max(np.abs(values)),
+        )
+
+
+def test_torque_and_joints_are_the_forces() -> None:
+    found, forces = drawn("kim-chung-a"), read_off("kim-chung-a").forces
+    assert forces is not None
+    air, soil = signals(found["torque"].panels[0])
+    np.testing.assert_array_equal(air, forces.in_air.drive_torque)
+    np.testing.assert_array_equal(soil, forces.in_soil.drive_torque)
+    for panel, joint in zip(found["joints"].panels, forces.in_soil.joints.values(), strict=False):
+        assert has(signals(panel), joint.size)
+
+
+def test_extremes_are_the_figures() -> None:
+    figures, told = read_off("kim-chung-a"), words(drawn("kim-chung-a")["velocity"])
+    for which in ("max", "min"):
+        value, angle = figures[f"{which}_speed.value"], figures[f"{which}_speed.crank_angle"]
+        assert f"{value:.4g} at {degrees(angle):.1f}°" in told
+
+
+@pytest.mark.parametrize("name", BUNDLED)
+def test_the_stay_in_the_soil_is_shaded_and_its_events_told(name: str) -> None:
+    figures, panel = read_off(name), drawn(name)["velocity"].panels[0]
+    assert [(band.low, band.high) for band in panel.bands] == planting.soil_spans(figures)
+    share = sum(band.high - band.low for band in panel.bands)
+    visits = sum((one.exit - one.entry) % figures.curve.period for one in figures.visits)
+    assert share == pytest.approx(visits) or share == pytest.approx(figures.curve.period - visits)
+    told = words(drawn(name)["velocity"])
+    for event in ("entry", "lowest", "exit"):
+        assert event in told and f"{degrees(figures[f'{event}.crank_angle']):.1f}°" in told

@@ -1,0 +1,125 @@
+"""Charts of balancing: before and after, orders, rows with their phases, trade-offs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.figures import balancing as view
+from equipoise.figures.analysis import order_panel
+from equipoise.figures.layout import lay_out
+from equipoise.results.charts import Chart
+from unit.figures.balance_samples import FORCE, MOMENT, found, front, in_rows, phasing, pictures
+from unit.figures.samples import words
+
+
+def curve(chart: Chart, role: str, panel: int = 0) -> np.ndarray:
+    return next(c for c in chart.panels[panel].curves if c.role == role).y[:-1]
+
+
+def test_names_in_order() -> None:
+    assert list(view.charts(found("sector"))) == ["force", "polar", "moment", "torque", "orders"]
+    assert list(pictures("phases")) == ["phases", "rows"]
+    assert list(pictures("rows, both"))[-2:] == ["phases", "rows"]
+    assert list(pictures("front")) == ["front"]
+
+
+@pytest.mark.parametrize("kind", ["sector", "one of each", "moved"])
+def test_curves_are_the_signals(kind: str) -> None:
+    result, charts = found(kind), pictures(kind)
+    for role, machine in (("before", result.original), ("after", result.machine)):
+        forces = eq.analyze(machine, 360).forces
+        for panel, values in enumerate((forces.shaking_force.x, forces.shaking_force.y)):
+            mine = curve(charts["force"], role, panel)
+            np.testing.assert_allclose(mine[:: len(mine) // 360], values, atol=1e-6)
+    ends = {c.role: c.x + 1j * c.y for c in charts["polar"].panels[0].curves}
+    np.testing.assert_allclose(ends["after"][:-1].real, curve(charts["force"], "after"))
+
+
+def test_what_did_not_change_is_told_once() -> None:
+    values = np.sin(np.linspace(0, 6, 90))
+    assert list(view.roles_of({"before": values, "after": values * (1 + 1e-9)})) == ["unchanged"]
+    assert list(view.roles_of({"before": values, "after": values / 2})) == ["before", "after"]
+    assert view.keys({"after": values}) == (("after", "after"),)
+
+
+def test_rounding_is_nothing() -> None:
+    before = np.array([1.0, -2.0])
+    assert not np.any(view.paired(before, 1e-10 * before, 1e-12)["after"])
+    assert not np.any(view.paired(before, before, 3.0)["before"])
+    assert np.any(view.paired(before, 0.1 * before, 1e-12)["after"])
+
+
+def test_bars_are_the_orders() -> None:
+    result = found("sector")
+    panel = pictures("sector")["orders"].panels[0]
+    for bars, machine in zip(panel.bars, (result.original, result.machine), strict=True):
+        force = eq.analyze(machine, 360).forces.shaking_force.y
+        sizes = np.abs(np.fft.rfft(force)) / 180
+        np.testing.assert_allclose(bars.size[1:], sizes[1 : len(bars.size)], atol=1e-9)
+
+
+@pytest.mark.parametrize("factor", [1.0, 123.0, 12345.0])
+def test_numbers_at_bars_keep_apart(factor: float) -> None:
+    sizes = factor * np.array([0.0, 1.0, 0.99, 0.98, 0.5, 0.02])
+    read = {role: (np.arange(6.0), sizes) for role in ("bar before", "bar after")}
+    panel = order_panel("", "force", read, 5)
+    assert all(bars.told for bars in panel.bars)
+    sheet = lay_out(Chart("", "", "", (panel,)))
+    numbers = [w for w in sheet.words if w.color in ("#0060a8", "#595959") and w.text[:1].isdigit()]
+    assert numbers
+
+
+def test_orders_of_vectors_joints_and_rows() -> None:
+    machine = found("one of each").original
+    for objective in (FORCE, MOMENT, eq.Objective("joints.B")):
+        orders, sizes = view.amplitudes(machine, objective)
+        assert len(orders) == len(sizes) and sizes[1] > 0
+    rows = in_rows().original
+    one, four = (view.amplitudes(rows, FORCE, rows=which)[1][1] for which in (False, True))
+    assert four == pytest.approx(4 * one)
+    told = words(pictures("one of each")["orders"])
+    assert "both components together" in told and "order" in told
+    gauges = replace(found("sector").plan, objectives=(eq.Objective("gauges.tip"),))
+    assert not list(view.orders(replace(found("sector"), plan=gauges)))
+
+
+def test_hands_are_the_cranks() -> None:
+    result = in_rows(3, True)
+    chart = view.phases(result.original, result.machine)
+    order = sorted(range(3), key=lambda k: result.machine.rows[k].lateral)
+    for panel, k in zip(chart.panels, order, strict=True):
+        heads = [arrow.head for arrow in panel.arrows]
+        rows = (result.original.rows[k], result.machine.rows[k])
+        np.testing.assert_allclose(heads, [np.exp(1j * row.phase) for row in rows])
+        assert f"{1000 * result.machine.rows[k].lateral:.4g} mm" in panel.x.label
+    alone = pictures("phases")
+    assert all(len(panel.arrows) == 1 for panel in alone["phases"].panels)
+    assert "before" not in words(alone["rows"])
+    assert len(pictures("rows, many")["phases"].panels) == 14
+    assert "of one row" in words(pictures("rows, both")["force"])
+
+
+def test_rows_together_are_the_sum() -> None:
+    machine = phasing().machine
+    angles, total = view.summed(machine, "x")
+    one = eq.analyze(replace(machine, rows=machine.rows[:1]), 720).forces.shaking_force.x
+    shifted = [
+        np.interp((angles + row.phase) % (2 * np.pi), angles, one, period=2 * np.pi)
+        for row in machine.rows
+    ]
+    np.testing.assert_allclose(total, sum(shifted), atol=1e-6 * np.max(np.abs(one)))
+
+
+def test_the_front_goes_through_its_points() -> None:
+    (panel,) = pictures("front")["front"].panels
+    (curve,) = panel.curves
+    np.testing.assert_array_equal(np.column_stack([curve.x, curve.y]), front().values)
+    told = words(pictures("front")["front"])
+    assert "as it is" in told
+    far = replace(front(), values=1e-6 * front().values)
+    assert "as it is, far off" in words(view.front(far))
+    assert view.grams(0.1234) == "123.4 g" and view.grams(12.0) == "12 kg"

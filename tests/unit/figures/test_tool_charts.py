@@ -1,0 +1,322 @@
+"""Charts of hand-held tools: along the shaft, over the engine's speed, of studies and a design."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from equipoise.exposure.daily import partial_exposure
+from equipoise.exposure.weighting import factor
+from equipoise.figures import handheld as view
+from equipoise.handheld.design import Before, ToolDesign
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.exposed import expose_tool, grips
+from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import changed, determinant_chart, vary_tool
+from equipoise.handheld.transmission import transmit
+from equipoise.i18n import Note
+from equipoise.results.charts import Curve, Panel
+from equipoise.schema.models import load_tool
+from unit.figures.samples import words
+from unit.figures.test_pictures import check
+from unit.figures.tool_samples import SPEEDS, machine, pictures
+
+RPM = 30 / np.pi
+
+
+def curves(panel: Panel, role: str) -> list[Curve]:
+    return [curve for curve in panel.curves if curve.role == role]
+
+
+def marks(panel: Panel, role: str) -> list[tuple[float, float]]:
+    return [(mark.x, mark.y) for mark in panel.marks if mark.role == role and mark.sign]
+
+
+def test_names_in_order() -> None:
+    names = ["modes", "determinant", "variation", "transmission", "acceleration", "exposure"]
+    assert list(pictures("paper")) == [*names, "moment"]
+    assert {"modes-2", "modes-lateral", "transmission-lateral"} <= pictures("cutter").keys()
+
+
+def test_a_speed_that_stands_alone() -> None:
+    tool, speed = machine("paper"), np.array([700.0])
+    drawn = view.transmission_charts(transmit(tool, speed))
+    drawn |= view.exposure_charts(expose_tool(tool, speed))
+    for chart in drawn.values():
+        check(chart)
+        x = chart.panels[0].x
+        assert x.low is not None and x.high is not None and x.low < 700 < x.high
+
+
+# -- along the shaft -------------------------------------------------------------------------------
+
+
+def test_shapes_with_stations_and_nodes() -> None:
+    tool = machine("paper")
+    modes = vibrate_tool(tool, 5)
+    plane, panels = modes.planes[0], pictures("paper")["modes"].panels
+    for panel, shape, nodes in zip(panels, plane.shapes, plane.nodes, strict=True):
+        (curve,) = curves(panel, "shape")
+        np.testing.assert_allclose(curve.x, modes.places)
+        np.testing.assert_allclose(curve.y, shape)
+        assert [x for x, _ in marks(panel, "node")] == pytest.approx(list(nodes))
+        for role, names in (
+            ("hand", ["handle"]),
+            ("harness or ground", ["harness"]),
+            ("station", ["engine", "cutter"]),
+        ):
+            at = [tool.station(name).position for name in names]
+            expected = [(x, np.interp(x, modes.places, shape)) for x in at]
+            np.testing.assert_allclose(marks(panel, role), expected)
+        assert [line.at for line in panel.lines] == [one.position for one in tool.stations]
+
+
+def test_frequencies_of_the_paper_are_told() -> None:
+    told = words(pictures("paper")["modes"])
+    for number, frequency in enumerate(("1.238", "2.413", "4.418", "6.290", "9.400"), 1):
+        assert f"λ = {frequency}" in told and f"mode {number}" in told
+    assert "54.47 Hz\n3268 1/min" in told
+    assert all(name in told for name in ("engine", "harness", "handle", "cutter", "both planes"))
+    assert "place on the shaft from its left end, mm" in told
+    free = words(pictures("loose")["modes"])
+    assert "free:\nmoves to and fro" in free and "free:\nturns about its\nleft end" in free
+    assert "lateral plane" in words(pictures("loose")["modes-lateral"])
+
+
+def test_many_modes_and_many_names() -> None:
+    assert [len(pictures("cutter")[name].panels) for name in ("modes", "modes-2")] == [6, 2]
+    assert "(7 to 8 of 8)" in words(pictures("cutter")["modes-2"])
+    flags = [flag.texts[0] for flag in pictures("crowded")["modes"].panels[0].flags]
+    assert len(flags) == view.MOST_NAMES
+    assert {"engine", "cutter", "handle", "station number 7"} <= {*flags}
+    bare = replace(machine("loose"), stations=(), excitations=())
+    chart = view.mode_charts(vibrate_tool(bare, 3))["modes"]
+    check(chart)
+    assert "station" not in words(chart) and "mode 3" in words(chart)
+
+
+def test_the_moment_along_the_shaft() -> None:
+    tool = machine("cutter")
+    assert tool.operation is not None
+    one = respond_tool(tool, tool.operation.speed)
+    moment, shape = pictures("cutter")["moment"].panels
+    assert (moment.y.text, shape.y.text) == ("moment, N m", "displacement, mm")
+    (total,) = curves(moment, "strong")
+    line = one.line(total.x)
+    squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1) / 2
+    np.testing.assert_allclose(total.y, np.sqrt(np.sum(squares, axis=1)), rtol=1e-6)
+    told = words(pictures("cutter")["moment"])
+    assert f"{np.max(total.y):.4g} N m at " in told and "7500 rpm" in told
+    assert "order 1" in told and "lateral plane" in told
+    k = int(np.flatnonzero(one.orders == 1)[0])
+    for plane, curve in enumerate(curves(shape, "kind 0")):
+        amplitude = np.abs(line.displacement[:, plane, k, 0])
+        assert np.all(np.abs(curve.y) <= amplitude * (1 + 1e-6) + 1e-12)
+        at = np.argmax(amplitude)
+        assert curve.y[at] == pytest.approx(amplitude[at], rel=0.01)
+    for kind in ("paper", "loose"):  # planes do the same; shaken up and down only
+        assert len(curves(pictures(kind)["moment"].panels[1], "kind 0")) == 1
+    assert "lateral plane" not in words(pictures("paper")["moment"])
+
+
+def test_at_which_speed() -> None:
+    tool = machine("paper")
+    assert tool.operation is not None
+    response = respond_tool(tool, SPEEDS)
+    assert view.speed_shown(response) == tool.operation.speed
+    away = respond_tool(tool, np.linspace(100, 300, 30))
+    loudest = away.speed[np.argmax(grips(away)["handle"].a_hv)]
+    assert view.speed_shown(away) == pytest.approx(loudest)
+    assert view.speed_shown(respond_tool(tool, 200.0)) == 200.0
+    assert SPEEDS[0] <= view.speed_shown(respond_tool(machine("loose"), SPEEDS)) <= SPEEDS[-1]
+    assert "2865 rpm" in words(view.response_charts(response, 300.0)["moment"])
+    assert view.turns_told(1200.0) == "11459" and view.turns_told(3.0) == "28.65"
+
+
+# -- studies ---------------------------------------------------------------------------------------
+
+
+def test_the_determinant_has_its_zeros_marked() -> None:
+    tool = machine("paper")
+    modes = vibrate_tool(tool, 3)
+    chart = determinant_chart(tool, 8.0, 400)
+    drawn = view.determinant_charts(chart, modes)["determinant"]
+    (panel,) = drawn.panels
+    np.testing.assert_array_equal(panel.curves[0].y, chart.value[0])
+    found = [x for x, _ in marks(panel, "zeros")]
+    assert found[:3] == pytest.approx(modes.planes[0].parameter.tolist())
+    assert found[3:] == pytest.approx([6.290], abs=0.01)  # of the chart: no mode is known there
+    assert "4.418" in words(drawn)
+    titles = [one.title for one in pictures("cutter")["determinant"].panels]
+    assert titles == ["vertical plane", "lateral plane"]
+    x, y = np.array([1.0, 2.0, 3.0, 4.0]), np.array([1.0, -1.0, -1.0, 3.0])
+    assert view.zeros_of(x, y, np.array([0.0, 1.4, 9.0])) == [1.4]
+    assert view.zeros_of(x, y, np.array([0.0, 1.4])) == [1.4, 3.25]
+
+
+def test_frequencies_against_a_number() -> None:
+    tool = machine("paper")
+    variation = vary_tool(tool, "harness", "harness.stiffness", np.geomspace(1e3, 1e6, 7), 3)
+    chart = view.variation_charts(variation)["variation"]
+    (panel,) = chart.panels
+    assert panel.x.scale == "log" and panel.y.label == "λ"
+    assert panel.x.text == "stiffness of the harness at harness, kN/m"
+    for curve, row in zip(panel.curves, variation.parameter[0].T, strict=True):
+        np.testing.assert_allclose(curve.y, row)
+    harness = tool.station("harness").harness
+    assert harness is not None and panel.lines[0].at == pytest.approx(harness.stiffness[0])
+    assert "now 46.48 kN/m" in words(chart) and "both planes" in words(chart)
+    position = vary_tool(tool, "handle", "position", np.linspace(0.1, 1.4, 5))
+    (panel,) = view.variation_charts(position)["variation"].panels
+    assert panel.x.scale == "linear" and panel.x.text == "position of handle, mm"
+    assert panel.right_axis is not None and panel.right_axis.text == "natural frequency, 1/min"
+    ticks = panel.right_axis.ticks
+    assert ticks is not None and len(ticks) >= 5
+    for place, minute in ticks:
+        assert scale_of(tool) * place**2 * RPM == pytest.approx(float(minute))
+    assert tool.operation is not None
+    level = next(line.at for line in panel.lines if line.axis == "y")
+    assert scale_of(tool) * level**2 == pytest.approx(tool.operation.speed)
+    ground = vary_tool(tool, "engine", "rotational_stiffness", np.array([1.0, 2.0]), 2)
+    told = words(view.variation_charts(ground)["variation"])
+    assert "rotational stiffness of engine to the ground, N m/rad" in told and "now" not in told
+
+
+def test_planes_that_differ_in_a_variation() -> None:
+    chart = pictures("cutter")["variation"]
+    assert [len(curves(chart.panels[0], f"several {k}")) for k in (1, 2)] == [6, 6]
+    told = words(chart)
+    assert "stiffness of the absorber at front-handle, kN/m" in told
+    assert "lateral plane" in told and "now 61.7 kN/m" in told and "work, 7500 rpm" in told
+    assert all(view.number_unit(dimension).name for dimension in KEYS.values())
+
+
+# -- over speed ------------------------------------------------------------------------------------
+
+
+def test_transmission_of_each_station() -> None:
+    found = transmit(machine("paper"), SPEEDS)
+    chart = pictures("paper")["transmission"]
+    size, phase = chart.panels
+    assert (size.y.scale, size.y.text, phase.y.text) == ("log", "force ratio", "phase, deg")
+    for number, one in enumerate(found.stations.values()):
+        (curve,) = curves(size, f"kind {number}")
+        np.testing.assert_allclose(curve.y, one.size[0])
+        (curve,) = curves(phase, f"kind {number}")
+        there = np.isfinite(curve.y)
+        np.testing.assert_allclose(curve.y[there], one.phase[0])
+        assert np.sum(~there) == np.sum(np.abs(np.diff(one.phase[0])) > np.pi)
+        quiet = marks(size, f"quiet speed {number}")
+        assert [x for x, _ in quiet] == pytest.approx(one.quiet[0].tolist())
+        for x, y in quiet:  # on the curve
+            near = one.size[0][np.argsort(np.abs(SPEEDS - x))[:2]]
+            assert min(near) <= y <= max(near)
+    told = words(chart)
+    assert "6134" in told and "quiet speed, rpm" in told and "speed of the engine, rpm" in told
+    assert "work, 7000 rpm" in told and "unit force at engine" in told
+    modes = vibrate_tool(machine("paper"), 5).planes[0].frequency
+    inside = [one for one in modes if SPEEDS[0] <= one <= SPEEDS[-1]]
+    for panel in chart.panels:
+        assert [line.at for line in panel.lines if line.role == "natural"] == pytest.approx(inside)
+    assert "natural frequency" not in words(view.transmission_charts(found)["transmission"])
+
+
+def test_acceleration_and_what_is_allowed() -> None:
+    exposure = expose_tool(machine("paper"), SPEEDS)
+    chart = pictures("paper")["acceleration"]
+    (panel,) = chart.panels
+    assert panel.y.text == "RMS, m/s²" and panel.y.scale == "log"
+    (curve,) = curves(panel, "kind 0")
+    np.testing.assert_allclose(curve.y, np.hypot(*exposure.grips["handle"].acceleration))
+    assert view.duration_of(exposure) == 2.5 * 3600
+    for role, a8 in (("action", 2.5), ("limit", 5.0)):
+        (line,) = curves(panel, role)
+        for each in (line.y * factor(line.x / (2 * np.pi))).tolist():
+            assert partial_exposure(each, 2.5 * 3600) == pytest.approx(a8)
+    assert "2.5 h a day" in words(chart) and " m/s² at 7" in words(chart)
+    undamped = expose_tool(load_tool("nagamine-irie"), SPEEDS)
+    assert " m/s² at " not in words(view.exposure_charts(undamped)["acceleration"])
+
+
+def test_exposure_and_levels() -> None:
+    exposure = expose_tool(machine("cutter"), SPEEDS)
+    chart = pictures("cutter")["exposure"]
+    for number, grip in enumerate(exposure.grips.values()):
+        (curve,) = curves(chart.panels[0], f"kind {number}")
+        np.testing.assert_allclose(curve.y, grip.a_hv)
+    hours = view.duration_of(exposure) / 3600
+    flat = [curves(chart.panels[0], role)[0].y[0] for role in ("action", "limit")]
+    assert flat == pytest.approx([2.5 * np.sqrt(8 / hours), 5 * np.sqrt(8 / hours)])
+    told = words(chart)
+    assert f"A(8) = {exposure.a8:.4g} m/s² at {exposure.worst}" in told
+    assert "limit: A(8) of 5 m/s²" in told and "action: A(8) of 2.5 m/s²" in told
+    assert all(text in told for text in ("rear-grip", "front-handle", "work, 7500 rpm"))
+    idle = expose_tool(replace(machine("paper"), work=(), operation=None), SPEEDS)
+    assert view.levels(idle) == {"action": 2.5, "limit": 5.0}
+    told = words(view.exposure_charts(idle)["exposure"])
+    assert "8 h a day" in told and "A(8) =" not in told and "work," not in told
+    for name in ("exposure", "transmission"):
+        assert "quieter ones" in words(pictures("crowded")[name])
+
+
+# -- a design --------------------------------------------------------------------------------------
+
+
+@cache
+def designed() -> ToolDesign:
+    """As if a search had put the belt elsewhere."""
+    tool = load_tool("brush-cutter")
+    assert tool.design is not None
+    better = changed(replace(tool, design=None), "belt", "position", 0.4)
+    speed = np.linspace(*tool.design.speeds, 41)
+    felt = [grips(respond_tool(one, speed)) for one in (tool, better)]
+    a_hv = np.array([np.max([grip.a_hv for grip in one.values()], axis=0) for one in felt])
+    sizes = (np.sqrt(np.mean(a_hv**2, axis=1)), np.max(a_hv, axis=1))
+    told = [Note(f"a_hv of the worst hand, {which}") for which in ("RMS over the band", "largest")]
+    figures = tuple(
+        Before(str(note), "acceleration", *size.tolist(), note)
+        for note, size in zip(told, sizes, strict=True)
+    )
+    variables = (Before("belt position", "length", 0.32, 0.4),)
+    return ToolDesign(tool, better, variables, figures, ("",), 8, 7, speed, a_hv)
+
+
+def test_each_hand_before_and_after() -> None:
+    found = designed()
+    chart = view.design(found)
+    check(chart)
+    hands = [
+        curves(chart.panels[0], f"kind {k}")
+        for k in range(len(grips(respond_tool(found.better, 700.0))))
+    ]
+    for number, tool in enumerate((found.tool, found.better)):
+        felt = grips(respond_tool(tool, found.speed))
+        for pair, grip in zip(hands, felt.values(), strict=True):
+            np.testing.assert_allclose(pair[number].y, grip.a_hv)
+            assert pair[number].dashed == (number == 0)
+        worst = np.max([pair[number].y for pair in hands], axis=0)
+        np.testing.assert_allclose(worst, found.a_hv[number])
+    told, figure = words(chart), found.figures[0]
+    assert f"RMS over the band: {figure.before:.4g} → {figure.after:.4g} m/s²" in told
+    assert "before" in told and "after" in told and "a_hv, m/s²" in told
+    change = found.variables[0]
+    assert any(f"{1e3 * change.before:.4g} → " in text for text in chart.words)
+
+
+def test_measures_and_many_changes() -> None:
+    found = designed()
+    assert found.tool.design is not None
+    plan = replace(found.tool.design, measure="peak", hands=("rear-grip",))
+    told = words(view.design(replace(found, tool=replace(found.tool, design=plan))))
+    assert "a_hv of the worst hand, largest: " in told
+    assert "rear-grip" in told and "front-handle:" not in told
+    count = len(found.variables) * 11
+    edges = (("", "highest") * count)[:count]
+    many = view.design(replace(found, variables=found.variables * 11, edges=edges))
+    check(many)
+    assert f"and {count - 7} more" in words(many) and "(highest allowed)" in words(many)

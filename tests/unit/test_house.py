@@ -1,0 +1,63 @@
+"""The house keeps its size: what grows past these is split, or said once instead of twice."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import equipoise
+
+ROOT = Path(equipoise.__file__).parent
+FILES = sorted(ROOT.rglob("*.py"))
+LINES, MODULES, FILE, FUNCTION, NAMES = 48_000, 220, 350, 60, 40
+"""Most lines and modules in all, lines in a file and in a function, names at the top."""
+
+
+def named(file: Path) -> str:
+    parts = file.relative_to(ROOT.parent).with_suffix("").parts
+    return ".".join(parts).removesuffix(".__init__")
+
+
+def imported(file: Path) -> Iterator[str]:
+    """Every module that a file imports from, for annotations and inside of functions too."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            assert node.module and not node.level, f"{file}: import by the whole name"
+            yield from (f"{node.module}.{alias.name}" for alias in node.names)
+            yield node.module
+
+
+def test_no_module_imports_itself_by_way_of_others() -> None:
+    modules = {named(file): file for file in FILES}
+    graph = {
+        name: {other for other in imported(file) if other in modules and other != name}
+        for name, file in modules.items()
+    }
+    for name, others in graph.items():  # of a package only what lies in it, where that is meant
+        graph[name] = {o for o in others if not any(p.startswith(f"{o}.") for p in others)}
+    assert len(tuple(TopologicalSorter(graph).static_order())) == len(modules)
+
+
+def test_lines_and_modules() -> None:
+    count = sum(len(file.read_text(encoding="utf-8").splitlines()) for file in FILES)
+    assert count <= LINES
+    assert len(FILES) <= MODULES
+    assert len(equipoise.__all__) <= NAMES
+
+
+@pytest.mark.parametrize("file", FILES, ids=named)
+def test_files_and_functions_are_read_without_scrolling(file: Path) -> None:
+    text = file.read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= FILE
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            said = ast.get_docstring(node, clean=False) or ""
+            assert node.end_lineno is not None
+            length = node.end_lineno - node.lineno + 1 - len(said.splitlines())
+            assert length <= FUNCTION, node.name
