@@ -69,7 +69,7 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     if plan.phases is None:
         return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
-    return {term.objective.name: term.told(search.present) for term in search.cost.terms}
+    return {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
 
 
 def nothing_gained(found: Balanced) -> str | None:
