@@ -72,13 +72,13 @@ def test_what_to_tighten_first(shown: str) -> None:
 def test_without_limits() -> None:
     shown = succeeded(equipoise("tolerance", written(TOLERANCES, 'at_most = "23.5 N"')))
     assert "Limits" not in shown
-    assert "every limit" not in shown
+    assert "Every limit" not in shown
     assert re.search(r"^Tighten first: .* off the variance of vertical\.$", shown, re.MULTILINE)
 
 
 def test_a_limit_that_the_model_does_not_keep() -> None:
     shown = succeeded(equipoise("tolerance", written(TOLERANCES, "23.5 N", "20 N")))
-    assert "every limit is kept by 0.00 % (" in shown
+    assert "Every limit is kept by 0.00 % (" in shown
     assert "hardly more machines keep every limit then" in shown
     assert (
         "note: the model itself does not keep the limits of vertical; change its numbers first"
