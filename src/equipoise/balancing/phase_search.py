@@ -277,7 +277,7 @@ def choose_phases(
     varying = (Objective(output, "ripple") for output in OF_ROWS)
     lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
-        {term.objective.name: term.value_at(at) for term in cost.terms} for at in (present, found)
+        {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
     )
     return Phasing(
         machine=placed,
@@ -287,8 +287,7 @@ def choose_phases(
         combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
         remaining=_remaining(search, found),
         lateral={
-            term.objective.output: (term.value_at(present), term.value_at(found))
-            for term in lateral
+            one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
         },
         combinations=0 if grid is None else grid.count,
         step=search.step if grid is None else grid.step,

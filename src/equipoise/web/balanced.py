@@ -25,9 +25,8 @@ from equipoise.results.naming import (
     scaled,
     unit_of_measure,
 )
-from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
+from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
-from equipoise.web.rounding import clean
 from equipoise.web.state import figures_of
 
 Values = dict[str, Any]
