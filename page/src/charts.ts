@@ -294,7 +294,7 @@ export class Charts {
   private drawOutput(state: State): void {
     const one = state.outputs.find(({ name }) => state.numbers.has(`output.${name}`));
     const found = one && both(state, `output.${one.name}`);
-    const { unit, factor } = shownIn(one?.unit ?? "");
+    const { unit, factor } = one ?? { unit: "", factor: 1 };
     const curves = found ? [{ label: "", role: "third" as Role, ...scaled(found, factor) }] : [];
     this.output.show({ x: this.x.of(state.angles, state.turns), unit, curves });
   }
@@ -325,13 +325,6 @@ export class Charts {
     this.sweep.show({ x: rpm, unit: `m${found.unit} peak to peak, over rpm`, curves: [curve] });
     this.sweep.point((message.sweep.own * 30) / Math.PI, null);
   }
-}
-
-/** Units in which outputs are read that are sent in SI units. */
-function shownIn(unit: string): { unit: string; factor: number } {
-  if (unit === "m") return { unit: "mm", factor: 1000 };
-  if (unit === "rad") return { unit: "deg", factor: 180 / Math.PI };
-  return { unit: unit.replace("^2", "²"), factor: 1 };
 }
 
 type Pair = { values: Float64Array; before?: Float64Array | undefined };

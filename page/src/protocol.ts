@@ -92,7 +92,9 @@ export interface Scene {
 export interface Output {
   name: string;
   label: string;
+  /** In which it is read, and how many of it one SI unit is. */
   unit: string;
+  factor: number;
   /** Heading under which it is offered. */
   group: string;
 }

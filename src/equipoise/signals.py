@@ -79,17 +79,23 @@ class Figures:
 
 def figures(crank_angle: Array, samples: Array) -> Figures:
     """Mean, RMS and extremes of samples (N,) taken at crank angles (N,), rad."""
+    return figures_of_each(crank_angle, samples[None])[0]
+
+
+def figures_of_each(crank_angle: Array, samples: Array) -> list[Figures]:
+    """The same of several signals (M, N) at once, which takes little longer than of one."""
     sizes = np.abs(samples)
-    return Figures(
-        mean=float(np.mean(samples)),
-        rms=float(np.sqrt(np.mean(np.square(samples)))),
-        peak=float(np.max(sizes)),
-        peak_at=float(crank_angle[highest_at(sizes)]),
-        max=float(np.max(samples)),
-        max_at=float(crank_angle[highest_at(samples)]),
-        min=float(np.min(samples)),
-        min_at=float(crank_angle[highest_at(-samples)]),
+    rows = (
+        np.mean(samples, axis=1),
+        np.sqrt(np.mean(np.square(samples), axis=1)),
+        np.max(sizes, axis=1),
+        crank_angle[highest_at(sizes)],
+        np.max(samples, axis=1),
+        crank_angle[highest_at(samples)],
+        np.min(samples, axis=1),
+        crank_angle[highest_at(-samples)],
     )
+    return [Figures(*map(float, one)) for one in zip(*rows, strict=True)]
 
 
 def harmonics(samples: Array, orders: int | None = None) -> Array:

@@ -56,6 +56,19 @@ def test_balancing_and_taking_it_back(live: Live) -> None:
     assert live.machine() != eq.load("yamashita-1")
 
 
+def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
+    search = live.page.get_by_role("combobox", name="Any output over crank angle")
+    search.fill("transmission angle at C")
+    search.press("Enter")
+    chart = live.page.get_by_role("figure").filter(has=search)
+    angle = np.degrees(eq.analyze(eq.load("yamashita-1"), 720).motion.transmission["C"])
+    told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
+    expect(chart).to_have_attribute("aria-label", f"Output: {told}")
+    search.fill("no such output")
+    search.press("Enter")
+    expect(chart).to_have_attribute("aria-label", "Output: ")
+
+
 def test_pages_do_not_disturb_each_other(new_page: Callable[..., Page], address: str) -> None:
     one, other = (Live.open(new_page(), address) for _ in range(2))
     one.type(one.field("crank mass"), "0.3 kg")

@@ -74,7 +74,8 @@ class Result:
 def equipoise(*arguments: str | Path) -> Result:
     """Run a command within this process, on a wide terminal; a Python warning is an error here."""
     out, err = io.StringIO(), io.StringIO()
-    wide = mock.patch.dict(os.environ, COLUMNS=str(WIDE))
+    helps = not arguments or {"--help", "-h"} & set(arguments)
+    wide = mock.patch.dict(os.environ, {} if helps else {"COLUMNS": str(WIDE)})
     with wide, redirect_stdout(out), redirect_stderr(err):
         status = run([str(argument) for argument in arguments])
     return Result(status, out.getvalue(), err.getvalue())

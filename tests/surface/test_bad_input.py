@@ -407,7 +407,7 @@ def test_bad_arguments(folder: Path, words: list[str], said: str) -> None:
     ("words", "said"),
     [
         (["analyse", FOUR_BAR], 'Unknown command "analyse". Did you mean "analyze"?'),
-        (["qqq"], "Available commands: analyze, animate, balance, best, export, decay"),
+        (["qqq"], "Available commands: analyze, animate, balance, best, check, decay"),
         (["--qqq"], "--qqq"),
         (["analyze"], "FILE requires an argument"),
         (["check"], "FILE requires an argument"),

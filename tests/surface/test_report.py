@@ -15,7 +15,7 @@ def test_a_page_and_a_pdf(tmp_path: Path) -> None:
     assert done.status == 0 and done.out == ""
     assert done.err.splitlines() == [f"wrote {page}", f"wrote {page.with_suffix('.pdf')}"]
     text = page.read_text(encoding="utf-8")
-    assert "driven at 100.0 rpm" in text
+    assert "driven at 100.0\xa0rpm" in text
     assert "equipoise report scotch-yoke --speed &#39;100 rpm&#39;" in text
     assert page.with_suffix(".pdf").read_bytes().startswith(b"%PDF")
 

@@ -68,22 +68,22 @@ def test_the_front_as_a_table() -> None:
     shown = succeeded(equipoise("search", "study.toml", *QUICK))
     own = eq.studies.search_designs(study, population=12, generations=8)
     assert shown.startswith(f"Lengths of type I\n{own.computed} designs in 8 generations, seed 1")
-    assert "limits: vertical at most 13000 mN" in shown
+    assert "Limits: vertical at most 13000 mN" in shown
     assert f"{own.front} designs that no other beats; vertical smallest, torque largest" in shown
-    rows = [line.split() for line in shown.splitlines() if re.match(r" +(model|\d+)  +\d", line)]
+    rows = [line.split() for line in shown.splitlines() if re.match(r"(model|\d+)  +\d", line)]
     assert rows[0][0] == "model"
     assert float(rows[0][3]) == 71.5
     found = np.array(rows[1:], float)
     assert found[:, 0].tolist() == list(range(len(own.values)))
     assert found[:, 1] == pytest.approx(1e3 * own.figures[:, 0], rel=1e-3)
     assert found[:, 3:] == pytest.approx(1e3 * own.values, rel=1e-3)
-    assert "note: it may get better yet; give more --generations" in shown
+    assert "note: it may get better yet; give more generations" in shown
 
 
 def test_one_aim() -> None:
     shown = succeeded(equipoise("search", written(LENGTHS), *QUICK))
     assert "The best design; vertical smallest" in shown
-    rows = [line for line in shown.splitlines() if re.match(r" +(model|\d+)  +\d", line)]
+    rows = [line for line in shown.splitlines() if re.match(r"(model|\d+)  +\d", line)]
     assert len(rows) == 2
 
 

@@ -9,7 +9,14 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.signals import Periodic, figures, harmonics, synthesis
+from equipoise.signals import (
+    Periodic,
+    figures,
+    harmonics,
+    highest_at,
+    synthesis,
+    within_period,
+)
 
 THETA = 2 * pi * np.arange(24) / 24
 
@@ -321,3 +328,67 @@ def test_extremes_of_a_flat_top() -> None:
 def test_amplitudes_up_to_an_order() -> None:
     signal = periodic(orders=9, turns=2)
     assert [signal.count_to(order) for order in (0, 1, 4, 9)] == [1, 3, 9, 10]
+
+
+# -- equal extremes --------------------------------------------------------------------------------
+
+TURN = np.arange(720) * (2 * np.pi / 720)
+
+
+@pytest.mark.parametrize("noise", range(5))
+@pytest.mark.parametrize("size", [1e-9, 1.0, 1e9])
+def test_of_equal_extremes_the_first_is_told(noise: int, size: float) -> None:
+    """Rounding, here made larger, decides neither between tops nor between a top and a dip."""
+    rng = np.random.default_rng(noise)
+    rounding = 1 + 1e-14 * rng.standard_normal(TURN.size)
+    found = figures(TURN, size * np.sin(3 * TURN) * rounding)
+    assert found.max_at == pytest.approx(np.pi / 6)
+    assert found.min_at == pytest.approx(np.pi / 2)
+    assert found.peak_at == pytest.approx(np.pi / 6)
+    turned = figures(TURN, -size * np.sin(3 * TURN) * rounding)
+    assert turned.peak_at == pytest.approx(np.pi / 6)
+    still = figures(TURN, np.full(720, size) * rounding)
+    assert (still.max_at, still.min_at, still.peak_at) == (0.0, 0.0, 0.0)
+
+
+def test_a_higher_top_is_told_wherever_it_is() -> None:
+    samples = np.sin(3 * TURN) + 1e-6 * np.sin(TURN - 1.0)
+    found = figures(TURN, samples)
+    assert found.max == np.max(samples)
+    assert found.max_at == TURN[np.argmax(samples)]
+
+
+def test_near_a_flat_top_its_own_angle_is_told() -> None:
+    """On a fine grid neighbours of the top are nearly as high as it."""
+    fine = np.linspace(0.0, 2 * np.pi, 400_001)
+    assert figures(fine, np.cos(fine - 2.0)).max_at == pytest.approx(2.0, abs=2e-5)
+
+
+def test_an_extreme_between_samples_is_that_of_the_first_top() -> None:
+    signal = Periodic(np.array([0.0, 0.0, 0.0, np.exp(-0.3j)]))
+    assert signal.extreme(1)[1] == pytest.approx(0.1)
+    assert signal.extreme(-1)[1] == pytest.approx(0.1 + np.pi / 3)
+    at_zero = Periodic(np.array([0.0, 1.0 + 1e-17j]))
+    assert at_zero.extreme(1)[1] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("values", "at"),
+    [
+        ([1.0, 3.0, 3.0 + 1e-13, 2.0], 1),
+        ([-np.inf, 2.0, 1.0], 1),
+        ([0.0, np.inf, 1.0], 1),
+        ([1.0, np.nan, 2.0], 1),
+        ([0.0, 0.0], 0),
+    ],
+)
+def test_highest_of_any_values(values: list[float], at: int) -> None:
+    assert highest_at(np.array(values), smooth=False) == at
+    assert highest_at(np.array(values)) == at
+
+
+def test_angles_short_of_a_period_by_rounding_are_zero() -> None:
+    given = np.array([-1e-17, 2 * np.pi, 7.0, -1.0])
+    np.testing.assert_allclose(
+        within_period(given, 2 * np.pi), [0, 0, 7 - 2 * np.pi, 2 * np.pi - 1]
+    )

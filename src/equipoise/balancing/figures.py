@@ -67,7 +67,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     for one in [one for one in DECLARED.values() if one.needs == "rows"]:
         for measure in one.compared:
             objective = Objective(one.name.removeprefix("rows."), measure)
-            value = Term(objective, rows.signals(objective)).told(phases)
+            value = Term(objective, rows.signals(objective)).value_at(phases)
             figures[f"{one.name}.{measure}"] = value
     return figures
 

@@ -291,7 +291,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
 def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Phasing) -> Balanced:
     """The result, with everything before read off the machine as it was."""
     search = PhaseSearch(machine, plan.objectives, plan.phases or Phases(), plan.combine)
-    before = {term.objective.name: term.told(search.present) for term in search.cost.terms}
+    before = {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
     change = Change("phases", "rows", {"phases": phasing.phases})
     earlier = () if found is None else found.changes
     notes = phasing.notes if found is None else (ROWS_AFTER_LINKAGE, *found.notes, *phasing.notes)

@@ -88,7 +88,7 @@ class Term:
         alone = [Term(self.objective, self.signals.alone(k)) for k in rows]
         return float(sum(term.values(np.zeros(1)) for term in alone))
 
-    def told(self, phases: Array) -> float:
+    def value_at(self, phases: Array) -> float:
         """Value at phases (m,), 0 where it is what rounding leaves of the rows' own."""
         value = float(self.values(phases))
         return value if value > NOTHING * self.single else 0.0

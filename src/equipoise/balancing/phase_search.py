@@ -277,7 +277,7 @@ def choose_phases(
     varying = (Objective(output, "ripple") for output in OF_ROWS)
     lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
     before, after = (
-        {term.objective.name: term.told(at) for term in cost.terms} for at in (present, found)
+        {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
     )
     return Phasing(
         machine=placed,
@@ -286,7 +286,9 @@ def choose_phases(
         after=after,
         combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
         remaining=_remaining(search, found),
-        lateral={term.objective.output: (term.told(present), term.told(found)) for term in lateral},
+        lateral={
+            one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
+        },
         combinations=0 if grid is None else grid.count,
         step=search.step if grid is None else grid.step,
         notes=tuple(_notes(search, found)),

@@ -52,7 +52,8 @@ def check(file: File, /) -> None:
         return
     with naming(file):
         if isinstance(found, Machine):
-            show_blocks(found.title, checks.machine_blocks(found))
+            blocks = [*checks.machine_blocks(found)]  # what is wrong is told before the title
+            show_blocks(found.title, blocks)
         else:
             from equipoise.schema.study_units import units_of
 

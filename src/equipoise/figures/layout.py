@@ -228,7 +228,7 @@ def _same_x(one: Cell, other: Cell) -> bool:
 
 def _cell(panel: Panel, height: float) -> Cell:
     curves = panel.curves
-    x = [curve.x for curve in curves] + [area.x for area in panel.areas]
+    x: list[Any] = [curve.x for curve in curves] + [area.x for area in panel.areas]
     y: list[Any] = [curve.y for curve in curves] + [area.high for area in panel.areas]
     y += [area.low for area in panel.areas]
     for bars in panel.bars:
@@ -245,8 +245,9 @@ def _cell(panel: Panel, height: float) -> Cell:
         x.append(outline.places.real)
         y.append(outline.places.imag)
     if panel.held is not None:
-        x.append([z.real for z in panel.held])
-        y.append([z.imag for z in panel.held])
+        held = np.array(panel.held)
+        x.append(held.real)
+        y.append(held.imag)
     if panel.surface is not None:
         x.append(panel.surface.x)
         y.append(panel.surface.y)

@@ -19,7 +19,6 @@ from equipoise.symbols.scene import Scene
 if TYPE_CHECKING:
     from equipoise.mechanism.motion import Motion
     from equipoise.results.analysis import Analysis
-    from equipoise.symbols.shapes import Shape
 
 Array = np.ndarray[Any, Any]
 
@@ -80,9 +79,9 @@ def plane_axes(scene: Scene) -> tuple[Axis, Axis]:
     return x, y
 
 
-def drawn(scene: Scene, k: int, **more: Any) -> dict[str, tuple[Shape, ...]]:
+def drawn(scene: Scene, k: int) -> dict[str, Any]:
     """A machine at the k-th crank angle, as a panel has it: what curves are drawn on, and signs."""
-    every = pieces(scene, **more)
+    every = pieces(scene)
     ground = [piece for piece in every if piece.layer in GROUND]
     signs = [piece for piece in every if piece.layer not in GROUND]
     return {"ground": tuple(placed(scene, ground, k)), "signs": tuple(placed(scene, signs, k))}

@@ -99,7 +99,8 @@ def _keep_clear(
     for one in shapes:
         corners = _corners(one, at, size)
         if one.grown:
-            labels.reserve(*corners[0], half=4 * UNIT * size)
+            x, y = corners[0].tolist()
+            labels.reserve(x, y, 4 * UNIT * size)
         elif one.role in WEIGHTS:
             line = np.vstack([corners, corners[:1]]) if one.closed else corners
             inside = np.clip(line, (left, top), (right, bottom))

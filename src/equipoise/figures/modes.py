@@ -50,7 +50,7 @@ def mode_chart(free: FreeVibration, number: int) -> Chart:
     mode = free.modes[number - 1]
     shape = ModeShape(free, mode)
     planar = free.linear.body.support.planar
-    views = ["side"] if planar else [*VIEWS]
+    views: list[View] = ["side"] if planar else [*VIEWS]
     what = say("Mode {number}: {told}", number=number, told=described(mode))
     told = say("Shape: {told}, or any multiple", told=", ".join(parts_of(free, mode)))
     panels = tuple(_panel(shape, view, views) for view in VIEWS if view in views)
@@ -102,7 +102,7 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
     return [typeset(text) for text in words]
 
 
-def _panel(shape: ModeShape, view: View, views: list[str]) -> Panel:
+def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
     """One view; several have one scale, so that the rear stands beside the side, as on a drawing.
 
     Where it is the only one it names all; else each thing is named where it acts.
@@ -119,7 +119,7 @@ def _panel(shape: ModeShape, view: View, views: list[str]) -> Panel:
             AXIS_NAMES[view], (None, _downward(low, high) if view == "top" else None), strict=True
         )
     )
-    items = {**shape.support.gauges, **shape.support.mounts}
+    items: dict[str, Mount | Gauge] = {**shape.support.gauges, **shape.support.mounts}
     named = [(name, item) for name, item in items.items() if alone or view_of(item) == view]
     return Panel(
         x,
@@ -181,7 +181,8 @@ def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
         yield from shapes.pivot(reference)
         yield shapes.circle("pin", reference, grown=shapes.PIN)
     center, ring = complex(np.mean(shape.outline(view))), 0
-    for item in (*support.gauges.values(), *support.mounts.values()):
+    items: list[Mount | Gauge] = [*support.gauges.values(), *support.mounts.values()]
+    for item in items:
         gauge = isinstance(item, Gauge)
         if item.point is None:
             if item.axis == AXIS_SEEN[view]:

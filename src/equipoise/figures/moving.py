@@ -84,7 +84,8 @@ def laid_out(
     stage = Stage(scene, arrow, frames, width)
     names = tuple(dict.fromkeys(traced))
     moves: dict[Any, Moves] = {}
-    behind, before = [], []
+    behind: list[Part] = []
+    before: list[Part] = []
     for piece in pieces(scene, names):
         part = _part(stage, piece, moves)
         (behind if piece.layer in BEHIND else before).append(part)

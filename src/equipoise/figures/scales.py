@@ -21,6 +21,8 @@ TURN = (15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600)
 """Degrees between crank angles that are numbered."""
 UP, BESIDE, NARROW = 22.0, 12.0, 4.0
 """Points between numbers above each other; free between those side by side, and at least."""
+NEAREST = 11.0
+"""Points between the middles of two numbers at least."""
 FEWEST, MOST = 3, 40
 """Numbers on an axis."""
 ROUND, ROUNDISH = (1, 2, 2.5, 5), (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
@@ -141,7 +143,7 @@ def _round_ticks(scale: Scale, upright: bool) -> Ticks:
     for digits, free in ((ROUND, BESIDE), (ROUNDISH, NARROW)):
         for step in steps_of(scale, digits):
             first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
-            if last - first > MOST:
+            if last - first > MOST or step / (scale.high - scale.low) * scale.length < NEAREST:
                 continue
             found = [(k * step, _written(k * step, step)) for k in range(first, last + 1)]
             if _fits(scale, found, upright, free):

@@ -19,10 +19,10 @@ from .modes import ToolModes as ToolModes
 from .modes import vibrate_tool as vibrate_tool
 from .response import ToolResponse as ToolResponse
 from .response import respond_tool as respond_tool
-from .shaft import Section as Section
+from .section import Section as Section
+from .section import Tube as Tube
 from .shaft import Segment as Segment
 from .shaft import Shaft as Shaft
-from .shaft import Tube as Tube
 from .studies import vary_tool as vary_tool
 from .sweep import ToolSweep as ToolSweep
 from .sweep import sweep_tool as sweep_tool

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.handheld.shaft import places
 from equipoise.handheld.station import Station
 from equipoise.keys import (
     Conditions,
@@ -21,7 +20,7 @@ from equipoise.keys import (
     told_by,
 )
 from equipoise.keys import key as _key
-from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.checks import numbered, unknown
 from equipoise.quantities import Dimension, format_exact, parse
 
 Measure = Literal["rms", "peak"]
@@ -197,12 +196,12 @@ def wrong_design(
     for number, name in enumerate(design.hands, 1):
         yield from _not_held(f"design.hands[{number}]", name, held)
     seen = set()
-    for where, variable in places("design.variables", design.variables):
+    for where, variable in numbered("design.variables", design.variables):
         yield from _wrong_variable(where, variable, stations, length)
         if (variable.station, variable.key) in seen:
             yield ModelError(where, f"{variable.name!r} is given twice; give one of both")
         seen.add((variable.station, variable.key))
-    for where, limit in places("design.limits", design.limits):
+    for where, limit in numbered("design.limits", design.limits):
         yield from _wrong_limit(where, limit, stations, held)
 
 

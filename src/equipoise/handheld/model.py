@@ -18,7 +18,7 @@ from equipoise.handheld.design_plan import (
     wrong_design,
     wrong_range,
 )
-from equipoise.handheld.shaft import Shaft, places, wrong_shaft
+from equipoise.handheld.shaft import Shaft, wrong_shaft
 from equipoise.handheld.station import (
     NOTHING,
     Absorber,
@@ -50,7 +50,7 @@ from equipoise.keys import (
     keys_of,
     wrong_values,
 )
-from equipoise.mechanism.checks import unknown, wrong_text
+from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_text
 from equipoise.mechanism.model import Machine
 
 __all__ = [
@@ -70,8 +70,7 @@ __all__ = [
 
 MOST = 200
 """Far beyond any tool, as in `mechanism.checks`."""
-DAY = 86400.0
-"""s."""
+DAY = 86400.0  # s
 DIRECTIONS = ("vertical", "lateral", "rotating")
 CAUSES = ("force", "unbalance", "linkage")
 """Of which an excitation has exactly one."""
@@ -287,9 +286,9 @@ def _problems(tool: Tool) -> Iterator[ModelError]:
     for part in ("excitations", "operation", "work", "design"):
         yield from wrong_values(part, getattr(tool, part))
     yield from wrong_shaft(tool.shaft)
-    for where, station in places("shaft.stations", tool.stations):
+    for where, station in numbered("shaft.stations", tool.stations):
         yield from wrong_station(where, station, tool.shaft.length)
-    for where, excitation in places("excitations", tool.excitations):
+    for where, excitation in numbered("excitations", tool.excitations):
         yield from _wrong_excitation(where, excitation, tool)
     if tool.operation is not None:
         yield from _wrong_operation(tool.operation)
@@ -310,15 +309,14 @@ def _too_much(tool: Tool) -> Iterator[ModelError]:
     if tool.design is not None:
         lists += [(f"design.{one}", getattr(tool.design, one)) for one in ("variables", "limits")]
     for part, items in lists:
-        if len(items) > MOST:
-            yield ModelError(part, f"got {len(items)}; at most {MOST} are computed with")
+        yield from too_many(part, items, MOST)
 
 
 def _wrong_names(tool: Tool) -> Iterator[ModelError]:
     yield from wrong_text("title", tool.title)
     for part, items in _named(tool):
         seen: set[str] = set()
-        for where, item in places(part, items):
+        for where, item in numbered(part, items):
             name = item.name
             yield from wrong_text(f"{where}.name", name)
             if not name.strip():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 from typing import Any, ClassVar
@@ -32,6 +32,7 @@ from equipoise.keys import (
     inside,
     key,
 )
+from equipoise.mechanism.checks import numbered
 
 THEORIES = ("euler-bernoulli", "timoshenko")
 
@@ -127,11 +128,6 @@ class Shaft(Frozen):
 # -- checks ----------------------------------------------------------------------------------------
 
 
-def places(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
-    """Each of a list of tables with its place, numbered from 1."""
-    return ((f"{key}[{number}]", item) for number, item in enumerate(items, 1))
-
-
 def _linear(given: dict[str, Any]) -> float | None:
     """Mass per length, kg/m, where the mass of the whole shaft is given."""
     if "mass" not in given:
@@ -147,7 +143,7 @@ def _linear(given: dict[str, Any]) -> float | None:
 def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a shaft."""
     yield from _wrong_profile("shaft", shaft.profile, shaft)
-    for where, segment in places("shaft.segments", shaft.segments):
+    for where, segment in numbered("shaft.segments", shaft.segments):
         if not 0 <= segment.start < segment.stop <= shaft.length:
             yield ModelError(
                 where,
@@ -155,7 +151,7 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
                 f"which goes from 0 m to {shaft.length:g} m",
             )
         yield from _wrong_profile(where, segment.profile, shaft)
-    ordered = sorted(places("shaft.segments", shaft.segments), key=lambda place: place[1].start)
+    ordered = sorted(numbered("shaft.segments", shaft.segments), key=lambda place: place[1].start)
     for (before, first), (where, second) in pairwise(ordered):
         if second.start < first.stop:
             yield ModelError(

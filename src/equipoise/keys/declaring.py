@@ -13,6 +13,7 @@ from equipoise.keys.kinds import Kind, Listing, Number, Quantity, Record, Table,
 from equipoise.quantities import SI, Dimension, pattern
 
 Class = TypeVar("Class", bound=type)
+Result = TypeVar("Result")
 
 # -- declaring -------------------------------------------------------------------------------------
 
@@ -122,7 +123,16 @@ def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, *
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
 def declared(cls: Class) -> Class:
     """Make a frozen dataclass of a class with keys."""
-    return dataclass(frozen=True)(cls)
+    made: Any = dataclass(frozen=True)(cls)
+    result: Class = made
+    return result
+
+
+def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:
+    """Compute something of each class when it is first asked for."""
+    kept: Any = cache(compute)
+    found: Callable[[type[Frozen]], Result] = kept
+    return found
 
 
 class Frozen(Record):
@@ -211,7 +221,7 @@ def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]
 # -- what a class declares -------------------------------------------------------------------------
 
 
-@cache
+@once
 def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys of a class in the order of the file, by name; a flat table is one of them."""
     found = {name: replace(one, name=name) for name, one in cls.beside.items()}
@@ -222,7 +232,7 @@ def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     return {name: found[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
 
 
-@cache
+@once
 def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys that stand in the table of a class, by name, with those of flat ones in their places."""
     found: dict[str, Key] = {}
@@ -236,7 +246,7 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
     return found
 
 
-@cache
+@once
 def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     """What is declared of the fields of a class; without a name where no file has it."""
     found: list[Key] = []
@@ -248,7 +258,7 @@ def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     return tuple(found)
 
 
-@cache
+@once
 def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, Any], ...]:
     """Fields of a class with what they have to be, and their defaults."""
     return tuple((one.field, one.kind, one.default) for one in declarations(cls))

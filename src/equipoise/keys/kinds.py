@@ -291,7 +291,8 @@ class Table(Kind):
 
     @property
     def wanted(self) -> str:  # type: ignore[override]
-        return self.type.wanted
+        wanted: str = self.type.wanted
+        return wanted
 
     @property
     def type(self) -> Any:

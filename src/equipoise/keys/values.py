@@ -51,8 +51,8 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
         for name, item in value.items():
             yield from _leaves(f"{where}.{name}".lstrip("."), item, of)
     elif isinstance(value, tuple | list):
-        one = of is not None and isinstance(of.kind, OneOr | Planes)
-        alike = one and all(item == value[0] for item in value)
+        several = of is not None and isinstance(of.kind, OneOr | Planes)
+        alike = several and all(item == value[0] for item in value)
         planes = of is not None and isinstance(of.kind, Planes) and len(value) == len(PLANES)
         for number, item in enumerate(value, 1):
             part = f".{PLANES[number - 1]}" if planes else f"[{number}]"

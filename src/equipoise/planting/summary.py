@@ -189,7 +189,7 @@ def _of_drive(curve: TipCurve) -> dict[str, float]:
     }
 
 
-def _collisions(known: Mapping[str, float]) -> Iterator[str]:
+def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
     """Links that go where they should not."""
     for name, value in known.items():
         body = name.rpartition(".")[0]

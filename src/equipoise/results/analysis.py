@@ -18,7 +18,7 @@ from equipoise.mechanism.motion import Motion, Named, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
-from equipoise.signals import Figures, Periodic
+from equipoise.signals import Figures, Periodic, figures_of_each
 
 if TYPE_CHECKING:
     import pandas
@@ -74,7 +74,11 @@ class Analysis(Result):
     @cached_property
     def summary(self) -> Mapping[str, Figures]:
         """Mean, RMS, peak and extremes of outputs, by name."""
-        return Named("output", ((one.name, one.figures) for one in self.outputs.summed))
+        ones = self.outputs.summed
+        if not ones:
+            return Named("output", ())
+        found = figures_of_each(self.crank_angle, np.array([one.values for one in ones]))
+        return Named("output", zip((one.name for one in ones), found, strict=True))
 
     @cached_property
     def together(self) -> Mapping[str, Array]:

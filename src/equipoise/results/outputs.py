@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby, product
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -88,13 +88,19 @@ class Outputs:
 
     def __init__(self, analysis: Any) -> None:
         had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
+        members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         self._found: dict[str, Output] = {}
-        for _, ones in groupby(had, key=lambda one: (one.group, one.is_family)):
-            items = [(one, dict.fromkeys(one.items_of(analysis))) for one in ones]
-            every = dict.fromkeys(item for _, own in items for item in own)
-            for item, (one, own) in product(every, items):
-                if item in own:
-                    self._found[one.named(item)] = Output(one, item, analysis)
+        for _, group in groupby(had, key=lambda one: (one.group, one.is_family)):
+            ones = list(group)
+            for one in ones:
+                who = one.items or one.members
+                if who not in members:
+                    members[who] = dict.fromkeys(one.items_of(analysis))
+            own = [(one, members[one.items or one.members]) for one in ones]
+            for item in dict.fromkeys(item for _, items in own for item in items):
+                for one, items in own:
+                    if item in items:
+                        self._found[one.named(item)] = Output(one, item, analysis)
 
     @classmethod
     def of(cls, analysis: Any) -> Outputs:

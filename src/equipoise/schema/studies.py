@@ -121,7 +121,8 @@ def _study(text: str, folder: Path) -> Study:
         ),
         sampling=_sampling(document.sampling),
         correlations=tuple(
-            Correlation(*one.between, one.coefficient) for one in document.correlations
+            Correlation(one.between[0], one.between[1], one.coefficient)
+            for one in document.correlations
         ),
         angles=angles,
         tolerance=tolerance,
@@ -276,7 +277,7 @@ def _written(value: float | None, dimension: str | None) -> Any:
     """A value as it stands in a study file: with its unit, where its dimension is known."""
     if value is None or dimension not in KINDS:
         return value
-    return format_exact(value, dimension)  # type: ignore[arg-type]
+    return format_exact(value, dimension)
 
 
 def _vary_table(one: Vary) -> VaryTable:
@@ -294,9 +295,9 @@ def _vary_table(one: Vary) -> VaryTable:
 
 
 def _output_table(one: Output) -> OutputTable:
-    limits = (_written(limit, one.dimension) for limit in (one.at_least, one.at_most))
+    least, most = (_written(limit, one.dimension) for limit in (one.at_least, one.at_most))
     name = None if one.name == one.value else one.name
-    return OutputTable(one.value, name, one.of, *limits, make=one.make)
+    return OutputTable(one.value, name, one.of, least, most, one.make)
 
 
 def _sampling_table(given: Sampling) -> SamplingTable:

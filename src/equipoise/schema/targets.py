@@ -118,7 +118,8 @@ def _document(text: str) -> TargetTable:
     content = toml_content(text)
     if "goals" not in content:
         raise ModelError("goals", "missing; add at least one table [[goals]]")
-    return read_table(TargetTable, content, Context())
+    table: TargetTable = read_table(TargetTable, content, Context())
+    return table
 
 
 def _targets(document: TargetTable, figures: Collection[str]) -> Targets:

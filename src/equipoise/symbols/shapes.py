@@ -221,7 +221,8 @@ def mount(
     length = MOUNT[0]
     lines = [sign("mount", place, length * way * piece) for piece in _BODIES[sprung]]
     ends = length * way + 16 * 1j * way * np.array([-1, 1])
-    ground = [*_hatching(place, *ends, away=way), sign("rail", place, ends)]
+    start, end = (complex(z) for z in ends)
+    ground = [*_hatching(place, start, end, way), sign("rail", place, ends)]
     return [*lines, *ground, circle("float" if one_sided else "foot", place, grown=PIN)]
 
 

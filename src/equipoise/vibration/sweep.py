@@ -192,11 +192,11 @@ def sweep_speed(
     grid = _speeds(slowest, fastest, speeds, met, linear)
     told = progress if progress is not None else (lambda done, total: None)
     if model == "exact":
-        answers, notes = follow_speeds(machine, grid.tolist(), drive, told)
+        answers, found = follow_speeds(machine, grid.tolist(), drive, told)
     else:
-        answers, notes = _by_orders(linear, model, grid.tolist(), told), []
-    notes = [*left_out(machine), *notes, *_missing(grid, answers)]
-    return _gathered(machine, model, grid, answers, linear, met, tuple(notes))
+        answers, found = _by_orders(linear, model, grid.tolist(), told), []
+    notes = (*left_out(machine), *found, *_missing(grid, answers))
+    return _gathered(machine, model, grid, answers, linear, met, notes)
 
 
 def _speeds(

@@ -25,9 +25,8 @@ from equipoise.results.naming import (
     scaled,
     unit_of_measure,
 )
-from equipoise.web.design import Counterweight, Design, joined, pin_of, place_of_pin
+from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
-from equipoise.web.rounding import clean
 from equipoise.web.state import figures_of
 
 Values = dict[str, Any]
@@ -70,7 +69,7 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
     if plan.phases is None:
         return {one.name: Problem.value_of(machine, one) for one in plan.objectives}
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
-    return {term.objective.name: term.told(search.present) for term in search.cost.terms}
+    return {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
 
 
 def nothing_gained(found: Balanced) -> str | None:

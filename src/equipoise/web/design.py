@@ -1,4 +1,4 @@
-"""What a page edits: a machine, and the counterweights that are tried on it."""
+"""What a page edits: a machine, the counterweights that are tried on it, and designs that were."""
 
 from __future__ import annotations
 
@@ -6,15 +6,40 @@ from cmath import phase
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import cos, pi, sin
+from math import cos, floor, isfinite, log10, pi, sin
 from types import MappingProxyType
 
 from equipoise.balancing.optimisation import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.balance import Balance
-from equipoise.mechanism.model import Link, Machine
-from equipoise.web.rounding import clean, clean_place
+from equipoise.mechanism.model import Link, Machine, Vector
+from equipoise.quantities import parse, rounded
+from equipoise.quantities.units import HUGE, TINY, Dimension
+
+DIGITS, SHORT = 12, 9
+"""Significant ones that are kept, and those of a number that somebody may have meant in SI."""
+OTHER: dict[Dimension, str] = {"angle": "deg", "angular speed": "rpm"}
+"""Units of files that are no power of ten of the SI unit."""
+
+
+def clean(value: float, dimension: Dimension | None = None) -> float:
+    """A value (SI units, radians) of 12 digits, in the unit in which a file has it."""
+    unit = None if dimension is None else OTHER.get(dimension)
+    plain = float(f"{value:.{DIGITS}g}")
+    short = plain == float(f"{value:.{SHORT}g}")
+    if dimension is None or unit is None or short or not TINY < abs(value) < HUGE:
+        return plain
+    return parse(rounded(value, unit, DIGITS), dimension)
+
+
+def clean_place(place: complex, size: float = 0.0) -> Vector:
+    """Coordinates (m) whose last digit is the 12th of the longer one, or of a size."""
+    longest = max(abs(place.real), abs(place.imag), size)
+    if not longest or not isfinite(longest):
+        return place.real, place.imag
+    last = DIGITS - 1 - floor(log10(longest))
+    return round(place.real, last) + 0.0, round(place.imag, last) + 0.0
 
 
 @dataclass(frozen=True)
@@ -142,3 +167,54 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
         center_of_mass=clean_place(common),
         inertia=clean(float(own + added)),
     )
+
+
+MOST_STEPS = 500
+
+
+@dataclass(frozen=True)
+class Step:
+    """A design, and what was done to get there."""
+
+    design: Design
+    label: str
+
+
+@dataclass(frozen=True)
+class History:
+    """Steps in the order in which they were made; `now` stands between `past` and `future`."""
+
+    now: Step
+    past: tuple[Step, ...] = ()
+    future: tuple[Step, ...] = ()
+
+    @property
+    def first(self) -> Design:
+        """The design that was opened, or the oldest that is kept."""
+        return (*self.past, self.now)[0].design
+
+    @property
+    def undo(self) -> str | None:
+        """What would be taken back."""
+        return self.now.label if self.past else None
+
+    @property
+    def redo(self) -> str | None:
+        """What would be done again."""
+        return self.future[0].label if self.future else None
+
+    def then(self, design: Design, label: str) -> History:
+        """One step more; what was taken back is forgotten."""
+        return History(Step(design, label), (*self.past[1 - MOST_STEPS :], self.now))
+
+    def undone(self) -> History:
+        """One step back, or a `UsageError`."""
+        if not self.past:
+            raise UsageError("there is nothing to undo")
+        return History(self.past[-1], self.past[:-1], (self.now, *self.future))
+
+    def redone(self) -> History:
+        """One step forth again, or a `UsageError`."""
+        if not self.future:
+            raise UsageError("there is nothing to redo")
+        return History(self.future[0], (*self.past, self.now), self.future[1:])

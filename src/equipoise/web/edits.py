@@ -19,10 +19,9 @@ from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.quantities import parse
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
-from equipoise.web.design import Design
+from equipoise.web.design import Design, clean, clean_place
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Change, Drag, Setting
-from equipoise.web.rounding import clean, clean_place
 
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""

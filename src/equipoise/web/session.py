@@ -15,14 +15,12 @@ from equipoise.schema.files import LARGEST, printable
 from equipoise.schema.models import examples, load_linkage, loads_linkage
 from equipoise.schema.opening import kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
-from equipoise.web.design import Design
+from equipoise.web.design import Design, History, Step
 from equipoise.web.downloads import downloaded
 from equipoise.web.edits import Solved, edited, settled, solved
 from equipoise.web.fields import Scale, fields_of
-from equipoise.web.history import History, Step
 from equipoise.web.messages import Message
-from equipoise.web.more import more
-from equipoise.web.shaken import response_of
+from equipoise.web.shaken import more, response_of
 from equipoise.web.state import state_of
 
 LONGEST = 800

@@ -1,8 +1,9 @@
-"""How the support of a machine is shaken, as a page is sent it."""
+"""What takes longer to tell of a design: how its support is shaken, and what it plants."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,13 @@ import numpy as np
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.planting.blocks import EXTREMES, PATH, SOIL, cell
+from equipoise.planting.summary import plant
+from equipoise.quantities import display, in_unit
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
+from equipoise.web.edits import Solved
 from equipoise.web.state import Block
 
 Values = dict[str, Any]
@@ -91,3 +96,58 @@ def _told(found: Response, block: Block) -> Values:
             }
         )
     return {"gauges": gauges, "arrays": block.told, "notes": list(map(str, found.notes))}
+
+
+class OutdatedError(Exception):
+    """The design is no longer shown."""
+
+
+def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, bytes]]:
+    """Planting figures, and the response over speed; each as values and a block of floats.
+
+    outdated : tells when the design is no longer shown, so that the rest is not wanted.
+    """
+    machine = found.design.machine
+    if machine.planting is not None and machine.drive.speed:
+        planted = _planted(machine)
+        if not outdated():
+            yield planted, b""
+    if not can_be_shaken(machine):
+        return
+
+    def progress(done: int, total: int) -> None:
+        if outdated():
+            raise OutdatedError
+
+    try:
+        shaken = swept(machine, progress)
+    except OutdatedError:
+        return
+    if shaken is not None and not outdated():
+        content, data = shaken
+        yield {"type": "response", **content}, data
+
+
+_LABELS = {**PATH, **SOIL, **{f"{name}.value": label for name, label in EXTREMES.items()}}
+
+
+def _shown(name: str, value: float) -> Values:
+    """A figure in the unit in which it is told; None where it is not finite."""
+    told = cell(value, name)
+    assert told is not None
+    unit = display(told.dimension, [value]) if told.unit is None else in_unit(told.unit)
+    return {"unit": unit.name, "value": unit.factor * value if isfinite(value) else None}
+
+
+def _planted(machine: Machine) -> Values:
+    """Figures of the tip's path, None where they are not finite, or why there are none."""
+    try:
+        found = plant(machine)
+    except EquipoiseError as error:
+        return {"type": "planting", "figures": [], "notes": [str(error)]}
+    figures = [
+        {"name": name, "label": label, **_shown(name, float(found.figures[name]))}
+        for name, label in _LABELS.items()
+        if name in found.figures
+    ]
+    return {"type": "planting", "figures": figures, "notes": list(map(str, found.notes))}

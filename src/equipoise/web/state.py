@@ -13,6 +13,7 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared
 from equipoise.mechanism.tip import surface_of
+from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
 from equipoise.symbols.scene import Scene
@@ -95,8 +96,15 @@ def state_of(
         "scene": stage_of(scene, movable(machine)),
         "figures": [*_figures(signals, old, _size_of(machine))],
         "outputs": [
-            {"name": one.name, "label": one.label(), "unit": one.unit, "group": GROUPS[one.group]}
+            {
+                "name": one.name,
+                "label": one.label(),
+                "group": GROUPS[one.group],
+                "unit": shown.name,
+                "factor": shown.factor,
+            }
             for one in analysis.outputs
+            for shown in [display(one.dimension)]
         ],
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],

@@ -20,12 +20,17 @@ from equipoise.figures import decay as of_decay
 from equipoise.figures import exposure, figure, plot, render, studies
 from equipoise.figures.scales import Scale, ends_of, ticks_of
 from equipoise.figures.surface import levels_of
+from equipoise.measured.decay import Decay, identify_decay
+from equipoise.measured.record import simulate_decay
+from equipoise.mechanism.objectives import Objective
 from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel
+from equipoise.schema.studies import load_study
 from equipoise.schema.study_units import units_of
-from equipoise.studies.objective_map import Landscape
-from equipoise.studies.search import Searched
+from equipoise.schema.template import Template
+from equipoise.studies.objective_map import Landscape, landscape
+from equipoise.studies.search import Searched, search_designs
 from equipoise.studies.selection import Best
-from equipoise.studies.tolerances import Tolerances
+from equipoise.studies.tolerances import Tolerances, tolerance
 from unit.figures.samples import words
 from unit.figures.test_pictures import check
 
@@ -97,10 +102,10 @@ def test_odd_days(one: Exposure) -> None:
 # -- decay -----------------------------------------------------------------------------------------
 
 
-def decayed(kind: str = "length", **more: float) -> eq.Decay:
+def decayed(kind: str = "length", **more: float) -> Decay:
     values = {"damping_ratio": 0.02, "coulomb": 0.001, "start": 0.04, "noise": 2e-4, **more}
-    record = eq.simulate_decay(TIME, natural_frequency=12.4, kind=kind, **values)
-    return eq.identify_decay(record)
+    record = simulate_decay(TIME, natural_frequency=12.4, kind=kind, **values)
+    return identify_decay(record)
 
 
 def test_the_record_and_the_line_of_half_swings() -> None:
@@ -127,8 +132,8 @@ def test_the_record_and_the_line_of_half_swings() -> None:
 
 @cache
 def tolerances() -> Tolerances:
-    study = eq.load_study("study-of-tolerances")
-    return eq.tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
+    study = load_study("study-of-tolerances")
+    return tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
 
 
 @cache
@@ -139,8 +144,8 @@ def of_tolerances() -> dict[str, Chart]:
 @cache
 def searched() -> Searched:
     pytest.importorskip("pymoo")
-    study = replace(eq.load_study("study-of-balance"), angles=90)
-    return eq.search_designs(study, population=12, generations=3)
+    study = replace(load_study("study-of-balance"), angles=90)
+    return search_designs(study, population=12, generations=3)
 
 
 @cache
@@ -227,8 +232,8 @@ def smooth() -> Landscape:
         "links.coupler.center_of_mass.x": np.linspace(-0.06, 0.06, 31),
         "links.coupler.center_of_mass.y": np.linspace(-0.04, 0.08, 31),
     }
-    force = eq.Objective("shaking_force.y", "ripple")
-    return eq.landscape(eq.Template.load("yamashita-2"), over, force)
+    force = Objective("shaking_force.y", "ripple")
+    return landscape(Template.load("yamashita-2"), over, force)
 
 
 @cache
@@ -238,8 +243,8 @@ def broken() -> Landscape:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 9),
         "counterweights.crank.radius": np.linspace(0.0, 0.05, 9),
     }
-    force, given = eq.Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
-    return eq.landscape(eq.Template.load("yamashita-1"), over, force, given)
+    force, given = Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
+    return landscape(Template.load("yamashita-1"), over, force, given)
 
 
 def test_the_least_and_the_model_are_marked_where_they_are() -> None:

@@ -103,7 +103,8 @@ def check_axes(chart: Chart) -> None:
         if panel.bare:
             continue
         assert panel.x.label or chart.name.startswith(("scatter", "joint-polars")), chart.name
-        assert panel.y.label or panel.y.ticks is not None or panel.rings, chart.name
+        named = panel.y.label or panel.title or panel.y.ticks is not None or panel.rings
+        assert named, chart.name
         for axis, ticks in zip((panel.x, panel.y), view.ticks, strict=True):
             if axis.ticks is None:
                 assert len(ticks) >= 3, (chart.name, axis.label, [text for _, text in ticks])

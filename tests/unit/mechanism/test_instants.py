@@ -9,6 +9,8 @@ import pytest
 
 from equipoise.mechanism.instants import crossings, largest, lowest_within, roots, smallest
 
+Array = np.ndarray[Any, Any]
+
 TURN = 2 * np.pi
 GRID = np.arange(720) * (TURN / 720)
 FINE = np.linspace(0.0, TURN, 200_001)
@@ -182,3 +184,21 @@ def test_lowest_within_a_part_of_a_random_signal(seed: int) -> None:
     assert brute - 1e-7 < value[0] <= brute + 1e-14
     assert signal(at[:, None])[0, 0] == value[0]
     assert 1.0 <= at[0] <= 2.5
+
+
+@pytest.mark.parametrize("noise", range(4))
+def test_of_equal_tops_the_first_is_told(noise: int) -> None:
+    """Five equal tops, more than are followed, whose samples differ by rounding."""
+    rng = np.random.default_rng(noise)
+    theta = np.linspace(0.0, 2 * np.pi, 360, endpoint=False)
+
+    def signal(x: Array) -> Array:
+        return np.cos(5 * x - 1.0) * (1 + 1e-14 * rng.standard_normal(np.shape(x)))
+
+    def slope(x: Array) -> Array:
+        return -np.sin(5 * x - 1.0)
+
+    for find, at in ((largest, 0.2), (smallest, 0.2 + np.pi / 5)):
+        value, angle = find(signal, slope, theta, signal(theta[None]))
+        assert abs(value[0]) == pytest.approx(1.0)
+        assert angle[0] == pytest.approx(at, abs=1e-6)

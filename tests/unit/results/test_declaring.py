@@ -102,8 +102,13 @@ def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
     asked = message_of({"type": "outputs", "seq": 1, "names": [POWER, "points.P.vx"]})
     content = next(iter(session.receive(asked))).content
     offered = {one["name"]: one for one in content["outputs"]}
-    told = {"name": POWER, "label": "drive power", "unit": "W", "group": "frame and drive"}
-    assert offered[POWER] == told
+    assert offered[POWER] == {
+        "name": POWER,
+        "label": "drive power",
+        "group": "frame and drive",
+        "unit": "W",
+        "factor": 1.0,
+    }
     assert {f"output.{POWER}", "output.points.P.vx"} <= content["arrays"].keys()
     assert "output.shaking_moment" not in content["arrays"]
     refused = message_of({"type": "outputs", "seq": 2, "names": ["drive_powers"]})

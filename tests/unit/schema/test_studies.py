@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 
@@ -407,3 +408,21 @@ def test_spoilt_texts(tmp_path: Path, spoilt: str) -> None:
         with pytest.raises(UsageError, match="what is kept of the study cannot be read") as caught:
             restore({**texts, spoilt: text})
         assert "\n" not in str(caught.value)
+
+
+# -- writing ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", eq.examples("study"))
+def test_a_study_is_written_as_it_was_read(name: str) -> None:
+    study = load_study(name)
+    assert eq.loads(eq.dumps(study)) == study
+
+
+@pytest.mark.parametrize("name", eq.examples("study"))
+def test_a_study_without_its_text_is_written_anew(name: str, tmp_path: Path) -> None:
+    study = load_study(name)
+    path = tmp_path / "study.toml"
+    eq.save(replace(study, file=""), path)
+    again = eq.load(path)
+    assert replace(again, model=study.model) == study

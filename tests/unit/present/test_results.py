@@ -1,0 +1,157 @@
+"""Every result shows itself: on a terminal of any width, on a page, in print, in a notebook."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+import equipoise as eq
+from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.pareto import trade_off
+from equipoise.balancing.sensitivity import sensitivities
+from equipoise.exposure.daily import Exposure, Task
+from equipoise.handheld.exposed import expose_tool
+from equipoise.handheld.modes import vibrate_tool
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import vary_tool
+from equipoise.handheld.sweep import sweep_tool
+from equipoise.i18n import speaking
+from equipoise.mechanism.balance import Objective
+from equipoise.planting.summary import plant
+from equipoise.present import html_of, terminal
+from equipoise.present.cells import grid, printed
+from equipoise.present.document import Document
+from equipoise.present.html import printed_grid
+from equipoise.present.pdf import pdf
+from equipoise.results.blocks import Change, Column, Section, Span, Table, Value
+from equipoise.schema.models import load_tool
+from support.printing import printed as shown
+from support.printing import words
+
+SPEEDS = np.linspace(600.0, 800.0, 12)
+RESULTS: dict[str, Callable[[], Any]] = {
+    "analysis": lambda: eq.analyze(eq.load("yamashita-1")),
+    "slider": lambda: eq.analyze(eq.load("slider-crank-engine")),
+    "response": lambda: eq.respond(eq.load("riding-transplanter")),
+    "exact response": lambda: eq.respond(eq.load("yamashita-rig"), model="exact"),
+    "sweep": lambda: eq.vibration.sweep_speed(eq.load("yamashita-rig"), 5.0, 40.0, speeds=12),
+    "free vibration": lambda: eq.modes(eq.load("riding-transplanter")),
+    "transient": lambda: eq.simulate(eq.load("yamashita-rig"), 0.3),
+    "balanced": lambda: eq.balance(eq.load("balance-crank")),
+    "phases": lambda: eq.balance(eq.load("four-row-transplanter")),
+    "front": lambda: trade_off(
+        eq.load("balance-crank"),
+        Objective("shaking_force"),
+        Objective("drive_torque"),
+        eq.load("balance-crank").balance,
+        4,
+    ),
+    "conditions": lambda: conditions(eq.load("yamashita-1")),
+    "sensitivities": lambda: sensitivities(eq.load("yamashita-1")),
+    "planting": lambda: plant(eq.load("transplanter")),
+    "tool modes": lambda: vibrate_tool(load_tool("brush-cutter"), 5),
+    "tool sweep": lambda: sweep_tool(load_tool("brush-cutter"), SPEEDS),
+    "tool response": lambda: respond_tool(load_tool("pole-saw"), SPEEDS),
+    "tool exposure": lambda: expose_tool(load_tool("brush-cutter"), SPEEDS),
+    "variation": lambda: vary_tool(
+        load_tool("nagamine-irie"), "harness", "position", np.linspace(0.0, 0.2, 4), 4
+    ),
+    "exposure": lambda: Exposure((Task("mowing", 4.6, 7200.0), Task("sawing", 9.0, 7200.0))),
+}
+
+
+@cache
+def result(name: str) -> Any:
+    return RESULTS[name]()
+
+
+def tables(blocks: Any) -> list[Table]:
+    """All tables, those of sections too."""
+    parts = (tables(one.blocks) if isinstance(one, Section) else [one] for one in blocks)
+    return [one for part in parts for one in part if isinstance(one, Table)]
+
+
+@pytest.mark.parametrize("width", [60, 80, 120])
+@pytest.mark.parametrize("name", RESULTS)
+def test_no_line_is_longer_than_the_terminal(name: str, width: int) -> None:
+    lines = shown(result(name).blocks(), result(name).title, width).splitlines()
+    assert lines
+    assert [line for line in lines if len(line) > width] == []
+    assert all(line.isprintable() and line.isascii() for line in lines)
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_no_number_is_cut_and_page_and_terminal_tell_the_same(name: str) -> None:
+    blocks = result(name).blocks()
+    text, page = words(shown(blocks, width=80)), html_of(result(name))
+    for table in tables(blocks):
+        for row, in_print in zip(grid(table).rows, printed_grid(table).rows, strict=True):
+            for cell, other in zip(row, in_print, strict=True):
+                if cell.number and cell.text:
+                    assert terminal.plain(cell.text) in text
+                    assert other.text == printed(cell.text)
+                    assert other.told in page
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_a_notebook_shows_little(name: str) -> None:
+    found = result(name)
+    assert len(repr(found)) < 120 and "\n" not in repr(found)
+    assert 200 < len(found._repr_html_()) < 50_000
+    assert not re.search(r"\b(nan|None)\b", found._repr_html_())
+
+
+@pytest.mark.parametrize("language", ["en", "ja", "ko"])
+def test_every_result_can_be_set_by_typst(language: str) -> None:
+    with speaking(language):
+        sections = tuple(
+            Section(f"s{k}", name, tuple(b for b in found().blocks() if not isinstance(b, Section)))
+            for k, name in enumerate(RESULTS)
+            for found in [lambda name=name: result(name)]
+        )
+    document = Document("en", "title", "", "", (), (), "", sections)
+    assert pdf(document).startswith(b"%PDF")
+
+
+# -- cells -----------------------------------------------------------------------------------------
+
+
+def table_of(*cells: Any, column: Column | None = None) -> Table:
+    one = column or Column("value", "length")
+    return Table("title", (Column(""), one), tuple((f"row {k}", c) for k, c in enumerate(cells)))
+
+
+def test_units_and_digits() -> None:
+    told = grid(table_of(Value(0.0123), Span(-0.001, 1.0), Value(1e-15, 1.0), None, "none"))
+    assert [row[1].text for row in told.rows] == ["12.30", "-1.000 to 1000", "0", "", "none"]
+    assert told.heads[1].heading == "value, mm"
+    chosen = grid(table_of(Value(0.0123)), {"length": "cm"})
+    assert (chosen.rows[0][1].text, chosen.heads[1].unit) == ("1.230", "cm")
+    mixed = table_of(
+        Value(2.0, dimension="force"), Value(3e-3, dimension="torque"), column=Column("")
+    )
+    assert [row[0].text for row in grid(mixed).rows] == ["row 0, N", "row 1, N m"]
+    turned = grid(table_of(Value(1.0, at=np.pi / 2), Value(np.nan)))
+    assert turned.rows[0][1].told == "1000 (90.0)" and turned.heads[1].heading == "value, mm (deg)"
+    assert turned.rows[1][1].text == "none"
+
+
+def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None:
+    table = table_of(Value(7.0, broken=True), Value(1.0), Change(1.0, 2.0, worse=True))
+    assert [line.endswith(" !") for line in shown([table]).splitlines()[-3:]] == [True, False, True]
+    assert [row[1].strong for row in grid(table).rows] == [True, False, True]
+
+    def coloured(**options: Any) -> Console:
+        return Console(**options, force_terminal=True, color_system="standard")
+
+    monkeypatch.setattr(terminal, "Console", coloured)
+    text = shown([table])
+    assert re.search(r"\x1b\[1;31m *7000", text) and " !" not in text
+    day = words(result("exposure").blocks())
+    assert "above the limit value of 5 m/s^2 (2002/44/EC)" in day and "nobody may be exposed" in day
