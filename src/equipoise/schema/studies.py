@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact
-from equipoise.quantities.problems import described
+from equipoise.quantities.reading import described
 from equipoise.schema.files import printable
 from equipoise.schema.objects import Context
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
