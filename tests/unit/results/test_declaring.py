@@ -19,7 +19,7 @@ from equipoise.mechanism.outputs import DECLARED, declaring, output
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.outputs import documented, unit_of
-from equipoise.schema.models import dumps
+from equipoise.schema.documents import dumps
 from equipoise.schema.output import json_text, to_csv
 from equipoise.studies.dimensions import dimension_of
 from equipoise.web.messages import message_of
