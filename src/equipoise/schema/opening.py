@@ -208,7 +208,7 @@ def _check_version(content: dict[str, Any]) -> None:
         )
     given = content["schema"]
     if type(given) is not int or given != SCHEMA_VERSION:
-        from equipoise.quantities.problems import described
+        from equipoise.quantities.reading import described
 
         raise ModelError(
             "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"

@@ -10,7 +10,7 @@ from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact, parse
-from equipoise.quantities.problems import described
+from equipoise.quantities.reading import described
 from equipoise.schema.files import printable
 from equipoise.schema.numbers import read_number
 from equipoise.schema.objects import Context
