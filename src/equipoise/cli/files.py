@@ -24,12 +24,21 @@ STARTS = {
 
 def examples() -> None:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
+    from shutil import get_terminal_size
+    from textwrap import fill
+
     from equipoise.schema import opening
 
     found = opening.examples()
-    width = max(map(len, found))
+    width = 2 + max(map(len, found))
     for name, title in found.items():
-        print(f"{name:<{width}}  {title}")
+        wrapped = fill(
+            title,
+            get_terminal_size().columns,
+            initial_indent=f"{name:<{width}}",
+            subsequent_indent=" " * width,
+        )
+        print(wrapped)
 
 
 def check(file: File, /) -> None:
