@@ -12,14 +12,13 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
-    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.results.charts import Chart
     from equipoise.vibration.free import FreeVibration
 
-    Pictures = dict[str, Picture]
+    Pictures = dict[str, Chart]
 
 CHARTS = {
     "Response": "vibration:response_charts",
@@ -49,7 +48,7 @@ def pictures_of(result: Any) -> Pictures:
     if kind not in CHARTS:
         raise UsageError(f"there are no pictures of {kind}; draw one of {', '.join(KINDS)}")
     module, _, name = CHARTS[kind].partition(":")
-    charts: dict[str, Chart] = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
+    charts: Pictures = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
     return {**charts}
 
 

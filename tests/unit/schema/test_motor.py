@@ -16,7 +16,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.model import Load, LoadTable, Machine
 from equipoise.schema import dumps, json_schema, load, loads, save
-from equipoise.schema.models import files_of, parts_of
+from equipoise.schema.saving import files_of, parts_of
 from equipoise.schema.tables import format_motor, read_motor
 from unit.schema.samples import FOUR_BAR
 
