@@ -24,12 +24,12 @@ CHARTS = {
     "Response": "vibration:response_charts",
     "Transient": "vibration:transient_charts",
     "Sweep": "sweep:sweep_charts",
-    "ToolModes": "handheld:mode_charts",
-    "Transmissions": "handheld:transmission_charts",
-    "ToolResponse": "handheld:response_charts",
-    "ToolExposure": "handheld:exposure_charts",
-    "ToolDesign": "handheld:design_charts",
-    "Variation": "handheld:variation_charts",
+    "ToolModes": "tool_shaft:mode_charts",
+    "Transmissions": "tool_speeds:transmission_charts",
+    "ToolResponse": "tool_shaft:response_charts",
+    "ToolExposure": "tool_speeds:exposure_charts",
+    "ToolDesign": "tool_designs:design_charts",
+    "Variation": "tool_designs:variation_charts",
     "Landscape": "studies:landscape_charts",
 }
 """Kind of result that needs nothing else for its charts -> module here, and the function."""

@@ -202,7 +202,7 @@ def of_tool(found: ToolFindings) -> Iterator[Part]:
 
 
 def _modes_of_tool(modes: ToolModes) -> Iterator[Entry]:
-    from equipoise.figures.handheld import shapes
+    from equipoise.figures.tool_shaft import shapes
 
     caption = to_say("Shapes of the natural vibrations of the shaft.")
     for plane, name in enumerate(("modes", "modes-lateral")[: 1 if modes.alike else 2]):
@@ -210,7 +210,7 @@ def _modes_of_tool(modes: ToolModes) -> Iterator[Entry]:
 
 
 def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Entry]:
-    from equipoise.figures.handheld import transmission
+    from equipoise.figures.tool_speeds import transmission
 
     caption = to_say("Share of a shaking force that comes to what holds the tool.")
     planes = ("transmission", "transmission-lateral")[: 1 if found.tool.alike else 2]
@@ -221,14 +221,14 @@ def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Ent
 def _moment(found: ToolFindings) -> Iterator[Entry]:
     if found.sweep is None or found.sweep.response is None:
         return
-    from equipoise.figures.handheld import moment
+    from equipoise.figures.tool_shaft import moment
 
     caption = to_say("Bending moment and displacement along the shaft.")
     yield "moment", caption, partial(moment, found.sweep.response, None)
 
 
 def _exposure(found: ToolExposure) -> Iterator[Entry]:
-    from equipoise.figures.handheld import acceleration, weighted
+    from equipoise.figures.tool_speeds import acceleration, weighted
 
     caption = to_say("Acceleration of the hands against speed of the engine.")
     yield "acceleration", caption, partial(acceleration, found)
@@ -239,7 +239,7 @@ def _exposure(found: ToolExposure) -> Iterator[Entry]:
 def _design(found: ToolFindings) -> Iterator[Entry]:
     if found.design is None:
         return
-    from equipoise.figures.handheld import design
+    from equipoise.figures.tool_designs import design
 
     caption = to_say("What the hand that gets most gets over the band of speeds, before and after.")
     yield "design", caption, partial(design, found.design)
