@@ -20,16 +20,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension, Display, display
-from equipoise.results.charts import (
-    RPM,
-    Axis,
-    Chart,
-    Curve,
-    Line,
-    Mark,
-    Panel,
-    shown,
-)
+from equipoise.results.charts import RPM, Axis, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -38,7 +29,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.studies import DeterminantChart, Variation
 
 Array = np.ndarray[Any, Any]
-
 
 MOST_CHANGES = 8
 """Changes of a design that are told."""

@@ -13,17 +13,7 @@ from equipoise.figures.style import short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import (
-    RPM,
-    Axis,
-    Chart,
-    Curve,
-    Flag,
-    Line,
-    Mark,
-    Panel,
-    shown,
-)
+from equipoise.results.charts import RPM, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Station, Tool
@@ -32,7 +22,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.shapes import Line as ShaftLine
 
 Array = np.ndarray[Any, Any]
-
 
 MM = 1000.0
 MOST_MODES, MOST_SHAPES, MOST_NAMES, LONGEST = 24, 6, 24, 20

@@ -38,7 +38,6 @@ if TYPE_CHECKING:
 
 Array = np.ndarray[Any, Any]
 
-
 RATE = Display("m/s^2", 1.0)
 ALONE = 0.1
 """Share by which the axis goes beyond a speed that stands alone."""

@@ -56,9 +56,9 @@ def _made(chart: Chart) -> Chart:
 
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
-    from equipoise.figures.analysis import curves, hodograph
     from equipoise.figures.linkage import linkage
     from equipoise.figures.outputs import main_kinematics
+    from equipoise.figures.points import curves, hodograph
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
@@ -94,20 +94,20 @@ def _planting(figures: PlantingFigures) -> Iterator[Entry]:
 
 
 def _forces(found: Findings) -> Iterator[Entry]:
-    from equipoise.figures import analysis as view
+    from equipoise.figures import forces
 
     analysis = found.analysis
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
-    yield "polar", caption, partial(view.polar, analysis)
+    yield "polar", caption, partial(forces.polar, analysis)
     caption = to_say("Shaking force over crank angle.")
-    yield "force", caption, partial(view.force, analysis)
+    yield "force", caption, partial(forces.force, analysis)
     caption = to_say("Shaking moment over crank angle.")
-    yield "moment", caption, partial(view.moment, analysis)
+    yield "moment", caption, partial(forces.moment, analysis)
     caption = to_say("Drive torque over crank angle, and what it is for.")
-    yield "torque", caption, partial(view.torque, analysis)
-    if view.has_orders(analysis):
+    yield "torque", caption, partial(forces.torque, analysis)
+    if forces.has_orders(analysis):
         caption = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
-        yield "spectrum", caption, partial(view.spectrum, analysis)
+        yield "spectrum", caption, partial(forces.spectrum, analysis)
 
 
 def _joints(found: Findings) -> Iterator[Entry]:
