@@ -21,7 +21,7 @@ from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
 from equipoise.results.outputs import documented, unit_of
-from equipoise.schema.models import dumps
+from equipoise.schema.documents import dumps
 from equipoise.schema.output import json_text, to_csv
 from equipoise.studies.dimensions import dimension_of
 from equipoise.web.messages import message_of
