@@ -200,3 +200,8 @@ def extent(*parts: Array) -> float:
     """The larger side of the box that holds places (complex)."""
     every = np.concatenate([np.ravel(part) for part in parts])
     return max(float(np.ptp(every.real)), float(np.ptp(every.imag)))
+
+
+def halves(places: Array) -> tuple[Array, Array]:
+    """Real and imaginary parts of places, complex."""
+    return places.real, places.imag

@@ -316,7 +316,7 @@ def test_the_same_bytes_in_another_process() -> None:
     program = (
         "import equipoise as eq, hashlib\n"
         "from equipoise.figures import render\n"
-        "from equipoise.figures.analysis import polar\n"
+        "from equipoise.figures.forces import polar\n"
         "chart = polar(eq.analyze(eq.load('yamashita-1')))\n"
         "print(hashlib.sha256(render(chart)).hexdigest())\n"
     )

@@ -1,31 +1,23 @@
-"""Flywheel and motor of the model file, and the motor's CSV file beside it."""
+"""Flywheel and motor of the model file."""
 
 from __future__ import annotations
 
 import tomllib
-from dataclasses import replace
 from math import pi
-from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from equipoise.errors import ModelError
-from equipoise.mechanism.force_elements import Motor, MotorTable
-from equipoise.mechanism.model import Load, LoadTable, Machine
-from equipoise.schema import dumps, json_schema, load, loads, save
-from equipoise.schema.saving import files_of, parts_of
-from equipoise.schema.tables import format_motor, read_motor
-from unit.schema.samples import FOUR_BAR
+from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.model import Machine
+from equipoise.schema import dumps, json_schema, loads
+from unit.schema.samples import FOUR_BAR, MOTOR
 
 VALIDATOR = Draft202012Validator(json_schema())
-LINE = '\n[drive.motor]\nno_load_speed = "3000 rpm"\nstall_torque = "2 N m"\n'
 CURVE = '\n[drive.motor]\ntable = "motor.csv"\n'
 RPM = 2 * pi / 60
-TABLE = MotorTable((0.0, 100.0, 1000 / 3), (2.0, 1.5, -1 / 3), "motor.csv")
-CSV = "speed [rpm],torque [N m]\n0,2\n1500,1.9\n3000,-0.5\n"
 
 
 def motor_of(machine: Machine) -> Motor:
@@ -38,9 +30,9 @@ def motor_of(machine: Machine) -> Motor:
 
 
 def test_values_arrive_in_si_units() -> None:
-    assert motor_of(loads(FOUR_BAR + LINE)) == Motor(3000 * RPM, 2.0)
+    assert motor_of(loads(FOUR_BAR + MOTOR)) == Motor(3000 * RPM, 2.0)
     more = 'ratio = 25\ninertia = "80 g cm^2"\nmean_speed = "free"\n'
-    motor = motor_of(loads(FOUR_BAR + LINE + more))
+    motor = motor_of(loads(FOUR_BAR + MOTOR + more))
     assert motor == Motor(3000 * RPM, 2.0, ratio=25.0, inertia=8e-6, mean_speed="free")
     text = FOUR_BAR.replace("[frame]", 'flywheel = "2 kg cm^2"\n[frame]')
     assert loads(text).drive.flywheel == 2e-4
@@ -48,176 +40,17 @@ def test_values_arrive_in_si_units() -> None:
     assert loads(FOUR_BAR).drive.motor is None
 
 
-@pytest.mark.parametrize("text", [LINE, CURVE, f"{LINE}ratio = 2.5\n"])
+@pytest.mark.parametrize("text", [MOTOR, CURVE, f"{MOTOR}ratio = 2.5\n"])
 def test_schema_accepts(text: str) -> None:
     VALIDATOR.validate(tomllib.loads(FOUR_BAR + text))
-
-
-SPEED = 'no_load_speed = "3000 rpm"'
-REFUSED = {
-    # what is replaced, by what, the place, what is said
-    "speed in hertz": (SPEED, 'no_load_speed = "50 Hz"', ".no_load_speed", "Hz does not tell"),
-    "torque in N": ('"2 N m"', '"2 N"', ".stall_torque", "N is the unit of a force; a torque is"),
-    "half a line": (SPEED, "", "", "give either no_load_speed and stall_torque, or table"),
-    "line and table": (SPEED, f'{SPEED}\ntable = "motor.csv"', ".table", ""),
-    "nothing": (LINE[LINE.index(SPEED):], "\n", "", "give either no_load_speed and stall_torque"),
-    "ratio as text": (SPEED, f'{SPEED}\nratio = "12"', ".ratio", "got '12'; give a plain number"),
-    "ratio of 0": (SPEED, f"{SPEED}\nratio = 0", ".ratio", "got 0; give more than 0"),
-    "negative ratio": (SPEED, f"{SPEED}\nratio = -2", ".ratio", "got -2; give more than 0"),
-    "inertia in kg": (SPEED, f'{SPEED}\ninertia = "1 kg"', ".inertia", "a moment of inertia is"),
-    "mean speed": (SPEED, f'{SPEED}\nmean_speed = "kept"', ".mean_speed",
-                   "got 'kept'; give 'held' or 'free'"),
-    "unknown key": (SPEED, 'no_lod_speed = "1 rpm"', ".no_lod_speed", "did you mean 'no_load_sp"),
-    "table as a list": (SPEED, f"{SPEED}\ntable = [1]", ".table", "got a list of 1; give text in"),
-}  # fmt: skip
-"""What both the reader and the schema refuse."""
-BEYOND_THE_SCHEMA = {
-    "negative speed": ('"3000 rpm"', '"-1 rad/s"', ".no_load_speed", "got -1 rad/s; give"),
-    "no torque": ('"2 N m"', '"0 N m"', ".stall_torque", "got 0 N m; give more than 0"),
-    "negative inertia": (SPEED, f'{SPEED}\ninertia = "-1 kg m^2"', ".inertia",
-                         "got -1 kg m^2; no body has a negative moment of inertia"),
-}  # fmt: skip
-
-
-def complaint(text: str) -> str:
-    with pytest.raises(ModelError) as caught:
-        loads(text, "model.toml")
-    said = str(caught.value)
-    assert "\n" not in said
-    assert len(said) < 400
-    return said.removeprefix("model.toml: drive")
-
-
-@pytest.mark.parametrize(("old", "new", "key", "said"), REFUSED.values(), ids=REFUSED)
-def test_reader_and_schema_refuse(old: str, new: str, key: str, said: str) -> None:
-    text = FOUR_BAR + LINE.replace(old, new)
-    assert complaint(text).startswith(f".motor{key}: ")
-    assert said in complaint(text)
-    assert not VALIDATOR.is_valid(tomllib.loads(text))
-
-
-@pytest.mark.parametrize(
-    ("old", "new", "key", "said"), BEYOND_THE_SCHEMA.values(), ids=BEYOND_THE_SCHEMA
-)
-def test_the_reader_refuses(old: str, new: str, key: str, said: str) -> None:
-    text = FOUR_BAR + LINE.replace(old, new)
-    assert complaint(text).startswith(f".motor{key}: ")
-    assert said in complaint(text)
-    VALIDATOR.validate(tomllib.loads(text))
-
-
-def test_flywheels() -> None:
-    text = FOUR_BAR.replace("[frame]", 'flywheel = "-2 kg m^2"\n[frame]')
-    assert complaint(text) == ".flywheel: got -2 kg m^2; no body has a negative moment of inertia"
-    text = FOUR_BAR.replace("[frame]", 'flywheel = "2 kg"\n[frame]')
-    assert "kg is the unit of a mass; a moment of inertia is wanted" in complaint(text)
-
-
-def test_a_motor_as_text() -> None:
-    text = FOUR_BAR.replace("[frame]", 'motor = "2 N m"\n[frame]')
-    assert complaint(text) == ".motor: got '2 N m'; give a table"
-
-
-# -- tables ----------------------------------------------------------------------------------------
-
-
-def test_a_table_is_read_beside_the_model(tmp_path: Path) -> None:
-    path = tmp_path / "model.toml"
-    path.write_text(FOUR_BAR + CURVE)
-    (tmp_path / "motor.csv").write_text(CSV)
-    motor = motor_of(load(path))
-    expected = MotorTable((0.0, 1500 * RPM, 3000 * RPM), (2.0, 1.9, -0.5))
-    assert motor == Motor(table=expected)
-    assert motor.table is not None
-    assert motor.table.file == "motor.csv"
-
-
-def test_a_table_needs_a_folder() -> None:
-    said = "got 'motor.csv'; a table can only be read beside a file"
-    assert complaint(FOUR_BAR + CURVE) == f".motor.table: {said}"
-
-
-HEADER = "speed [rpm],torque [N m]"
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (None, "motor.csv: there is no such file"),
-        ("", f"motor.csv, line 1: got no column; the header is {HEADER}"),
-        ("speed [rpm]\n0\n", f"line 1: got speed; the header is {HEADER}"),
-        ("depth [mm],torque [N m]\n0,1\n", "line 1: got the column 'depth [mm]'; the header is"),
-        ("speed,torque [N m]\n0,1\n", "line 1, column speed: the unit is missing; speed [rad/s]"),
-        ("speed [m/s],torque [N m]\n0,1\n", "column speed: got '0 m/s'; m/s is the unit of a sp"),
-        ("speed [rpm],torque [N]\n0,1\n", "column torque: got '0 N'; N is the unit of a force"),
-        (f"{HEADER}\n", "there are no rows"),
-        (f"{HEADER}\n0,1\n", "the table has fewer than two rows; a curve needs two"),
-        (f"{HEADER}\n0,1\n0,2\n", "line 3, column speed: the speeds must rise from row to row"),
-        (f"{HEADER}\n0,1,2\n", "line 2: got 3 values; the header has 2 columns"),
-        (f"{HEADER}\n0,x\n", "line 2, column torque: got 'x'; give a finite number"),
-    ],
-)
-def test_bad_tables(text: str | None, said: str, tmp_path: Path) -> None:
-    path = tmp_path / "model.toml"
-    path.write_text(FOUR_BAR + CURVE)
-    if text is not None:
-        (tmp_path / "motor.csv").write_text(text)
-    with pytest.raises(ModelError) as caught:
-        load(path)
-    assert str(caught.value).startswith(f"{path}: drive.motor.table: ")
-    assert said in str(caught.value)
-
-
-def test_tables_are_saved_beside_the_model(tmp_path: Path) -> None:
-    crank = Load("crank", table=LoadTable((0.0, pi), ((1.0, 2.0),)))
-    machine = replace(loads(FOUR_BAR), loads=(crank,)).with_drive(motor=Motor(table=TABLE))
-    assert [part.where for part in parts_of(machine)] == ["drive.motor.table", "loads[1].table"]
-    save(machine, tmp_path / "a.toml")
-    written = sorted(tmp_path.iterdir())
-    assert [file.name for file in written] == ["a.load-1.csv", "a.motor.csv", "a.toml"]
-    assert sorted(files_of(machine, tmp_path / "a.toml")) == written
-    again = load(tmp_path / "a.toml")
-    assert again == machine
-    assert motor_of(again).table == replace(TABLE, file="a.motor.csv")
-
-
-def test_a_table_without_a_file_is_not_dumped() -> None:
-    bare = loads(FOUR_BAR).with_drive(motor=Motor(table=replace(TABLE, file="")))
-    with pytest.raises(ModelError, match=r"^drive.motor.table: the table has no file; save"):
-        dumps(bare)
-    named = bare.with_drive(motor=Motor(table=TABLE))
-    assert '[drive.motor]\ntable = "motor.csv"\n' in dumps(named)
-
-
-def test_a_table_is_written_in_handy_units() -> None:
-    table = MotorTable((0.0, 1500 * RPM, 3000 * RPM), (2.0, 1.9, -0.5))
-    assert format_motor(table) == CSV.replace("0,2\n", "0,2.0\n", 1)
-
-
-speeds = st.lists(
-    st.floats(1e-20, 1e6) | st.floats(-1e6, -1e-20) | st.integers(0, 9000).map(lambda n: n * RPM),
-    min_size=2,
-    max_size=5,
-    unique=True,
-)
-
-
-@given(speeds.map(sorted), st.lists(st.just(0.0) | st.floats(1e-20, 1e20), min_size=5, max_size=5))
-def test_random_tables_survive(
-    tmp_path_factory: pytest.TempPathFactory, speed: list[float], torque: list[float]
-) -> None:
-    table = MotorTable(tuple(speed), tuple(torque[: len(speed)]))
-    folder = tmp_path_factory.getbasetemp()
-    (folder / "random-motor.csv").write_text(format_motor(table))
-    assert read_motor("random-motor.csv", folder) == table
 
 
 # -- writing ---------------------------------------------------------------------------------------
 
 
 def test_a_motor_is_written_as_people_write_it() -> None:
-    written = dumps(loads(FOUR_BAR + LINE))
-    assert f'speed = "193 rpm"\n{LINE}\n[frame]\n' in written
+    written = dumps(loads(FOUR_BAR + MOTOR))
+    assert f'speed = "193 rpm"\n{MOTOR}\n[frame]\n' in written
 
 
 size = st.floats(1e-20, 1e20)
