@@ -4,15 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from numbers import Number
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
 if TYPE_CHECKING:
     import pandas
     import xarray
-
-    from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
 Along = tuple[tuple[str, ...], Array]
@@ -30,7 +28,17 @@ ABSCISSAE = {
 beside what it stands in."""
 
 
-def dataset_of(result: Result) -> xarray.Dataset:
+class Tabular(Protocol):
+    """What a result has to have for tables of it; see `equipoise.results.result.Result`."""
+
+    records: Any
+
+    def to_dict(self) -> dict[str, Any]: ...
+
+    def columns(self) -> Sequence[tuple[str, str, Any]]: ...
+
+
+def dataset_of(result: Tabular) -> xarray.Dataset:
     """Arrays by dotted path along their abscissae; everything else as attributes."""
     import xarray
 
@@ -47,7 +55,7 @@ def dataset_of(result: Result) -> xarray.Dataset:
     return xarray.Dataset(found, ticks, attrs=attributes)
 
 
-def frame_of(result: Result) -> pandas.DataFrame:
+def frame_of(result: Tabular) -> pandas.DataFrame:
     """The columns of its CSV file where it has one, over the first of them.
 
     Else a row for each of its records, or for each place along what all is told along, with columns
@@ -89,7 +97,7 @@ def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:
 # -- paths -----------------------------------------------------------------------------------------
 
 
-def _split(result: Result) -> tuple[dict[str, Along], dict[str, Any]]:
+def _split(result: Tabular) -> tuple[dict[str, Along], dict[str, Any]]:
     """Arrays with their axes, and what is no array, by dotted path."""
     arrays: dict[str, Array] = {}
     attributes: dict[str, Any] = {}
