@@ -58,6 +58,8 @@ class Conditions(Result):
     without_effect : parameters that stand in no row.
     """
 
+    shown_in = "balancing.condition_blocks"
+
     kind: Kind
     outputs: tuple[str, ...]
     parameters: tuple[tuple[str, str], ...]

@@ -14,10 +14,10 @@ from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
 from equipoise.figures.style import KINDS, short
 from equipoise.figures.sweep import Named, curves_of, log_ends, ordered
-from equipoise.handheld.blocks import figure_named
 from equipoise.handheld.design_plan import KEYS, MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.hand_blocks import figure_named
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say

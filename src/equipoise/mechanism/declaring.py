@@ -162,7 +162,7 @@ class Declared:
 
     def component(self, whole: Array) -> Array:
         """That component of a vector which this is; all of it where it is its size."""
-        return {"x": np.real, "y": np.imag}.get(self.part, np.asarray)(whole)  # type: ignore[operator]
+        return {"x": np.real, "y": np.imag}.get(self.part, np.asarray)(whole)
 
     def vector(self, found: Any, item: str = "") -> Array:
         """The same, complex of a vector, whichever of its parts this is.

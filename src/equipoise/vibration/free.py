@@ -121,6 +121,8 @@ class FreeVibration(Result):
     preloads : force (N) or torque (N m) of each mount at rest.
     """
 
+    shown_in = "vibration.sweep_blocks"
+
     linear: Linear
     modes: tuple[Mode, ...]
     preloads: Mapping[str, float]
