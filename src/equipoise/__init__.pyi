@@ -26,11 +26,11 @@ from .mechanism.support import Support as Support
 from .planting.summary import plant as plant
 from .present.composition import report as report
 from .results.analysis import analyze as analyze
-from .schema.models import dumps as dumps
-from .schema.models import examples as examples
-from .schema.models import load as load
-from .schema.models import loads as loads
-from .schema.models import save as save
+from .schema.documents import dumps as dumps
+from .schema.documents import load as load
+from .schema.documents import loads as loads
+from .schema.documents import save as save
+from .schema.opening import examples as examples
 from .vibration.forced import respond as respond
 from .vibration.free import modes as modes
 from .vibration.transient import simulate as simulate

@@ -15,9 +15,37 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Self
+
+
+@dataclass(frozen=True)
+class Given:
+    """A number that a sentence complains of, for who knows how it was typed.
+
+    value : SI units.  text : what the sentence says for it, such as ``-0.005 kg``.
+    """
+
+    value: float
+    text: str
+
+    def retold(self, sentence: str, typed: str) -> str:
+        """The sentence with what was typed in the number's place."""
+        return sentence.replace(self.text, typed, 1)
+
 
 class EquipoiseError(Exception):
-    """Base of all errors; `str(error)` is one sentence a user can act on."""
+    """Base of all errors; `str(error)` is one sentence a user can act on.
+
+    given : the number that the sentence complains of, where it is one.
+    """
+
+    given: Given | None = None
+
+    def about(self, value: float, text: str) -> Self:
+        """The same error, with the number (SI units) that its sentence tells as a text."""
+        self.given = Given(value, text)
+        return self
 
 
 class ModelError(EquipoiseError):
@@ -44,7 +72,9 @@ class ModelError(EquipoiseError):
 
     def in_file(self, source: str) -> ModelError:
         """Return the same error with the name of the file in front."""
-        return type(self)(self.where, self.what, source)
+        named = type(self)(self.where, self.what, source)
+        named.given = self.given
+        return named
 
 
 class MobilityError(EquipoiseError):

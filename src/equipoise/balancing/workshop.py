@@ -9,7 +9,7 @@ from typing import Any
 from equipoise.balancing.design_variables import Change
 from equipoise.i18n import say
 from equipoise.quantities import number
-from equipoise.results.tables import place
+from equipoise.results.machine_blocks import place
 
 
 def sentences(change: Change) -> Iterator[str]:

@@ -21,7 +21,7 @@ Arm = Annotated[float | None, size("length", "give more than 0")]
 
 def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
     """A stiffness, N/m or N m/rad, whether it is torsional, and how it was given."""
-    from equipoise.quantities.units import KINDS, plain_unit
+    from equipoise.quantities import KINDS, plain_unit
 
     unit = plain_unit(text.partition(" ")[2].strip())
     torsional = unit in KINDS["torsional stiffness"].units

@@ -24,9 +24,9 @@ STARTS = {
 
 def examples() -> None:
     """List the bundled models and studies; their names can stand for FILE and STUDY everywhere."""
-    from equipoise.schema import models
+    from equipoise.schema import opening
 
-    found = models.examples()
+    found = opening.examples()
     width = max(map(len, found))
     for name, title in found.items():
         print(f"{name:<{width}}  {title}")
@@ -43,8 +43,8 @@ def check(file: File, /) -> None:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.present import checks, show_blocks
+    from equipoise.schema.documents import load
     from equipoise.schema.files import printable
-    from equipoise.schema.models import load
 
     found = load(file)
     if isinstance(found, Tool):
@@ -72,7 +72,7 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
     """
     import json
 
-    from equipoise.schema.models import json_schema
+    from equipoise.schema.schemas import json_schema
 
     print(json.dumps(json_schema(_kind(tool, study)), indent=2))
 

@@ -187,14 +187,14 @@ def check_new(model: Machine | Tool, path: str) -> list[Path]:
 
 def files_of(model: Machine | Tool, path: str) -> list[Path]:
     """The files in which a model is saved: its own, and tables beside it."""
-    from equipoise.schema import models
+    from equipoise.schema import saving
 
-    return models.files_of(model, path)
+    return saving.files_of(model, path)
 
 
 def sources_of(model: Machine | Tool, file: str) -> list[str]:
     """The files from which a model was read."""
-    from equipoise.schema.models import parts_of
+    from equipoise.schema.saving import parts_of
 
     folder = os.path.dirname(file)
     return [file, *(os.path.join(folder, part.file) for part in parts_of(model) if part.file)]

@@ -172,13 +172,13 @@ def write_model(
 
     title : added to its own; origin : sentences in front of its description.
     """
-    from equipoise.schema import models
+    from equipoise.schema.documents import save
     from equipoise.schema.files import printable
 
     start = f"{origin} Started from: " if origin else ""
     description = f"{start}{model.description}".removesuffix(" Started from: ").strip()
     titled = f"{model.title.removesuffix(title)}{title}"
     made: Any = replace(model, title=titled, description=description)
-    models.save(made, path)
+    save(made, path)
     written = " and ".join(map(printable, files_of(made, path)))
     print(f"wrote {written}{what_next}", file=sys.stderr)

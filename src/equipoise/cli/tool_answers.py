@@ -113,7 +113,7 @@ class Asked:
 
     def pictures(self, found: ToolModes | ToolSweep | ToolExposure) -> Mapping[str, Picture]:
         """Pictures of an answer; free vibration stands in those of others, too."""
-        from equipoise.figures import handheld as pictures
+        from equipoise.figures import tool_designs, tool_shaft, tool_speeds
         from equipoise.handheld.modes import ToolModes
         from equipoise.handheld.studies import determinant_chart
         from equipoise.handheld.sweep import ToolSweep
@@ -121,15 +121,15 @@ class Asked:
         drawn: dict[str, Picture] = {}
         if isinstance(found, ToolModes):
             chart = determinant_chart(self.tool, 1.1 * float(found.planes[0].parameter[-1]))
-            drawn |= pictures.mode_charts(found)
-            drawn |= pictures.determinant_charts(chart, found)
+            drawn |= tool_shaft.mode_charts(found)
+            drawn |= tool_designs.determinant_charts(chart, found)
         elif isinstance(found, ToolSweep):
             if found.transmissions is not None:
-                drawn |= pictures.transmission_charts(found.transmissions, self.modes)
+                drawn |= tool_speeds.transmission_charts(found.transmissions, self.modes)
             if found.response is not None:
-                drawn |= pictures.response_charts(found.response)
+                drawn |= tool_shaft.response_charts(found.response)
         else:
-            drawn |= pictures.exposure_charts(found)
+            drawn |= tool_speeds.exposure_charts(found)
         return drawn
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.problem import Problem
-from equipoise.figures.analysis import Read, last_order, order_panel, rounding, settled
+from equipoise.figures.analysis import rounding, settled
 from equipoise.figures.crank import (
     closed,
     compared,
@@ -22,6 +22,7 @@ from equipoise.figures.crank import (
     told_angles,
     told_speed,
 )
+from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective

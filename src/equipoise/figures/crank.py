@@ -156,7 +156,7 @@ def compared(
     every = np.concatenate([values for _, values in drawn.values()])
     axis = Axis.of(label, dimension, every, room=ROOM, low=low)
     marks: list[Mark] = []
-    for role, (theta, values) in reversed(drawn.items()):
+    for role, (theta, values) in reversed(tuple(drawn.items())):
         marks += extremes(axis, values, sampled_extremes(theta, values), role, angles)
     curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in drawn.items())
     if not np.any(every):
@@ -200,3 +200,8 @@ def extent(*parts: Array) -> float:
     """The larger side of the box that holds places (complex)."""
     every = np.concatenate([np.ravel(part) for part in parts])
     return max(float(np.ptp(every.real)), float(np.ptp(every.imag)))
+
+
+def halves(places: Array) -> tuple[Array, Array]:
+    """Real and imaginary parts of places, complex."""
+    return places.real, places.imag

@@ -11,14 +11,15 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.figures.machine import draw_shapes, sample_of
+from equipoise.figures.legend import APART, KEY, Key, draw_legend, keys_of, kind_of, rows_of
 from equipoise.figures.metrics import lines_of, set_in, width_of
-from equipoise.figures.panel import LEAD, MIDDLE, View, draw, flag_height, frame
+from equipoise.figures.panel import draw, frame
 from equipoise.figures.scales import Scale, ends_of, ticks_of
-from equipoise.figures.sheet import Sheet, Signs, Stroke, Words
-from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL, Look, look_of
+from equipoise.figures.sheet import Sheet, Words
+from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
+from equipoise.figures.view import View
+from equipoise.figures.words import LEAD, flag_height
 from equipoise.results.charts import Chart, Panel
-from equipoise.symbols.looks import LOOKS
 
 Array = np.ndarray[Any, Any]
 
@@ -26,8 +27,8 @@ WIDE = 518.4
 """Points: width of every picture."""
 EDGE, GAP, BELOW = 10.0, 14.0, 12.0
 """Points: free at the edges, between columns, and between rows of panels."""
-LINE, KEY, SAMPLE, APART = 12.0, 13.5, 20.0, 14.0
-"""Points: height of a line of words and of a legend; width of a sample; between two of them."""
+LINE = 12.0
+"""Points: height of a line of words."""
 HIGH = {1: 190.0, 2: 132.0, 3: 106.0, 4: 92.0}
 """Height of one of so many panels above each other; the last of more."""
 LEAST, MOST, ROOM, SMALL_ROOM = 110.0, 345.0, 26.0, 0.13
@@ -39,29 +40,14 @@ MOST_LINES = 2
 """Lines of a heading."""
 
 
-@dataclass(frozen=True)
-class Key:
-    """An entry of a legend: how something looks, and its name."""
-
-    role: str
-    name: str
-    kind: str
-    dashed: bool = False
-
-    @property
-    def width(self) -> float:
-        """Points."""
-        return SAMPLE + 5 + width_of(self.name, NORMAL)
-
-
 def lay_out(chart: Chart) -> Sheet:
     """A chart on a sheet."""
     sheet = Sheet(WIDE, 0.0, chart.title)
     top = _heading(sheet, chart)
-    keys = [Key(role, name, _kind(role)) for role, name in chart.keys]
+    keys = [Key(role, name, kind_of(role)) for role, name in chart.keys]
     keys += [key for panel in chart.panels for key in keys_of(panel, chart_level=True)]
     keys = [*dict.fromkeys(keys)]
-    top = _legend(sheet, keys, EDGE, WIDE - EDGE, top) + (5 if keys else 2)
+    top = draw_legend(sheet, keys, EDGE, WIDE - EDGE, top) + (5 if keys else 2)
     top = _panels(sheet, chart, top)
     if chart.foot:
         text, size = set_in(chart.foot, WIDE - 2 * EDGE, NORMAL)
@@ -82,93 +68,6 @@ def _heading(sheet: Sheet, chart: Chart) -> float:
             sheet.add(Words(EDGE, top + 9.5, line, NORMAL, INK), 7)
             top += LINE
     return top + 5
-
-
-# -- legends ---------------------------------------------------------------------------------------
-
-
-def _kind(role: str) -> str:
-    if role in LOOKS:
-        return "machine"
-    look = look_of(role)
-    if look.fill and not look.sign:
-        return "patch"
-    return "line"
-
-
-def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
-    """What has a name in a panel: what the chart's legend tells, or that of the panel itself."""
-    found = [Key(c.role, c.label, "line", c.dashed) for c in panel.curves if c.label]
-    if panel.keyed:
-        found = [] if chart_level else found
-    elif not chart_level:
-        return []
-    if chart_level:
-        found += [Key(b.role, b.label, "patch") for b in panel.bars if b.label]
-        found += [Key(a.role, a.label, "patch") for a in panel.areas if a.label]
-        found += [Key(o.role, o.label, "patch") for o in panel.outlines if o.label]
-        found += [Key(line.role, line.label, "line") for line in panel.lines if line.label]
-        found += [Key(m.role, m.label, "sign") for m in panel.marks if m.label]
-        found += [Key(b.role, b.label, "patch") for b in panel.bands if b.label]
-        if panel.surface is not None and panel.surface.lacking:
-            found.append(Key("whole", panel.surface.lacking, "patch"))
-    return [*dict.fromkeys(found)]
-
-
-def rows_of(keys: list[Key], room: float) -> list[list[Key]]:
-    """Entries of a legend in rows."""
-    rows: list[list[Key]] = []
-    left = 0.0
-    for key in keys:
-        wide = key.width + APART
-        if not rows or left < wide - APART:
-            rows.append([])
-            left = room
-        rows[-1].append(key)
-        left -= wide
-    return rows
-
-
-def _legend(sheet: Sheet, keys: list[Key], left: float, right: float, top: float) -> float:
-    """Draw entries below each other in rows; where they end."""
-    for row in rows_of(keys, right - left):
-        x = left
-        for key in row:
-            _sample(sheet, key, x, top + KEY / 2)
-            text, size = set_in(key.name, right - x - SAMPLE - 5, NORMAL)
-            y = top + KEY / 2 + MIDDLE * NORMAL
-            sheet.add(Words(x + SAMPLE + 5, y, text, size, INK), 7)
-            x += key.width + APART
-        top += KEY
-    return top
-
-
-def _sample(sheet: Sheet, key: Key, x: float, y: float) -> None:
-    if key.role in LOOKS:
-        draw_shapes(sheet, sample_of(key.role), lambda z: np.array([x + SAMPLE / 2, y]), 1.0, 6.0)
-        return
-    look = look_of(key.role, key.dashed)
-    if key.kind == "patch":
-        fill = look.fill or look.color
-        corners = np.array([(x + 3, y - 4), (x + 17, y - 4), (x + 17, y + 4), (x + 3, y + 4)])
-        sheet.add(Stroke((corners,), fill=fill, opacity=look.opacity, closed=True), 6)
-        return
-    if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
-        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
-        ends = np.array([(x, y), (x + SAMPLE, y)])
-        sheet.add(Stroke((ends,), look.color, look.width, dashes), 6)
-    if look.sign or key.kind == "sign":
-        sheet.add(_key_sign(look, x + SAMPLE / 2, y), 6.1)
-
-
-def _key_sign(look: Look, x: float, y: float) -> Signs:
-    face = look.fill or ("#ffffff" if look.hollow else look.color)
-    sign, size = (look.sign, look.size) if look.sign else ("o", 4.0)
-    size = 3.0 if sign == "." else size
-    return Signs(np.array([(x, y)]), sign, size, look.color, face, max(look.width, 1.0))
-
-
-# -- panels ----------------------------------------------------------------------------------------
 
 
 @dataclass(eq=False)
@@ -358,11 +257,11 @@ def _draw(sheet: Sheet, cell: Cell, left: float, top: float, inner: float) -> No
     above = top - flag_height(panel, end - start)
     if cell.keys and cell.beside:
         wide = sum(key.width + APART for key in cell.keys) - APART
-        _legend(sheet, [*cell.keys], end - wide, end + 1, above - KEY - 0.5)
+        draw_legend(sheet, [*cell.keys], end - wide, end + 1, above - KEY - 0.5)
         above -= LINE + 1
     elif cell.keys:
         rows = rows_of([*cell.keys], end - start)
-        _legend(sheet, [*cell.keys], start, end, above - KEY * len(rows) - 2)
+        draw_legend(sheet, [*cell.keys], start, end, above - KEY * len(rows) - 2)
         above -= KEY * len(rows) + 2
         _titles(sheet, panel, start, end, above)
         above = 0.0

@@ -12,25 +12,24 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
-    from equipoise.figures import Picture
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
     from equipoise.results.charts import Chart
     from equipoise.vibration.free import FreeVibration
 
-    Pictures = dict[str, Picture]
+    Pictures = dict[str, Chart]
 
 CHARTS = {
     "Response": "vibration:response_charts",
     "Transient": "vibration:transient_charts",
     "Sweep": "sweep:sweep_charts",
-    "ToolModes": "handheld:mode_charts",
-    "Transmissions": "handheld:transmission_charts",
-    "ToolResponse": "handheld:response_charts",
-    "ToolExposure": "handheld:exposure_charts",
-    "ToolDesign": "handheld:design_charts",
-    "Variation": "handheld:variation_charts",
+    "ToolModes": "tool_shaft:mode_charts",
+    "Transmissions": "tool_speeds:transmission_charts",
+    "ToolResponse": "tool_shaft:response_charts",
+    "ToolExposure": "tool_speeds:exposure_charts",
+    "ToolDesign": "tool_designs:design_charts",
+    "Variation": "tool_designs:variation_charts",
     "Landscape": "studies:landscape_charts",
 }
 """Kind of result that needs nothing else for its charts -> module here, and the function."""
@@ -49,7 +48,7 @@ def pictures_of(result: Any) -> Pictures:
     if kind not in CHARTS:
         raise UsageError(f"there are no pictures of {kind}; draw one of {', '.join(KINDS)}")
     module, _, name = CHARTS[kind].partition(":")
-    charts: dict[str, Chart] = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
+    charts: Pictures = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
     return {**charts}
 
 
@@ -65,21 +64,20 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
     at : crank angles (rad) at which the linkage is drawn; where they are not given, a clear one.
     """
-    from equipoise.figures import analysis as view
-    from equipoise.figures import joints
+    from equipoise.figures import forces, joints, points
     from equipoise.figures.linkage import linkage
 
     found: Pictures = {"linkage": linkage(analysis, at)}
     if len(analysis.crank_angle) < 2:
         return found
-    if view.moving(analysis.motion):
-        found |= {"curves": view.curves(analysis), "hodograph": view.hodograph(analysis)}
+    if points.moving(analysis.motion):
+        found |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
     if analysis.solved is None:
         return found
-    for chart in (view.polar, view.force, view.moment, view.torque):
+    for chart in (forces.polar, forces.force, forces.moment, forces.torque):
         found[chart.__name__] = chart(analysis)
-    if view.has_orders(analysis):
-        found["spectrum"] = view.spectrum(analysis)
+    if forces.has_orders(analysis):
+        found["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints.joints(analysis), *joints.joint_polars(analysis))
     return found | {chart.name: chart for chart in of_joints}
 

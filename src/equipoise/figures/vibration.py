@@ -23,18 +23,7 @@ from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import AXES
 from equipoise.quantities import display
-from equipoise.results.charts import (
-    RPM,
-    Axis,
-    Band,
-    Bars,
-    Chart,
-    Curve,
-    Line,
-    Mark,
-    Panel,
-    shown,
-)
+from equipoise.results.charts import RPM, Axis, Band, Bars, Chart, Curve, Line, Mark, Panel, shown
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear
 

@@ -29,7 +29,8 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if not isfinite(leaf):
             yield ModelError(place, f"got {leaf}; give a finite number")
         elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
-            yield ModelError(place, f"got {leaf:g} in SI units, which no machine can have")
+            text = f"{leaf:g} in SI units"
+            yield ModelError(place, f"got {text}, which no machine can have").about(leaf, text)
     for place, leaf, one in leaves:
         if one is None:
             continue
@@ -37,7 +38,8 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
         if names and leaf not in names:
             yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
         elif not isinstance(leaf, str) and not one.allows(leaf):
-            yield ModelError(place, f"got {leaf:g}{one.unit}; {one.right(leaf)}")
+            text = f"{leaf:g}{one.unit}"
+            yield ModelError(place, f"got {text}; {one.right(leaf)}").about(leaf, text)
 
 
 def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:

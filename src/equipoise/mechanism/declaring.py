@@ -141,6 +141,13 @@ class Declared:
             found = Note(both, what=found, axis=self.part)
         return Note(to_say("all rows: {what}"), what=found) if self.needs == "rows" else found
 
+    def title(self, item: str = "") -> str:
+        """The same as the heading of a table, in the language that is spoken."""
+        said = replace(self, part="").say(item)
+        if self.part in ("x", "y"):
+            said = say("{what} along {axis}", what=said, axis=self.part)
+        return said[:1].upper() + said[1:]
+
     def say(self, item: str = "", of_one: bool = False) -> str:
         """What it is called, in the language that is spoken; where that lacks it, in English.
 

@@ -26,8 +26,7 @@ from equipoise.mechanism.checks import positive, unknown
 from equipoise.mechanism.declaring import Declared, Measure, matches
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.mechanism.parts import Mechanism
-from equipoise.quantities import Dimension, pattern
-from equipoise.quantities.units import NUMBER
+from equipoise.quantities import NUMBER, Dimension, pattern
 
 MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area")
 """Root of the mean square, the same about the mean, largest size, largest minus smallest value, and

@@ -257,10 +257,11 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if link.mass is None or link.inertia is None:
         return
     if link.mass == 0 and link.inertia > 0:
+        text = f"{link.inertia:g} kg m^2"
         yield ModelError(
             f"{where}.inertia",
-            f"got {link.inertia:g} kg m^2 for a mass of 0; no body can have that, give 0",
-        )
+            f"got {text} for a mass of 0; no body can have that, give 0",
+        ).about(link.inertia, text)
 
 
 def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelError]:

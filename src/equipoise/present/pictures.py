@@ -56,9 +56,9 @@ def _made(chart: Chart) -> Chart:
 
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
-    from equipoise.figures.analysis import curves, hodograph
     from equipoise.figures.linkage import linkage
     from equipoise.figures.outputs import main_kinematics
+    from equipoise.figures.points import curves, hodograph
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
@@ -94,20 +94,20 @@ def _planting(figures: PlantingFigures) -> Iterator[Entry]:
 
 
 def _forces(found: Findings) -> Iterator[Entry]:
-    from equipoise.figures import analysis as view
+    from equipoise.figures import forces
 
     analysis = found.analysis
     caption = to_say("Shaking force as a polar diagram: the end of its arrow over the cycle.")
-    yield "polar", caption, partial(view.polar, analysis)
+    yield "polar", caption, partial(forces.polar, analysis)
     caption = to_say("Shaking force over crank angle.")
-    yield "force", caption, partial(view.force, analysis)
+    yield "force", caption, partial(forces.force, analysis)
     caption = to_say("Shaking moment over crank angle.")
-    yield "moment", caption, partial(view.moment, analysis)
+    yield "moment", caption, partial(forces.moment, analysis)
     caption = to_say("Drive torque over crank angle, and what it is for.")
-    yield "torque", caption, partial(view.torque, analysis)
-    if view.has_orders(analysis):
+    yield "torque", caption, partial(forces.torque, analysis)
+    if forces.has_orders(analysis):
         caption = to_say("Shaking force, shaking moment and drive torque by orders of the crank.")
-        yield "spectrum", caption, partial(view.spectrum, analysis)
+        yield "spectrum", caption, partial(forces.spectrum, analysis)
 
 
 def _joints(found: Findings) -> Iterator[Entry]:
@@ -202,7 +202,7 @@ def of_tool(found: ToolFindings) -> Iterator[Part]:
 
 
 def _modes_of_tool(modes: ToolModes) -> Iterator[Entry]:
-    from equipoise.figures.handheld import shapes
+    from equipoise.figures.tool_shaft import shapes
 
     caption = to_say("Shapes of the natural vibrations of the shaft.")
     for plane, name in enumerate(("modes", "modes-lateral")[: 1 if modes.alike else 2]):
@@ -210,7 +210,7 @@ def _modes_of_tool(modes: ToolModes) -> Iterator[Entry]:
 
 
 def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Entry]:
-    from equipoise.figures.handheld import transmission
+    from equipoise.figures.tool_speeds import transmission
 
     caption = to_say("Share of a shaking force that comes to what holds the tool.")
     planes = ("transmission", "transmission-lateral")[: 1 if found.tool.alike else 2]
@@ -221,14 +221,14 @@ def _transmission(found: Transmissions, modes: ToolModes | None) -> Iterator[Ent
 def _moment(found: ToolFindings) -> Iterator[Entry]:
     if found.sweep is None or found.sweep.response is None:
         return
-    from equipoise.figures.handheld import moment
+    from equipoise.figures.tool_shaft import moment
 
     caption = to_say("Bending moment and displacement along the shaft.")
     yield "moment", caption, partial(moment, found.sweep.response, None)
 
 
 def _exposure(found: ToolExposure) -> Iterator[Entry]:
-    from equipoise.figures.handheld import acceleration, weighted
+    from equipoise.figures.tool_speeds import acceleration, weighted
 
     caption = to_say("Acceleration of the hands against speed of the engine.")
     yield "acceleration", caption, partial(acceleration, found)
@@ -239,7 +239,7 @@ def _exposure(found: ToolExposure) -> Iterator[Entry]:
 def _design(found: ToolFindings) -> Iterator[Entry]:
     if found.design is None:
         return
-    from equipoise.figures.handheld import design
+    from equipoise.figures.tool_designs import design
 
     caption = to_say("What the hand that gets most gets over the band of speeds, before and after.")
     yield "design", caption, partial(design, found.design)

@@ -16,8 +16,8 @@ from equipoise.present.findings import Findings
 from equipoise.present.remedies import good_already, helps_told
 from equipoise.present.shaking import Shaking
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
+from equipoise.results.analysis_blocks import shares
 from equipoise.results.naming import CAUSES, objective_named, scaled
-from equipoise.results.tables import shares
 from equipoise.signals import Figures
 
 SMALL = 0.005

@@ -1,7 +1,7 @@
 """Quantities: what can be measured, in which units, how it is read and how it is written.
 
 `units` has the dimensions and their units, `reading` turns strict text into SI floats and back,
-`problems` says what is wrong with a text, and `numbers` is the one formatter of numbers.
+and `numbers` is the one formatter of numbers.
 """
 
 from equipoise.quantities.numbers import (
@@ -18,8 +18,15 @@ from equipoise.quantities.numbers import (
     span,
     typeset,
 )
-from equipoise.quantities.problems import described
-from equipoise.quantities.reading import format_exact, parse, rounded
+from equipoise.quantities.reading import (
+    NUMBER,
+    described,
+    format_exact,
+    parse,
+    pattern,
+    plain_unit,
+    rounded,
+)
 from equipoise.quantities.units import (
     FACTORS,
     HUGE,
@@ -28,14 +35,13 @@ from equipoise.quantities.units import (
     TINY,
     Dimension,
     Kind,
-    pattern,
-    plain_unit,
 )
 
 __all__ = [
     "FACTORS",
     "HUGE",
     "KINDS",
+    "NUMBER",
     "PER_RPM",
     "SI",
     "TINY",

@@ -7,7 +7,6 @@ and a command should start at once.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
@@ -323,29 +322,3 @@ SI: dict[Dimension, str] = {dimension: kind.si for dimension, kind in KINDS.item
 
 HUGE, TINY = 1e30, 1e-30
 """Limits of what is taken for a quantity in SI units."""
-
-NUMBER = r"[+-]?(?:[0-9]+(?:\.[0-9]*)?|\.[0-9]+)(?:[eE][+-]?[0-9]{1,3})?"
-_SEPARATOR = "(?: | ?[*\N{MIDDLE DOT}] ?)"
-POWERS = {"2": "\N{SUPERSCRIPT TWO}", "3": "\N{SUPERSCRIPT THREE}"}
-"""Exponents in units, and the sign for each that is read too."""
-
-
-def pattern(dimension: Dimension) -> str:
-    """Regular expression of exactly the texts that `parse` reads, in ECMA 262 syntax."""
-    units = sorted(map(_unit_pattern, KINDS[dimension].units), key=len, reverse=True)
-    return f"^({NUMBER}) +({'|'.join(units)})$"
-
-
-def _unit_pattern(unit: str) -> str:
-    text = unit.replace(" ", _SEPARATOR)
-    for digit, raised in POWERS.items():
-        text = text.replace(f"^{digit}", f"(?:(?:\\^|\\*\\*){digit}|{raised})")
-    return text
-
-
-def plain_unit(unit: str) -> str:
-    """Return the unit as the lists have it."""
-    unit = unit.replace("**", "^")
-    for digit, raised in POWERS.items():
-        unit = unit.replace(raised, f"^{digit}")
-    return re.sub(" ?[*\N{MIDDLE DOT}] ?", " ", unit)

@@ -40,7 +40,7 @@ class Analysis(Result):
     motion : always there.  solved : its forces, or None where masses are missing.
     """
 
-    shown_in: ClassVar[str] = "results.tables"
+    shown_in: ClassVar[str] = "results.analysis_blocks"
 
     motion: Motion
     solved: Forces | None

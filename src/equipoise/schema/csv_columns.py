@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
-from equipoise.quantities.units import FACTORS, HUGE, TINY, plain_unit
+from equipoise.quantities import FACTORS, HUGE, TINY, plain_unit
 from equipoise.schema.files import FileError, printable, read_text
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from equipoise.errors import ModelError
 from equipoise.keys import PLANES, Key, Listing, Named, OneOr, Table, Tables, Whole, all_keys
 from equipoise.keys import Kind as KeyKind
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities.problems import described
-from equipoise.quantities.units import KINDS, NUMBER, Dimension, plain_unit
+from equipoise.quantities import KINDS, NUMBER, Dimension, plain_unit
+from equipoise.quantities.reading import described
 from equipoise.schema.numbers import POLAR, XYZ, Number, Planes, Vector, read_number, vector_of
 from equipoise.schema.opening import Kind, document_of
 from equipoise.schema.places import Place, written_place

@@ -12,9 +12,8 @@ from typing import Any
 
 from equipoise.errors import UsageError
 from equipoise.keys import PLANES
-from equipoise.quantities import parse
-from equipoise.quantities.problems import too_far
-from equipoise.quantities.units import HUGE, KINDS, NUMBER, TINY, Dimension, plain_unit
+from equipoise.quantities import HUGE, KINDS, NUMBER, TINY, Dimension, parse, plain_unit
+from equipoise.quantities.reading import too_far
 from equipoise.schema.places import from_polar
 
 SHARE = rf"({NUMBER}) +%"

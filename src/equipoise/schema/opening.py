@@ -5,17 +5,16 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 from typing import Any, Literal
 
-from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.keys import SCHEMA_VERSION, Frozen
 from equipoise.mechanism.checks import unknown
-from equipoise.mechanism.model import Machine
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
 
 Kind = Literal["linkage", "tool"]
@@ -111,6 +110,21 @@ def kind_of_text(text: str) -> FileKind | None:
         return None
 
 
+def examples(kind: FileKind | None = None) -> dict[str, str]:
+    """Names of the bundled files of linkages, tools and studies, each with its title.
+
+    kind : ``linkage``, ``tool`` or ``study``, for those of one kind only.
+    """
+    contents = {
+        name: tomllib.loads(file.read_text(encoding="utf-8")) for name, file in bundled().items()
+    }
+    return {
+        name: str(content["title"])
+        for name, content in contents.items()
+        if kind in {None, kind_of(content)}
+    }
+
+
 def document_of(kind: FileKind) -> type[Frozen]:
     """The class whose keys are those of a kind of file."""
     if kind == "tool":
@@ -194,66 +208,8 @@ def _check_version(content: dict[str, Any]) -> None:
         )
     given = content["schema"]
     if type(given) is not int or given != SCHEMA_VERSION:
-        from equipoise.quantities.problems import described
+        from equipoise.quantities.reading import described
 
         raise ModelError(
             "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
         )
-
-
-class Beside:
-    """Reads tables by the names of their files, which are relative to the model file's folder.
-
-    folder : None where the model did not come from a file; then every table is refused.
-    """
-
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
-
-    def read(self, sort: str, file: str) -> Any:
-        """What lies in a file, of a sort such as ``load``."""
-        if sort == "linkage":
-            return self.linkage(file)
-        from equipoise.schema import tables
-
-        read: Callable[[str, Path], Any] = getattr(tables, f"read_{sort}")
-        return read(file, self._folder(file))
-
-    def linkage(self, file: str) -> Machine:
-        """The linkage of another model file, or a bundled one; it has masses and turns fully."""
-        from equipoise.mechanism.dynamics import massless
-        from equipoise.mechanism.linkage import assemble
-        from equipoise.schema.models import loads_linkage
-
-        found = self._opened(file)
-        try:
-            machine = loads_linkage(found.text, folder=found.folder)
-            _ = assemble(machine).cycle
-        except EquipoiseError as error:
-            where = f"{error.where}: " if isinstance(error, ModelError) and error.where else ""
-            what = error.what if isinstance(error, ModelError) else str(error)
-            raise ModelError("", f"{printable(file)}: {where}{what}") from error
-        if lacking := massless(machine):
-            raise ModelError("", f"{printable(file)}: {lacking}")
-        return machine
-
-    def _opened(self, file: str) -> Opened:
-        """The model file of a linkage, of which one beside goes before a bundled one."""
-        beside = self.folder is not None and os.path.isfile(self.folder / file)
-        if not beside and file in bundled():
-            return opened_example(file)
-        if self.folder is None:
-            raise ModelError(
-                "",
-                f"got {printable(file)!r}; without a file beside which to look, give the name of "
-                "an example",
-            )
-        try:
-            return opened(self.folder / file)
-        except ModelError as error:
-            raise ModelError("", f"{printable(file)}: {error.what}") from error
-
-    def _folder(self, file: str) -> Path:
-        if self.folder is None:
-            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
-        return self.folder

@@ -34,15 +34,15 @@ from equipoise.keys import (
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.opening import FileKind, document_of
 from equipoise.schema.places import Polar
-from equipoise.schema.writing import plain_default
+from equipoise.schema.writing import plain_default, value_text
 
 Schema = dict[str, Any]
 Definitions = dict[str, Schema]
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
-def schema_of(kind: FileKind) -> Schema:
-    """JSON Schema (draft 2020-12) of a kind of file."""
+def json_schema(kind: FileKind = "linkage") -> Schema:
+    """JSON Schema (draft 2020-12) of the file of a linkage, tool or study, for editors."""
     definitions: Definitions = {}
     of = document_of(kind)
     whole = _object(of, definitions)
@@ -265,8 +265,6 @@ def _default(one: Key) -> str:
     default = plain_default(one)
     if default in (None, [], {}):
         return ""
-    from equipoise.schema.writing import value_text
-
     return f"`{value_text(default)}`"
 
 

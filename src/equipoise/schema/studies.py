@@ -6,12 +6,13 @@ import json
 import os
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.quantities import KINDS, format_exact
-from equipoise.quantities.problems import described
+from equipoise.quantities import KINDS, format_exact, parse
+from equipoise.quantities.reading import described
 from equipoise.schema.files import printable
+from equipoise.schema.numbers import read_number
 from equipoise.schema.objects import Context
 from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
 from equipoise.schema.reading import read_table
@@ -26,6 +27,7 @@ from equipoise.schema.study_keys import (
     UniformTable,
     VaryTable,
 )
+from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text
 from equipoise.studies.design_space import (
     Choices,
@@ -40,9 +42,6 @@ from equipoise.studies.design_space import (
 )
 from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.study import Study, from_plain
-
-if TYPE_CHECKING:
-    from equipoise.schema.template import Template
 
 MODEL = "model "
 """Begins the names of the model's texts among those of a study."""
@@ -80,8 +79,6 @@ def restore(texts: Mapping[str, str]) -> Study:
     ------
     UsageError : the texts are not those of a study.
     """
-    from equipoise.schema.template import Template
-
     try:
         of_model = {
             name.removeprefix(MODEL): text for name, text in texts.items() if name.startswith(MODEL)
@@ -132,8 +129,6 @@ def _study(text: str, folder: Path) -> Study:
 
 def _template(name: str, folder: Path) -> Template:
     """The model of a study: a file beside it goes before a bundled example."""
-    from equipoise.schema.template import Template
-
     beside = os.path.isfile(folder / name)
     try:
         is_example = not beside and name in bundled()
@@ -185,9 +180,6 @@ def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -
 
 def _value(where: str, given: Any, dimension: str | None) -> float:
     """A value of a number of the model, in SI units."""
-    from equipoise.quantities import parse
-    from equipoise.schema.numbers import read_number
-
     if dimension is None:
         number = read_number(given)
         if number is None or number.dimension is not None:
@@ -231,8 +223,6 @@ def _output(where: str, given: OutputTable, template: Template) -> Output:
 
 def _limit(where: str, given: Any, dimension: str | None) -> float:
     """A limit in SI units; where its dimension is not known, a plain number or any quantity."""
-    from equipoise.schema.numbers import read_number
-
     if dimension is not None:
         return _value(where, given, dimension)
     number = read_number(given)

@@ -20,7 +20,7 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.quantities.units import NUMBER
+from equipoise.quantities import NUMBER
 from equipoise.studies.checks import COMMANDS, METHODS
 from equipoise.studies.design_space import Sampling
 

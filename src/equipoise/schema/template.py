@@ -29,10 +29,11 @@ from equipoise.schema.finding import (
     unit_in,
     with_changes,
 )
-from equipoise.schema.models import machine_of, parts_of, text_of, tool_of
+from equipoise.schema.models import Beside, machine_of, tool_of
 from equipoise.schema.numbers import Number
-from equipoise.schema.opening import Beside, Kind, Opened, kind_of, model_content, opened
+from equipoise.schema.opening import Kind, Opened, kind_of, model_content, opened
 from equipoise.schema.places import Place, written_place
+from equipoise.schema.saving import parts_of, text_of
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""

@@ -10,6 +10,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -20,7 +21,7 @@ from equipoise.results.blocks import (
     Text,
     Value,
 )
-from equipoise.results.tables import driven, loud
+from equipoise.results.machine_blocks import driven
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic

@@ -101,7 +101,8 @@ class Design:
         """
         for value, what, unit in ((weight.mass, "mass", "g"), (weight.radius, "radius", "mm")):
             if value < 0:
-                raise UsageError(f"got a {what} of {1e3 * value:.6g} {unit}; give 0 or more")
+                text = f"{1e3 * value:.6g} {unit}"
+                raise UsageError(f"got a {what} of {text}; give 0 or more").about(value, text)
         weights = {**self.counterweights, link: weight}
         return replace(self, counterweights=MappingProxyType(weights))
 

@@ -9,7 +9,7 @@ from typing import Any
 from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
-from equipoise.schema.models import dumps
+from equipoise.schema.documents import dumps
 from equipoise.schema.output import to_csv
 from equipoise.web.edits import Solved
 

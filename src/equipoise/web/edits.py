@@ -6,7 +6,6 @@ coordinates in each link that has it, so that all other points stand still.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
@@ -26,8 +25,6 @@ from equipoise.web.messages import Change, Drag, Setting
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
 OTHER_SIDE = {"left": "right", "right": "left", "forward": "backward", "backward": "forward"}
-GIVEN = re.compile(r"^(got (?:a \w+ of )?).*?(?=;| for |, )")
-"""A value in a sentence, in SI units."""
 THERE = 1e-6
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 
@@ -94,16 +91,13 @@ def _set(design: Design, change: Setting) -> Design:
     value = parse(typed, field.dimension)
     try:
         return field.put(design, value)
-    except ModelError as error:
-        if not error.what.startswith(f"got {value:g} "):  # of another number
+    except (ModelError, UsageError) as error:
+        given = error.given
+        if given is None or given.value != value:  # of another number
             raise
-        raise ModelError(error.where, _as_typed(error.what, typed)) from error
-    except UsageError as error:
-        raise UsageError(_as_typed(str(error), typed)) from error
-
-
-def _as_typed(sentence: str, typed: str) -> str:
-    return GIVEN.sub(lambda found: f"{found[1]}{typed}", sentence)
+        if isinstance(error, ModelError):
+            raise ModelError(error.where, given.retold(error.what, typed)) from error
+        raise UsageError(given.retold(str(error), typed)) from error
 
 
 def _moved(base: Solved, design: Design, change: Drag) -> Design:

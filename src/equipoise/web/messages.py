@@ -9,7 +9,7 @@ from math import isfinite
 from typing import Any, NoReturn
 
 from equipoise.errors import UsageError
-from equipoise.quantities.problems import described
+from equipoise.quantities.reading import described
 from equipoise.quantities.units import HUGE
 from equipoise.schema.files import LARGEST
 

@@ -12,8 +12,8 @@ from typing import Any
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.schema.files import LARGEST, printable
-from equipoise.schema.models import examples, load_linkage, loads_linkage
-from equipoise.schema.opening import kind_of_text, opened
+from equipoise.schema.models import load_linkage, loads_linkage
+from equipoise.schema.opening import examples, kind_of_text, opened
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design, History, Step
 from equipoise.web.downloads import downloaded

@@ -239,12 +239,22 @@ def _figures(
 
 
 def told_signals() -> dict[str, Declared]:
-    """Outputs of which figures are told: those of frame and drive, and of all rows together."""
-    return {
+    """Outputs of which figures are told: those of frame and drive, and of all rows together.
+
+    The size of a vector stands before its components.
+    """
+    found = {
         name: one
         for name, one in DECLARED.items()
         if (one.group == "forces" and one.compared) or (one.group == "rows" and one.summed)
     }
+    whole = {
+        name: name.removesuffix(f".{one.part}") if one.part in ("x", "y") else name
+        for name, one in found.items()
+    }
+    order = list(dict.fromkeys(whole.values()))
+    first = sorted(found, key=lambda name: (order.index(whole[name]), name != whole[name]))
+    return {name: found[name] for name in first}
 
 
 def _is_force(name: str) -> bool:

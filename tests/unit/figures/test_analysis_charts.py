@@ -13,8 +13,8 @@ import equipoise as eq
 from equipoise.balancing.multi_row import Rows
 from equipoise.errors import UsageError
 from equipoise.figures import analysis as view
+from equipoise.figures import forces, planting, points
 from equipoise.figures import joints as of_joints
-from equipoise.figures import planting
 from equipoise.figures.crank import angle_step
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
 from equipoise.mechanism.balance import Objective
@@ -127,9 +127,9 @@ def test_rows_together() -> None:
         read = Rows(machine).signals(Objective(output))
         expected = Periodic(read.total(phases)[0, 0], read.turns).samples(360)
         np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
-    found = places(view.polar(analysis).panels[0])
+    found = places(forces.polar(analysis).panels[0])
     assert has(found, force) and has(found, view.outputs(analysis)["shaking_force"])
-    assert "all 3 rows" in words(view.spectrum(analysis))
+    assert "all 3 rows" in words(forces.spectrum(analysis))
 
 
 def test_what_is_rounding_is_told_to_be_zero() -> None:
@@ -147,7 +147,7 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])
 def test_paths_and_hodographs_are_the_motion(name: str) -> None:
     motion = analysis_of(name).motion
-    (point,) = view.traced(motion)
+    (point,) = points.traced(motion)
     assert has(places(charts_of(name)["curves"].panels[0]), motion.points[point].place)
     velocity, acceleration = (places(one)[0] for one in charts_of(name)["hodograph"].panels)
     np.testing.assert_allclose(velocity, motion.points[point].velocity, rtol=1e-12)
@@ -156,21 +156,21 @@ def test_paths_and_hodographs_are_the_motion(name: str) -> None:
 
 def test_points_can_be_chosen() -> None:
     analysis = analysis_of("yamashita-1")
-    assert "path of B" in words(view.curves(analysis, ["B"]))
-    names = {curve.label for curve in view.hodograph(analysis, ["B", "C"]).panels[0].curves}
+    assert "path of B" in words(points.curves(analysis, ["B"]))
+    names = {curve.label for curve in points.hodograph(analysis, ["B", "C"]).panels[0].curves}
     assert names == {"B", "C"}
     with pytest.raises(KeyError):
-        view.curves(analysis, ["X"])
+        points.curves(analysis, ["X"])
 
 
 def test_crank_angles_that_are_no_cycle() -> None:
     part = eq.analyze(eq.load("yamashita-1"), np.linspace(0.5, 2.0, 40))
-    panel = view.force(part).panels[0]
+    panel = forces.force(part).panels[0]
     assert (panel.x.low, panel.x.high) == pytest.approx((0.5, 2.0))
     assert len(panel.curves[0].x) == 40
-    assert "dashed: mean" not in words(view.torque(part))
+    assert "dashed: mean" not in words(forces.torque(part))
     with pytest.raises(UsageError):
-        view.spectrum(part)
+        forces.spectrum(part)
 
 
 def test_a_cycle_of_several_turns_is_drawn_whole() -> None:
@@ -224,12 +224,12 @@ def test_curves_are_the_motion(name: str) -> None:
 
 
 def test_torque_and_joints_are_the_forces() -> None:
-    found, forces = drawn("kim-chung-a"), read_off("kim-chung-a").forces
-    assert forces is not None
+    found, planted = drawn("kim-chung-a"), read_off("kim-chung-a").forces
+    assert planted is not None
     air, soil = signals(found["torque"].panels[0])
-    np.testing.assert_array_equal(air, forces.in_air.drive_torque)
-    np.testing.assert_array_equal(soil, forces.in_soil.drive_torque)
-    for panel, joint in zip(found["joints"].panels, forces.in_soil.joints.values(), strict=False):
+    np.testing.assert_array_equal(air, planted.in_air.drive_torque)
+    np.testing.assert_array_equal(soil, planted.in_soil.drive_torque)
+    for panel, joint in zip(found["joints"].panels, planted.in_soil.joints.values(), strict=False):
         assert has(signals(panel), joint.size)
 
 

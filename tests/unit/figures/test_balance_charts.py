@@ -9,7 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures import balancing as view
-from equipoise.figures.analysis import order_panel
+from equipoise.figures.forces import order_panel
 from equipoise.figures.layout import lay_out
 from equipoise.mechanism.objectives import Objective
 from equipoise.results.charts import Chart

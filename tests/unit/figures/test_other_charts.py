@@ -18,8 +18,8 @@ from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
 from equipoise.figures import decay as of_decay
 from equipoise.figures import exposure, figure, plot, render, studies
+from equipoise.figures.curves import levels_of
 from equipoise.figures.scales import Scale, ends_of, ticks_of
-from equipoise.figures.surface import levels_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
 from equipoise.mechanism.objectives import Objective
@@ -316,7 +316,7 @@ def test_the_same_bytes_in_another_process() -> None:
     program = (
         "import equipoise as eq, hashlib\n"
         "from equipoise.figures import render\n"
-        "from equipoise.figures.analysis import polar\n"
+        "from equipoise.figures.forces import polar\n"
         "chart = polar(eq.analyze(eq.load('yamashita-1')))\n"
         "print(hashlib.sha256(render(chart)).hexdigest())\n"
     )

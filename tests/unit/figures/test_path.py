@@ -74,7 +74,7 @@ def test_matplotlib_waits_until_it_is_needed() -> None:
         "import equipoise.figures.planting\n"
         "from equipoise.figures import render\n"
         "analysis = eq.analyze(eq.load('kim-chung-a'))\n"
-        "from equipoise.figures.analysis import curves\n"
+        "from equipoise.figures.points import curves\n"
         "from equipoise.figures.linkage import linkage\n"
         "assert all(render(draw(analysis)).startswith(b'<svg') for draw in (curves, linkage))\n"
         "assert not any(name.startswith('matplotlib') for name in sys.modules)\n"

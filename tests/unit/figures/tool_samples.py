@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from equipoise.figures import handheld
+from equipoise.figures import tool_designs, tool_shaft, tool_speeds
 from equipoise.handheld.exposed import expose_tool
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, Work
 from equipoise.handheld.modes import vibrate_tool
@@ -119,15 +119,15 @@ def drawn_anew(kind: str) -> Drawn:
     """The same, not those drawn before."""
     tool = machine(kind)
     modes = vibrate_tool(tool, 8 if kind == "cutter" else 5)
-    drawn = handheld.mode_charts(modes)
+    drawn = tool_shaft.mode_charts(modes)
     if kind == "close together":
-        return drawn | handheld.response_charts(respond_tool(tool, 700.0))
+        return drawn | tool_shaft.response_charts(respond_tool(tool, 700.0))
     highest = 1.3 * float(modes.planes[0].parameter[-1])
-    drawn |= handheld.determinant_charts(determinant_chart(tool, highest, 300), modes)
+    drawn |= tool_designs.determinant_charts(determinant_chart(tool, highest, 300), modes)
     station, key = VARIED.get(kind, (tool.stations[0].name, "mass"))
     values = np.geomspace(1e3, 1e5, 9) if "stiffness" in key else np.linspace(0.0, 0.8, 9)
-    drawn |= handheld.variation_charts(vary_tool(tool, station, key, values, 6))
+    drawn |= tool_designs.variation_charts(vary_tool(tool, station, key, values, 6))
     if tool.grips:
-        drawn |= handheld.transmission_charts(transmit(tool, SPEEDS), modes)
-        drawn |= handheld.exposure_charts(expose_tool(tool, SPEEDS))
-    return drawn | handheld.response_charts(respond_tool(tool, SPEEDS))
+        drawn |= tool_speeds.transmission_charts(transmit(tool, SPEEDS), modes)
+        drawn |= tool_speeds.exposure_charts(expose_tool(tool, SPEEDS))
+    return drawn | tool_shaft.response_charts(respond_tool(tool, SPEEDS))

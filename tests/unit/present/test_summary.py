@@ -16,8 +16,8 @@ from equipoise.present.pictures import pictures
 from equipoise.present.shaking import Shaking
 from equipoise.present.summary import answers, tiles
 from equipoise.quantities import brief
+from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
-from equipoise.results.tables import shares
 
 
 def text_of(found) -> str:

@@ -14,12 +14,14 @@ import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.figures import render
 from equipoise.figures.outputs import kinematics, outputs_chart
+from equipoise.i18n import speaking
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.outputs import DECLARED, declaring, output
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
+from equipoise.results.blocks import Column, Table
 from equipoise.results.outputs import documented, unit_of
-from equipoise.schema.models import dumps
+from equipoise.schema.documents import dumps
 from equipoise.schema.output import json_text, to_csv
 from equipoise.studies.dimensions import dimension_of
 from equipoise.web.messages import message_of
@@ -79,8 +81,31 @@ def test_it_stands_in_tables(power: None) -> None:
     assert array.attrs == {"units": "W", "long_name": "drive power"}
 
 
-def test_it_is_printed(power: None) -> None:
-    assert "drive power, W" in words(found_with().blocks())
+def test_it_is_printed() -> None:
+    with declaring():
+        output(POWER, "power", "drive power", ordered=True)(lambda found: found.forces.power)
+        found = found_with()
+        tables = {one.title: one for one in found.blocks() if isinstance(one, Table)}
+        assert "drive power, W" in words(found.blocks())
+        assert tables["Amplitudes by order"].columns[-1] == Column("drive power", "power")
+        *rest, last = (one for one in found.blocks(orders=4, zero=0.0) if isinstance(one, Table))
+        assert last.title == "Drive power" and len(rest) == 6
+        np.testing.assert_allclose(last.rows[1][3].value, found.by_order[POWER].sizes[1])
+
+
+@pytest.mark.parametrize(
+    ("language", "title"),
+    [
+        ("en", "Shaking force along x"),
+        ("ja", "起振力（x 方向）"),
+        ("ko", "가진력(x 방향)"),
+    ],
+)
+def test_headings_of_harmonics(language: str, title: str) -> None:
+    found = eq.analyze(eq.load("yamashita-1"), 90)
+    with speaking(language):
+        tables = [one for one in found.blocks(orders=2, zero=0.0) if isinstance(one, Table)]
+    assert [one.rows[0][0] for one in tables] == ["0"] * 6 and tables[2].title == title
 
 
 @pytest.mark.parametrize("language", ["en", "ja", "ko"])

@@ -72,6 +72,30 @@ phase = "180 deg"
 lateral = "150 mm"
 offset = ["20 mm", "-5 mm"]
 """
+PLANTING = '\n[planting]\ntip = "C"\nforward_speed = "60 cm/s"\ndepth = "4 cm"\n'
+MOTOR = '\n[drive.motor]\nno_load_speed = "3000 rpm"\nstall_torque = "2 N m"\n'
+BODY = """
+[support]
+mass = "60 kg"
+center_of_mass = ["0 mm", "300 mm"]
+inertia = "4 kg m^2"
+"""
+MOUNT = """
+[support.mounts.m]
+point = ["100 mm", "0 mm"]
+stiffness = "20 kN/m"
+"""
+TURN = """
+[support.mounts.t]
+axis = "pitch"
+torsional_stiffness = "500 N m/rad"
+"""
+GAUGE = """
+[support.gauges.g]
+point = ["100 mm", "0 mm"]
+direction = [0, 0, 1]
+"""
+SUPPORTED = BODY + MOUNT + TURN + GAUGE + ROWS
 BALANCE = """
 [balance]
 added_mass = "500 g"

@@ -15,7 +15,9 @@ from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
 from equipoise.handheld.section import Section, Tube
 from equipoise.schema import examples, load, loads
-from equipoise.schema.models import dumps, json_schema, load_linkage, load_tool, loads_tool
+from equipoise.schema.documents import dumps
+from equipoise.schema.models import load_linkage, load_tool, loads_tool
+from equipoise.schema.schemas import json_schema
 from unit.schema.samples import FOUR_BAR
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 

@@ -17,7 +17,9 @@ from equipoise.handheld.model import Hand, Impedance, Tool
 from equipoise.handheld.section import Section
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema import examples, load
-from equipoise.schema.models import dumps, files_of, load_tool, loads_tool, save
+from equipoise.schema.documents import dumps, save
+from equipoise.schema.models import load_tool, loads_tool
+from equipoise.schema.saving import files_of
 from equipoise.schema.tables import format_impedance, read_impedance
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 

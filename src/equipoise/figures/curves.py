@@ -1,0 +1,228 @@
+"""Curves, bars, areas, arrows and lines of equal value in a pair of axes."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import cast
+
+import numpy as np
+
+from equipoise.figures.metrics import width_of
+from equipoise.figures.sheet import Box, Signs, Stroke, Words
+from equipoise.figures.style import FAINT, INK, SMALL, Look, look_of
+from equipoise.figures.view import Array, View, corners_of
+from equipoise.results.charts import Area, Bars, Curve, Surface
+
+MARKERS = 7
+"""Signs on a curve that has a few of them, beside those of the others."""
+
+
+def draw_curve(view: View, curve: Curve, number: int) -> None:
+    """A curve with its signs, where it can be drawn; number : among those that have a few."""
+    look = look_of(curve.role, curve.dashed)
+    x, y = curve.x, curve.y
+    if curve.steps:
+        x, y = np.repeat(x, 2)[1:], np.repeat(y, 2)[:-1]
+    places = view.places(x, y)
+    there = np.all(np.isfinite(places), axis=1)
+    if look.width:
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], there, [False]]).astype(int)))
+        parts = [thinned(places[a:b]) for a, b in edges.reshape(-1, 2)]
+        longer = tuple(part for part in parts if len(part) > 1)
+        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
+        if longer:
+            view.sheet.add(
+                Stroke(longer, look.color, look.width, dashes, clip=view.box), look.order
+            )
+        alone = [part[0] for part in parts if len(part) == 1]
+        if alone:
+            view.sheet.add(
+                signs_at(np.array(alone), Look(look.color, sign=".", size=2.5)), look.order
+            )
+    if look.sign:
+        at = _spaced(places, number) if look.spaced else np.flatnonzero(there)
+        clip = None if look.spaced else view.box
+        if len(at):
+            view.sheet.add(signs_at(places[at], look, clip), look.order + 0.01)
+    if not look.width and len(places) < 500:
+        for x, y in places[there].tolist():
+            view.labels.reserve(x, y, look.size / 2)
+    else:
+        inside = places[there & (places[:, 1] <= view.y.start + 1)]
+        view.labels.avoid(inside, 0.6 if look.order < 3 else 1.0)
+
+
+def thinned(places: Array) -> Array:
+    """A line (N, 2) without the places in which it hardly turns."""
+    kept: Array = np.round(places, 1)
+    new = np.concatenate([[True], np.any(np.diff(kept, axis=0) != 0, axis=1)])
+    kept = kept[new]
+    if len(kept) < 3:
+        return kept
+    before, after = np.diff(kept[:-1], axis=0), np.diff(kept[1:], axis=0)
+    turned = np.abs(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]) > 1e-9
+    ahead = np.sum(before * after, axis=1) > 0
+    return np.asarray(kept[np.concatenate([[True], turned | ~ahead, [True]])])
+
+
+def _spaced(places: Array, number: int) -> Array:
+    """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
+    x = places[:, 0]
+    x = np.where(np.isfinite(x), x, -1e9)
+    wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS
+    nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
+    return np.asarray(nearest[np.isfinite(places[nearest, 1])])
+
+
+def signs_at(places: Array, look: Look, clip: Box | None = None) -> Signs:
+    """Signs at places (N, 2) of the sheet."""
+    face = look.fill or ("#ffffff" if look.hollow else look.color)
+    return Signs(places, look.sign, look.size, look.color, face, max(look.width, 1.0), clip)
+
+
+def draw_area(view: View, area: Area) -> None:
+    """What lies between two lines."""
+    low, high = view.places(area.x, area.low), view.places(area.x, area.high)
+    view.area(np.concatenate([high, low[::-1]]), look_of(area.role))
+
+
+def draw_bars(view: View, bars: Bars) -> None:
+    """Bars of one kind, each in the look of its role."""
+    half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
+    ends = (bars.at - half, bars.at + half)
+    lowest = (
+        np.zeros_like(bars.size) if view_low(view, bars) <= 0 else np.full_like(bars.size, 1e-300)
+    )
+    by_role: dict[str, list[Array]] = {}
+    for k, (start, stop, size) in enumerate(zip(*ends, bars.size, strict=True)):
+        if not np.isfinite(size):
+            continue
+        if bars.across == "x":
+            (left, right), (foot, top) = view.x.at([start, stop]), view.y.at([lowest[k], size])
+            foot = min(foot, view.y.start)
+        else:
+            (foot, top), (left, right) = view.y.at([start, stop]), view.x.at([lowest[k], size])
+            left = max(left, view.x.start)
+        role = bars.roles[k] if bars.roles else bars.role
+        by_role.setdefault(role, []).append(corners_of((left, top, right, foot)))
+    for role, corners in by_role.items():
+        look = look_of(role)
+        fill = look.fill or look.color
+        item = Stroke(tuple(corners), fill=fill, opacity=look.opacity, closed=True, clip=view.box)
+        view.sheet.add(item, look.order)
+
+
+def view_low(view: View, bars: Bars) -> float:
+    """Where the axis begins along which bars grow."""
+    return view.y.low if bars.across == "x" else view.x.low
+
+
+def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
+    """An arrow between two places, complex, SI units."""
+    (start,), (end,) = (view.places(z.real, z.imag) for z in (tail, head))
+    way = end - start
+    size = float(np.hypot(*way))
+    if not size:
+        return
+    length = min(max(4.0 + 2.2 * look.width, 5.5), size)
+    along = way / size
+    foot, beside = end - length * along, 0.4 * length * np.array([-along[1], along[0]])
+    if look.width and size > length:
+        view.sheet.add(
+            Stroke((np.array([start, foot + 0.3 * length * along]),), look.color, look.width), 3.5
+        )
+    head_of = np.array([end, foot + beside, foot - beside])
+    view.sheet.add(Stroke((head_of,), fill=look.color, closed=True), 3.6)
+    view.labels.avoid(np.array([start, end]))
+
+
+# -- values over two numbers -----------------------------------------------------------------------
+
+Filled = tuple[list[Array], list[Array]]
+"""Points of areas, each (N, 2), and where the lines in each begin and end."""
+
+LEVELS = 12
+"""Lines at most."""
+STEEP = 90
+"""Percentile of the values up to which there are lines: beside dead points they rise endlessly."""
+DARK, LIGHT = np.array([0xCF, 0xE0, 0xEF]), np.array([0xFF, 0xFF, 0xFF])
+"""Low is dark, in grey too; never so dark that a line or a label would be lost."""
+APART = 5.0
+"""Points between the lines that fill what has no values."""
+
+
+def draw_surface(view: View, surface: Surface) -> None:
+    """Lines, their values, and shades between them."""
+    from contourpy import contour_generator
+
+    left, top, right, bottom = view.box
+    if surface.lacking:
+        corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
+        view.sheet.add(Stroke((corners,), fill="#f2f2f2", closed=True), 0.1)
+        reach = bottom - top
+        slants = tuple(
+            np.array([(x, bottom), (x + reach, top)])
+            for x in np.arange(left - reach, right, APART).tolist()
+        )
+        view.sheet.add(Stroke(slants, FAINT, 0.5, clip=view.box), 0.2)
+    values = surface.axis.unit.factor * surface.values
+    levels = levels_of(values)
+    if not len(levels):
+        return  # the same everywhere: there is no line to draw
+    places = (view.x.at(surface.x), view.y.at(surface.y))
+    drawn = contour_generator(*places, np.ma.masked_invalid(values), fill_type="OuterOffset")
+    ends = [min(float(np.nanmin(values)), levels[0]) - 1e-300, *levels]
+    for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
+        share = number / max(len(ends) - 2, 1)
+        color = "#" + "".join(f"{round(c):02x}" for c in DARK + (LIGHT - DARK) * min(share, 1.0))
+        found = cast("Filled", drawn.filled(low, high))
+        for points, parts in zip(*found, strict=True):
+            lines = tuple(points[a:b] for a, b in pairwise(parts.tolist()))
+            view.sheet.add(Stroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0)
+    told = []
+    for level in levels:
+        lines = tuple(line for line in cast("list[Array]", drawn.lines(level)) if len(line) > 1)
+        if lines:
+            view.sheet.add(Stroke(lines, INK, 0.8, clip=view.box), 2.0)
+            told.append((level, max(lines, key=_length)))
+        for line in lines:
+            view.labels.avoid(line)
+    for level, line in told:
+        _tell(view, surface.axis.told(level / surface.axis.unit.factor), line)
+
+
+def levels_of(values: Array) -> list[float]:
+    """Round values at which there are lines."""
+    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, STEEP))
+    high = high if high > low else float(np.nanmax(values))
+    if not high > low:
+        return []
+    power = 10.0 ** np.floor(np.log10((high - low) / LEVELS))
+    step = next(k * power for k in (1, 2, 2.5, 5, 10, 20) if (high - low) / (k * power) <= LEVELS)
+    found = step * np.arange(np.floor(low / step) + 1, np.ceil(high / step) + 1)
+    return [float(level) for level in found if low < level < np.nanmax(values)]
+
+
+def _length(line: Array) -> float:
+    return float(np.sum(np.hypot(*np.diff(line, axis=0).T)))
+
+
+def _tell(view: View, text: str, line: Array) -> None:
+    """The value of a line on it, where it is farthest from the ends of the axes."""
+    wide = width_of(text, SMALL)
+    left, top, right, bottom = view.box
+    if _length(line) < 2 * wide:
+        return
+    inside = np.minimum.reduce(
+        [line[:, 0] - left - wide, right - wide - line[:, 0], line[:, 1] - top, bottom - line[:, 1]]
+    )
+    for boxed in np.argsort(-np.minimum(inside, 20.0 + 1e-3 * inside))[:: max(len(line) // 40, 1)]:
+        x, y = line[boxed]
+        box = np.array([x - wide / 2, y - 5, x + wide / 2, y + 5])
+        clear = view.labels.boxes
+        apart = np.any((clear[:, :2] >= box[2:]) | (clear[:, 2:] <= box[:2]), axis=1)
+        if inside[boxed] > 4 and np.all(apart):
+            words = Words(x, y + 0.27 * SMALL, text, SMALL, INK, "middle", backed=True)
+            view.sheet.add(words, 7.0)
+            view.labels.occupy((box[0], box[1], box[2], box[3]))
+            return

@@ -1,0 +1,320 @@
+"""Charts of what a machine does to its frame and its drive: over crank angle, polar, by order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.analysis import (
+    ALL,
+    ONE,
+    about,
+    angle_axis,
+    each,
+    has_rows,
+    over,
+    row_keys,
+    title,
+)
+from equipoise.figures.crank import (
+    ROOM,
+    compared,
+    degrees_told,
+    extent,
+    halves,
+    numbers,
+    told_angles,
+)
+from equipoise.figures.style import short
+from equipoise.i18n import say
+from equipoise.quantities import Dimension
+from equipoise.results.analysis import LEAST_ANGLES
+from equipoise.results.charts import Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
+from equipoise.results.naming import CAUSES
+from equipoise.signals import Periodic
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+Array = np.ndarray[Any, Any]
+
+ALIKE = 1e-6
+"""Over the peak: a force whose size varies by less has none."""
+RESIDUE = 1e-9
+"""Over the largest value: what is less is rounding."""
+FEWEST, BAR_WIDE, MOST_NUMBERED = 6, 0.72, {False: 12, True: 7}
+"""Orders that are drawn at least; width of the bars of an order; orders up to which bars are
+numbered, of one kind or of two."""
+
+
+def has_orders(analysis: Analysis) -> bool:
+    """Whether `spectrum` can be drawn."""
+    motion = analysis.motion
+    enough = len(motion.crank_angle) >= LEAST_ANGLES * motion.turns
+    return analysis.solved is not None and motion.whole_cycle and enough
+
+
+# -- over crank angle ------------------------------------------------------------------------------
+
+
+def over_crank(
+    analysis: Analysis,
+    name: str,
+    what: str,
+    panels: Sequence[tuple[str, Dimension | None, Mapping[str, Array]]],
+    **rest: Any,
+) -> Chart:
+    """Signals over crank angle, below each other.
+
+    panels : label and dimension of each, and its signals (N,) by role, SI units.
+    """
+    x = angle_axis(analysis)
+    drawn = [
+        compared(
+            x,
+            label,
+            dimension,
+            {role: over(analysis, values) for role, values in signals.items()},
+            angles=len(panels) < 3,
+            low=0.0 if label == say("size") else None,
+        )
+        for label, dimension, signals in panels
+    ]
+    return Chart(name, analysis.machine.title, what, tuple(drawn), keys=row_keys(analysis), **rest)
+
+
+def force(analysis: Analysis) -> Chart:
+    """Both components of the shaking force and its size over crank angle."""
+    found = each(analysis, "shaking_force")
+    parts: dict[str, Callable[[Array], Array]] = {
+        say("along {axis}", axis="x"): np.real,
+        say("along {axis}", axis="y"): np.imag,
+        say("size"): np.abs,
+    }
+    return over_crank(
+        analysis,
+        "force",
+        title(analysis, say("Shaking force")),
+        [
+            (label, "force", {role: part(values) for role, values in found.items()})
+            for label, part in parts.items()
+        ],
+    )
+
+
+def moment(analysis: Analysis) -> Chart:
+    """Shaking moment over crank angle."""
+    what = title(analysis, say("Shaking moment about {point}", point=about(analysis)))
+    signals = each(analysis, "shaking_moment")
+    return over_crank(analysis, "moment", what, [(say("shaking moment"), "torque", signals)])
+
+
+def torque(analysis: Analysis) -> Chart:
+    """Torque of the drive over crank angle, and below it what makes it."""
+    signals = each(analysis, "drive_torque")
+    drive = short(analysis.machine.drive.link, 16)
+    what = title(analysis, say("Torque of the drive on {link}", link=drive))
+    chart = over_crank(analysis, "torque", what, [(say("drive torque"), "torque", signals)])
+    (whole,) = chart.panels
+    if analysis.motion.whole_cycle:
+        whole = with_mean(whole, signals[ALL])
+    return Chart("torque", chart.title, what, (whole, _causes(analysis)), keys=chart.keys)
+
+
+def with_mean(panel: Panel, values: Array) -> Panel:
+    """A panel with a dashed line at the mean of a signal (N,), and its value above."""
+    from dataclasses import replace
+
+    mean = float(np.mean(values))
+    if abs(mean) <= RESIDUE * float(np.max(np.abs(values))):
+        mean = 0.0
+    told = {
+        "mean": panel.y.quantity(mean),
+        "rms": panel.y.quantity(float(np.sqrt(np.mean(np.square(values))))),
+    }
+    remark = say("dashed: mean {mean}; RMS {rms}", **told)
+    return replace(panel, lines=(Line(mean, "mean", axis="y"),), remark=remark)
+
+
+def _causes(analysis: Analysis) -> Panel:
+    """The torque of each cause that there is; of one row."""
+    parts = analysis.forces.split.by_cause("drive_torque")
+    largest = max(float(np.max(np.abs(part))) for part in parts.values())
+    curves = [
+        Curve(*over(analysis, parts[name]), say(CAUSES[name]), f"several {number}")
+        for number, name in enumerate(CAUSES, 1)
+        if np.max(np.abs(parts[name])) > RESIDUE * largest
+    ]
+    if not curves:
+        curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
+    every = np.concatenate([curve.y for curve in curves])
+    y = Axis.of(say("by cause"), "torque", every, room=ROOM / 2)
+    remark = say("of one row") if has_rows(analysis) else ""
+    return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
+
+
+# -- polar -----------------------------------------------------------------------------------------
+
+
+def polar(analysis: Analysis) -> Chart:
+    """Shaking force as a polar diagram, with crank angles along it, its peak and mean size."""
+    found = each(analysis, "shaking_force")
+    every = np.concatenate([*found.values()])
+    x, y = (
+        Axis.of(say("shaking force along {axis}", axis=axis), "force", every) for axis in ("x", "y")
+    )
+    marks, curves, arrows, message = _told_sizes(analysis, found[ALL], x)
+    if analysis.motion.whole_cycle:
+        told = told_angles(analysis.crank_angle)
+        for role, values in reversed([*found.items()]):
+            marks += numbers(told, values, role, extent(every, np.zeros(1)))
+    lines = [Curve(*halves(over(analysis, values)[1]), "", role) for role, values in found.items()]
+    panel = Panel(
+        x,
+        y,
+        (*lines, *curves),
+        tuple(marks),
+        arrows=arrows,
+        message=message,
+        equal=True,
+        rings=True,
+    )
+    what = title(analysis, say("Shaking force"), say("numbers: crank angle, deg"))
+    return Chart("polar", analysis.machine.title, what, (panel,), keys=row_keys(analysis))
+
+
+def _told_sizes(
+    analysis: Analysis, values: Array, axis: Axis
+) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
+    """An arrow to the peak and a circle of the mean size, with their values, or why not."""
+    sizes = np.abs(values)
+    k = int(np.argmax(sizes))
+    if not sizes[k]:
+        return [], [], (), say("zero at every crank angle")
+    mean, peak = float(np.mean(sizes)), complex(values[k])
+    circle = mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
+    marks: list[Mark] = []
+    arrows: tuple[Arrow, ...] = ()
+    if np.ptp(sizes) > ALIKE * sizes[k]:
+        arrows = (Arrow(0j, peak, "stress"),)
+        at = degrees_told(float(analysis.crank_angle[k]))
+        text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
+        wish = float(np.degrees(np.angle(peak)))
+        marks.append(Mark(peak.real, peak.imag, text, "stress", wish, sign=False))
+    away = mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
+    text = say("mean size {value}", value=axis.quantity(mean))
+    wish = float(np.degrees(np.angle(away)))
+    marks.append(Mark(away.real, away.imag, text, "mean size", wish, sign=False))
+    return marks, [Curve(*halves(circle), "", "mean size")], arrows, ""
+
+
+# -- orders ----------------------------------------------------------------------------------------
+
+
+def spectrum(analysis: Analysis) -> Chart:
+    """Amplitudes of the orders of shaking force, shaking moment and drive torque.
+
+    Raises
+    ------
+    UsageError : the crank angles are too few, or not equally spaced over the whole cycle.
+    """
+    _ = analysis.by_order  # raises where there are none
+    vector = each(analysis, "shaking_force")
+    signals: list[tuple[str, Dimension, Mapping[str, Array]]] = [
+        (
+            say("shaking force along {axis}", axis="x"),
+            "force",
+            {r: v.real for r, v in vector.items()},
+        ),
+        (
+            say("shaking force along {axis}", axis="y"),
+            "force",
+            {r: v.imag for r, v in vector.items()},
+        ),
+        (
+            say("shaking moment about {point}", point=about(analysis)),
+            "torque",
+            each(analysis, "shaking_moment"),
+        ),
+        (say("drive torque"), "torque", each(analysis, "drive_torque")),
+    ]
+    turns = analysis.motion.turns
+    read = [
+        (
+            told,
+            dimension,
+            {BAR_ROLES[role]: orders_of(values, turns) for role, values in by.items()},
+        )
+        for told, dimension, by in signals
+    ]
+    last = max(FEWEST, *(last_order(bars) for _, _, bars in read))
+    most = MOST_NUMBERED[has_rows(analysis)]
+    panels = tuple(order_panel(told, dimension, bars, last, most) for told, dimension, bars in read)
+    return Chart(
+        "spectrum",
+        analysis.machine.title,
+        title(analysis, say("Amplitude of each order")),
+        panels,
+        keys=tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis)),
+    )
+
+
+BAR_ROLES = {ONE: "bar before", ALL: "bar after"}
+Read = Mapping[str, tuple[Array, Array]]
+"""Role -> orders, and the size of each in SI units."""
+MATTERS, VISIBLE = 0.01, 0.004
+"""Over the largest amplitude: above this an order is drawn; below this a bar cannot be seen."""
+LEAST, MOST, MOST_TOLD = 4, 12, 8
+"""Orders that are drawn at least and at most; places on the axis up to which bars have numbers."""
+
+
+def orders_of(values: Array, turns: int) -> tuple[Array, Array]:
+    """Orders of a signal (N,) over so many turns, and their sizes."""
+    signal = Periodic.of(values, turns)
+    return signal.orders, signal.sizes
+
+
+def last_order(read: Read) -> int:
+    """Up to where orders matter, a whole number."""
+    largest = max(float(np.max(sizes)) for _, sizes in read.values())
+    last = max(
+        float(np.max(orders[sizes > MATTERS * largest], initial=0.0))
+        for orders, sizes in read.values()
+    )
+    return int(min(max(np.ceil(last), LEAST), MOST))
+
+
+def order_panel(
+    told: str, dimension: Dimension, read: Read, last: int, most_told: int = MOST_TOLD
+) -> Panel:
+    """Bars beside each other for each order up to the last; numbers at them where there is room."""
+    largest = max(float(np.max(sizes)) for _, sizes in read.values())
+    finest = _finest(read, VISIBLE * largest)
+    wide = BAR_WIDE * finest / len(read)
+    bars = []
+    for number, (role, (orders, sizes)) in enumerate(read.items()):
+        seen = (orders <= last) & np.isclose(np.mod(orders / finest + 0.5, 1), 0.5)
+        at = orders[seen] + (number - (len(read) - 1) / 2) * wide
+        told_too = last / finest <= most_told
+        bars.append(Bars(at, sizes[seen], wide, role, told=told_too))
+    ticks = tuple((float(k), f"{k}" if k else say("mean")) for k in range(last + 1))
+    x = Axis(
+        say("order: events in one turn of the crank"),
+        low=-0.7 * finest,
+        high=last + 0.7 * finest,
+        ticks=ticks,
+    )
+    every = np.concatenate([sizes for _, sizes in read.values()])
+    y = Axis.of(say("amplitude"), dimension, every, low=0.0, room=0.2)
+    message = "" if largest else say("zero at every order")
+    return Panel(x, y, bars=tuple(bars), title=told, message=message)
+
+
+def _finest(read: Read, least: float) -> float:
+    """Distance of orders: less than 1 where a period of several turns leaves any between."""
+    for orders, sizes in read.values():
+        if np.any(sizes[np.mod(orders, 1) > 0] > least):
+            return float(orders[1])
+    return 1.0

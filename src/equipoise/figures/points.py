@@ -1,0 +1,174 @@
+"""Charts of how points move: their paths with their speeds, and their hodographs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.analysis import over, title
+from equipoise.figures.crank import angle_step, extent, halves, numbers, told_angles, told_speed
+from equipoise.figures.style import short
+from equipoise.i18n import say, to_say
+from equipoise.quantities import Dimension
+from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.motion import Motion
+    from equipoise.results.analysis import Analysis
+
+Array = np.ndarray[Any, Any]
+
+STILL = 1e-9
+"""Over the motion of what moves most: what is less stands still."""
+MOST_POINTS, MOST_VECTORS = 4, 3
+"""Points that are followed in one picture: their paths, and their hodographs."""
+FEW = (0, 90)
+"""Crank angles, deg, that are told on the hodographs of several points."""
+
+
+def moving(motion: Motion) -> list[str]:
+    """Points that do not stand still."""
+    fastest = {name: float(np.max(np.abs(point.place_1))) for name, point in motion.points.items()}
+    least = STILL * max(fastest.values())
+    return [name for name, rate in fastest.items() if rate > least]
+
+
+def traced(motion: Motion) -> list[str]:
+    """Points with a path worth following: those of couplers, first those that are no joint.
+
+    A point of a link that is pinned to the frame runs on a circle; these come only where a machine
+    has no others, and those of the drive last of all.
+    """
+    machine, joints = motion.machine, motion.linkage.joints
+    pinned = [link for link in machine.links.values() if set(link.points) & set(machine.frame)]
+    circling = {point for link in pinned for point in link.points}
+    names = moving(motion)
+    driven = [name for name in names if name not in machine.links[machine.drive.link].points]
+    found = [name for name in names if name not in circling] or driven or names
+    return sorted(found, key=lambda name: name in joints.pins)
+
+
+def followed(analysis: Analysis, points: Sequence[str] | None, most: int) -> list[str]:
+    """The points that are asked for, or as many as a picture can hold."""
+    return traced(analysis.motion)[:most] if points is None else [*points]
+
+
+def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
+    """Paths of points of couplers, with dots after equal times; those of other points pale.
+
+    points : names; where they are not given, some that are no joint of the frame's links.
+    """
+    motion = analysis.motion
+    names = followed(analysis, points, MOST_POINTS)
+    others = [name for name in moving(motion) if name not in names]
+    frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
+    every = [motion.points[name].place for name in (*names, *others)]
+    size = extent(*every, np.array([*frame.values()]))
+    drawn = [
+        Curve(*halves(over(analysis, motion.points[name].place)[1]), "", "faint") for name in others
+    ]
+    marks = [
+        Mark(z.real, z.imag, short(name), "stand", 45.0, near=5.0, bold=True)
+        for name, z in frame.items()
+    ]
+    arrows, dots = [], []
+    for number, name in enumerate(names, 1):
+        role, path = f"several {number}", motion.points[name].place
+        label = say("path of {point}", point=short(name, 12))
+        drawn.append(Curve(*halves(over(analysis, path)[1]), label, role))
+        arrows += _sense(analysis, name, role, size)
+        if motion.whole_cycle:
+            ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
+            at = np.round(ways * len(path) / (360 * motion.turns)).astype(int)
+            dots += [Mark(float(z.real), float(z.imag), "", role) for z in path[at]]
+    for name in (*names, *others):
+        role = f"several {names.index(name) + 1}" if name in names else "lines"
+        path = motion.points[name].place
+        k = int(np.argmax((path * np.exp(-0.7j)).real))
+        at_k = (float(path[k].real), float(path[k].imag))
+        marks.append(Mark(*at_k, short(name), role, 40.0, sign=False, near=4.0, bold=True))
+    if motion.whole_cycle:
+        told = told_angles(motion.crank_angle)
+        for number, name in enumerate(names, 1):
+            path = motion.points[name].place
+            dots += numbers(told, path, f"several {number}", size)
+    x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", every and size) for a in "xy")
+    panel = Panel(
+        x,
+        y,
+        tuple(drawn),
+        (*marks, *dots),
+        arrows=tuple(arrows),
+        message="" if names else say("no point moves"),
+        equal=True,
+        zero=False,
+    )
+    keys = (("faint", say("other points")),) if others else ()
+    return Chart("curves", analysis.machine.title, _told_dots(motion), (panel,), keys=keys)
+
+
+def _told_dots(motion: Motion) -> str:
+    """What is drawn, and after which time a dot comes."""
+    if not motion.whole_cycle:
+        return say("Paths of points, at {speed}", speed=told_speed(motion.speed))
+    step = angle_step(motion.turns)
+    values = {"step": step, "speed": told_speed(motion.speed)}
+    if not motion.speed:
+        return say("Paths of points; dots every {step}° of the crank", **values)
+    values["time"] = shown(1000 * np.radians(step) / abs(motion.speed))
+    return say("Paths of points; dots every {step}° = {time} ms, at {speed}", **values)
+
+
+def _sense(analysis: Analysis, name: str, role: str, size: float) -> list[Arrow]:
+    """The head of an arrow where the point is fastest."""
+    point = analysis.motion.points[name]
+    fastest = int(np.argmax(np.abs(point.place_1)))
+    way = complex(point.place_1[fastest]) * float(np.sign(analysis.motion.speed))
+    head = complex(point.place[fastest])
+    return [Arrow(head - way / abs(way) * 0.02 * size, head, role)] if way else []
+
+
+def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
+    """Ends of the arrows of velocity and acceleration of points.
+
+    points : names; where they are not given, the same as of `curves`.
+    """
+    names = followed(analysis, points, MOST_VECTORS)
+    every = [analysis.motion.points[name] for name in names]
+    pairs: tuple[tuple[str, Dimension, list[Array]], ...] = (
+        (VELOCITY, "speed", [point.velocity for point in every]),
+        (ACCELERATION, "acceleration", [point.acceleration_vector for point in every]),
+    )
+    panels = []
+    for what, dimension, values in pairs:
+        whole = np.concatenate([*values, [0]])
+        x, y = (
+            Axis.of(say("{quantity} along {axis}", quantity=say(what), axis=axis), dimension, whole)
+            for axis in ("x", "y")
+        )
+        marks: list[Mark] = [Mark(0.0, 0.0, "", "pivot")]
+        drawn = []
+        told: dict[int, int] = {}
+        if analysis.motion.whole_cycle:
+            told = told_angles(analysis.crank_angle)
+            told = {a: k for a, k in told.items() if len(values) < 2 or a in FEW}
+        for number, (name, one) in enumerate(zip(names, values, strict=True), 1):
+            role = f"several {number}"
+            drawn.append(Curve(*halves(over(analysis, one)[1]), short(name, 14), role))
+            marks += numbers(told, one, role, extent(whole))
+        message = "" if names else say("no point moves")
+        panels.append(Panel(x, y, tuple(drawn), tuple(marks), message=message, equal=True))
+    told_what = title(
+        analysis,
+        say("Hodographs of velocity and acceleration"),
+        say("numbers: crank angle, deg"),
+        of_one=True,
+    )
+    return Chart(
+        "hodograph", analysis.machine.title, told_what, tuple(panels), columns=2, stacked=False
+    )
+
+
+VELOCITY, ACCELERATION = to_say("velocity"), to_say("acceleration")

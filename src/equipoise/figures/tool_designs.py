@@ -1,0 +1,253 @@
+"""Charts of the studies of a hand-held tool, and of a design made better."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from equipoise.figures.style import short
+from equipoise.figures.sweep import Named, curves_of, log_ends
+from equipoise.figures.tool_shaft import plane_named, turns_told
+from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
+from equipoise.handheld.design_plan import KEYS, MEASURES
+from equipoise.handheld.exposed import grips
+from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.hand_blocks import figure_named
+from equipoise.handheld.response import respond_tool
+from equipoise.handheld.studies import number_of
+from equipoise.i18n import say, to_say
+from equipoise.quantities import Dimension, Display, display
+from equipoise.results.charts import RPM, Axis, Chart, Curve, Line, Mark, Panel, shown
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import ToolDesign
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.studies import DeterminantChart, Variation
+
+Array = np.ndarray[Any, Any]
+
+MOST_CHANGES = 8
+"""Changes of a design that are told."""
+ROUNDEST = ((1.0,), (5.0, 2.0), (3.0, 4.0, 7.0, 6.0, 8.0, 9.0), (1.5, 2.5))
+"""First digits of the numbers of an axis of frequencies, the roundest first."""
+APART = 0.09
+"""Of the height of the axes between these numbers, at least."""
+PARTS = {
+    "": to_say("{number} of {station}"),
+    "ground": to_say("{number} of {station} to the ground"),
+    "harness": to_say("{number} of the harness at {station}"),
+    "absorber": to_say("{number} of the absorber at {station}"),
+}
+NUMBERS = {
+    "position": to_say("position"),
+    "mass": to_say("mass"),
+    "stiffness": to_say("stiffness"),
+    "damping": to_say("damping"),
+    "rotational_stiffness": to_say("rotational stiffness"),
+    "rotational_damping": to_say("rotational damping"),
+}
+SHOWN_IN = {
+    "mass": ("kg", "g", "kg"),
+    "stiffness": ("kN/m", "kN/m", "kN/m"),
+}
+ALLOWED = {"lowest": to_say("lowest allowed"), "highest": to_say("highest allowed")}
+
+
+# -- studies of a tool -----------------------------------------------------------------------------
+
+
+def determinant_charts(chart: DeterminantChart, modes: ToolModes) -> dict[str, Chart]:
+    """``determinant``: the function whose zeros are the modes, against lambda (their Fig. 2)."""
+    planes = (0,) if modes.alike else (0, 1)
+    panels = []
+    for plane in planes:
+        known = modes.planes[plane].parameter
+        zeros = zeros_of(chart.parameter, chart.value[plane], known)
+        top = 1.1 * float(np.max(np.abs(chart.value[plane]))) or 1.0
+        marks = tuple(Mark(at, 0.0, f"{at:.3f}", "zeros", 60.0, optional=True) for at in zeros)
+        panels.append(
+            Panel(
+                Axis("λ", low=0.0, high=float(chart.parameter[-1])),
+                Axis("± lg(1 + |D| / least peak)", low=-top, high=top),
+                (Curve(chart.parameter, chart.value[plane], "", "thin"),),
+                marks,
+                title="" if modes.alike else plane_named(plane, alike=False),
+            )
+        )
+    told = say("both planes") if modes.alike else say("by planes")
+    what = say(
+        "Characteristic function D without damping, {planes}; its zeros are the modes", planes=told
+    )
+    return {"determinant": Chart("determinant", modes.tool.title, what, tuple(panels))}
+
+
+def zeros_of(parameter: Array, value: Array, known: Array) -> list[float]:
+    """Zeros in a chart: those that are known exactly, and beyond them where its sign changes."""
+    inside = known[(known > 0) & (known <= parameter[-1])]
+    before = np.flatnonzero(np.signbit(value[1:]) != np.signbit(value[:-1]))
+    x, y = parameter, value
+    crossed = x[before] - y[before] * (x[before + 1] - x[before]) / (y[before + 1] - y[before])
+    beyond = crossed[parameter[before] > np.max(known, initial=0.0)]
+    return [*map(float, inside), *map(float, beyond)]
+
+
+def variation_charts(variation: Variation) -> dict[str, Chart]:
+    """``variation``: lambda and frequency against a number of a station (their Figs. 3 and 4)."""
+    tool, values = variation.tool, variation.values
+    planes = 2 if _apart(variation) else 1
+    top = 1.06 * float(np.max(variation.parameter)) or 1.0
+    x = Axis(named(variation), number_unit(KEYS[variation.key]), *_along(values))
+    names = [say("both planes")] if planes == 1 else [plane_named(k, alike=False) for k in (0, 1)]
+    curves = [
+        Curve(values, row, name, f"several {number}")
+        for number, (name, rows) in enumerate(zip(names, variation.parameter, strict=False), 1)
+        for row in rows.T
+    ]
+    lines = [*_now(variation, x), *_work(tool, top)]
+    panel = Panel(
+        x,
+        Axis("λ", low=0.0, high=top),
+        tuple(curves),
+        tuple(_numbers(variation, x)),
+        lines=tuple(lines),
+        right_axis=_turns_axis(scale_of(tool), top),
+        height=225.0,
+    )
+    what = say("Natural frequencies without damping against the {number}", number=named(variation))
+    return {"variation": Chart("variation", tool.title, what, (panel,))}
+
+
+def number_unit(dimension: str) -> Display:
+    """The unit in which a number of a station is told."""
+    return display(cast(Dimension, dimension), (), SHOWN_IN.get(dimension))
+
+
+def named(variation: Variation) -> str:
+    """The number that varies, in words."""
+    owner, _, last = variation.key.rpartition(".")
+    if not owner and KEYS[variation.key] not in ("length", "mass"):
+        owner = "ground"
+    number = say(NUMBERS.get(last, last.replace("_", " ")))
+    return say(PARTS[owner], number=number, station=short(variation.station))
+
+
+def _apart(variation: Variation) -> bool:
+    """Whether the planes differ."""
+    vertical, lateral = variation.parameter
+    return not np.allclose(vertical, lateral, rtol=1e-6, atol=1e-9)
+
+
+def _along(values: Array) -> tuple[Any, float, float]:
+    """Scale and ends of the axis: log where the values were chosen so."""
+    log = len(values) > 2 and np.all(values > 0) and _uneven(np.log(values)) < _uneven(values)
+    low, high = float(np.min(values)), float(np.max(values))
+    if low == high:
+        low, high = low - 0.05 * abs(low) - 1e-9, high + 0.05 * abs(high) + 1e-9
+    return "log" if log else "linear", low, high
+
+
+def _uneven(values: Array) -> float:
+    steps = np.abs(np.diff(np.sort(values)))
+    return float(np.ptp(steps) / np.mean(steps)) if np.any(steps) else 0.0
+
+
+def _turns_axis(scale: float, top: float) -> Axis:
+    """The same axis in turns a minute, which grow with the square of lambda."""
+
+    def place(minute: float) -> float:
+        return float(np.sqrt(minute / RPM.factor / scale))
+
+    highest = scale * top**2 * RPM.factor
+    chosen = [0.0]
+    powers = 10.0 ** np.arange(np.floor(np.log10(highest)), np.floor(np.log10(highest)) - 4, -1)
+    for digits in ROUNDEST:
+        for number in np.multiply.outer(powers, digits).ravel().tolist():
+            far = all(abs(place(number) - place(one)) >= APART * top for one in chosen)
+            if number <= highest and far:
+                chosen.append(number)
+    ticks = tuple((place(one), turns_told(one / RPM.factor)) for one in sorted(chosen))
+    return Axis(say("natural frequency"), Display("1/min", 1.0), ticks=ticks)
+
+
+def _now(variation: Variation, x: Axis) -> Iterator[Line]:
+    """The number as it is."""
+    now = number_of(variation.tool, variation.station, variation.key)
+    if np.min(variation.values) <= now <= np.max(variation.values):
+        yield Line(now, "now", say("now {value}", value=x.quantity(now)))
+
+
+def _work(tool: Tool, top: float) -> Iterator[Line]:
+    """The speed of the engine at work."""
+    if tool.operation is not None:
+        at = float(np.sqrt(tool.operation.speed / scale_of(tool)))
+        if at <= top:
+            text = say("work, {speed} rpm", speed=turns_told(tool.operation.speed))
+            yield Line(at, "work", text, "y")
+
+
+def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
+    """Numbers of the modes on their lines."""
+    assert x.low is not None and x.high is not None
+    at = x.low + 0.06 * (x.high - x.low)
+    if x.scale == "log":
+        at = x.low * (x.high / x.low) ** 0.06
+    order = np.argsort(variation.values)
+    for number, row in enumerate(variation.parameter[0].T, 1):
+        y = float(np.interp(at, variation.values[order], row[order]))
+        yield Mark(at, y, str(number), "main", near=3.0, optional=True, sign=False)
+
+
+# -- a design --------------------------------------------------------------------------------------
+
+
+def design_charts(found: ToolDesign) -> dict[str, Chart]:
+    """``design``."""
+    return {"design": design(found)}
+
+
+def design(found: ToolDesign) -> Chart:
+    """What the hand that gets most gets over the band, before and after.
+
+    The worst hand over the band is made better; at some speeds another one may be worse.
+    """
+    before, after = (_felt(tool, found) for tool in (found.tool, found.better))
+    x = engine_axis(found.speed)
+    low, high = log_ends([*before, *after], 1.8, 2.2)
+    y = Axis("a_hv", RATE, "log", low, high)
+    old = (replace(curve, label="", dashed=True) for curve in curves_of(found.speed, before))
+    work = work_line(found.tool, x)
+    marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))
+    curves = (*old, *curves_of(found.speed, after))
+    panel = Panel(x, y, curves, marks, lines=work, height=209.0)
+    plan = found.tool.design
+    one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
+    what = f"{figure_named(one)}: {shown(one.before)} → {shown(one.after)} m/s²"
+    keys = (("dashed ink", say("before")), ("ink", say("after")))
+    words = tuple(changes_told(found))
+    return Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)
+
+
+def _felt(tool: Tool, found: ToolDesign) -> list[Named]:
+    """a_hv of the hands that count; of all tools in the order of the tool before."""
+    plan = found.tool.design
+    hands = plan.hands if plan is not None and plan.hands else ()
+    felt = grips(respond_tool(tool, found.speed))
+    return [Named(name, grip.a_hv) for name, grip in felt.items() if not hands or name in hands]
+
+
+def changes_told(found: ToolDesign) -> list[str]:
+    """What was changed, each in words; where they are many, the first of them."""
+    count = len(found.variables)
+    words = []
+    for one, edge in zip(found.variables, found.edges, strict=True):
+        axis = Axis("", number_unit(one.dimension))
+        ends = f"{axis.told(one.before)} → {axis.quantity(one.after)}"
+        end = f" ({say(ALLOWED[edge])})" if edge else ""
+        words.append(f"{short(figure_named(one), 40)}: {ends}{end}")
+    if count <= MOST_CHANGES:
+        return words
+    return [*words[: MOST_CHANGES - 1], say("and {count} more", count=count - MOST_CHANGES + 1)]

@@ -1,0 +1,280 @@
+"""Charts along the shaft of a hand-held tool: its modes, and the bending moment at work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.figures.style import short
+from equipoise.handheld.exposed import grips
+from equipoise.handheld.response import respond_tool
+from equipoise.i18n import say, to_say
+from equipoise.results.charts import RPM, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Station, Tool
+    from equipoise.handheld.modes import PlaneModes, ToolModes
+    from equipoise.handheld.response import ToolResponse
+    from equipoise.handheld.shapes import Line as ShaftLine
+
+Array = np.ndarray[Any, Any]
+
+MM = 1000.0
+MOST_MODES, MOST_SHAPES, MOST_NAMES, LONGEST = 24, 6, 24, 20
+"""Natural frequencies that are marked; shapes in a picture; stations named; signs of a name."""
+BESIDE, BEFORE = 0.02, 1e-9
+"""Share of the shaft that the axis goes on beyond its ends; m before a station, where the moment is
+that at its left."""
+REACH = 1.42
+"""Upper end of the axis of a shape, over its largest displacement."""
+LETTERS = 18
+"""In a line of what a free motion is called."""
+POINTS, MOST_ORDERS, MATTERS = 401, 3, 1e-3
+"""Places along the shaft; orders whose moment and shape are drawn; share of the largest
+displacement from which a plane's shape is drawn."""
+ORDER_ROLES = ("kind 0", "kind 1", "kind 3")
+SIGNS = {
+    "hand": to_say("hand"),
+    "harness or ground": to_say("harness or ground"),
+    "station": to_say("station"),
+}
+"""What holds a station, in words; the last holds nothing."""
+
+
+def numbered(charts: Iterable[Chart]) -> dict[str, Chart]:
+    """Charts by their names."""
+    return {chart.name: chart for chart in charts}
+
+
+# -- along the shaft -------------------------------------------------------------------------------
+
+
+def plane_named(plane: int, alike: bool) -> str:
+    """The vertical plane, the lateral one, or both where they are alike."""
+    if alike:
+        return say("both planes")
+    return say("lateral plane") if plane else say("vertical plane")
+
+
+def kind_of(station: Station) -> str:
+    """What holds a station: key of `SIGNS`."""
+    if station.hand is not None:
+        return "hand"
+    grounded = any(station.stiffness) or any(station.rotational_stiffness)
+    return "harness or ground" if station.harness is not None or grounded else "station"
+
+
+def shaft_axis(tool: Tool) -> Axis:
+    """Places along the shaft."""
+    beyond = BESIDE * tool.shaft.length
+    label = say("place on the shaft from its left end")
+    return Axis.of(label, "length", [0.1], low=-beyond, high=tool.shaft.length + beyond)
+
+
+def shaft_lines(tool: Tool) -> tuple[Line, ...]:
+    """A thin line at every station."""
+    return tuple(Line(station.position, "station line") for station in tool.stations)
+
+
+def station_flags(tool: Tool) -> tuple[Flag, ...]:
+    """Names of the stations; where there are too many, of those that matter most."""
+
+    def weight(station: Station) -> tuple[bool, bool, float]:
+        shaken = any(one.station == station.name for one in tool.excitations)
+        return kind_of(station) != "station", shaken, station.mass
+
+    chosen = sorted(tool.stations, key=weight, reverse=True)[:MOST_NAMES]
+    ranked = sorted(chosen, key=lambda one: one.position)
+    return tuple(
+        Flag(one.position, (short(one.name, LONGEST),), 1.0 + len(chosen) - chosen.index(one))
+        for one in ranked
+    )
+
+
+def mode_charts(modes: ToolModes) -> dict[str, Chart]:
+    """``modes``, and ``modes-lateral`` where the planes differ.
+
+    Many modes go on in ``modes-2`` and so on.
+    """
+    drawn = numbered(shapes(modes, 0))
+    return drawn if modes.alike else drawn | numbered(shapes(modes, 1))
+
+
+def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
+    """Shapes without damping in one plane, some in each picture: Fig. 5 of Nagamine and Irie."""
+    count = len(modes.planes[plane].frequency)
+    name = "modes-lateral" if plane else "modes"
+    told = f"{say('Shapes of free vibration without damping')}, {plane_named(plane, modes.alike)}"
+    kinds = {kind_of(station) for station in modes.tool.stations}
+    keys = (
+        ("shape", say("one end of the swing")),
+        ("other end", say("the other")),
+        ("node", say("node, mm")),
+        *((kind, say(text)) for kind, text in SIGNS.items() if kind in kinds),
+    )
+    for number, first in enumerate(range(0, count, MOST_SHAPES), 1):
+        last = min(first + MOST_SHAPES, count)
+        panels = [_shape(modes, modes.planes[plane], k) for k in range(first, last)]
+        panels[0] = replace(panels[0], flags=station_flags(modes.tool))
+        part = {"first": first + 1, "last": last, "count": count}
+        what = (
+            told
+            if count <= MOST_SHAPES
+            else f"{told} " + say("({first} to {last} of {count})", **part)
+        )
+        own = f"{name}-{number}" if number > 1 else name
+        yield Chart(own, modes.tool.title, what, tuple(panels), keys=keys)
+
+
+def _shape(modes: ToolModes, found: PlaneModes, number: int) -> Panel:
+    """One shape with its stations and nodes; its number at the left, its figures at the right."""
+    shape, x = found.shapes[number], modes.places
+    marks = [
+        Mark(one.position, float(np.interp(one.position, x, shape)), "", kind_of(one))
+        for one in modes.tool.stations
+    ]
+    marks += [
+        Mark(float(node), 0.0, f"{MM * node:.0f}", "node", optional=True, near=5.0)
+        for node in found.nodes[number]
+    ]
+    hertz = float(found.cycles_per_second[number])
+    if hertz:
+        minute = turns_told(float(found.frequency[number]))
+        lines = [f"{shown(hertz)} Hz", f"{minute} 1/min", f"λ = {found.parameter[number]:.3f}"]
+    else:
+        lines = [say("free:"), *wrap(found.rigid[number], LETTERS)]
+    return Panel(
+        shaft_axis(modes.tool),
+        Axis(low=-REACH, high=REACH, ticks=()),
+        (Curve(x, -shape, "", "other end"), Curve(x, shape, "", "shape")),
+        tuple(marks),
+        lines=shaft_lines(modes.tool),
+        grid=False,
+        height=58.0,
+        left=(say("mode {number}", number=number + 1),),
+        right=tuple(lines),
+    )
+
+
+def turns_told(speed: float) -> str:
+    """A speed or frequency, rad/s, in turns a minute: four digits, and all before the point."""
+    minute = speed * RPM.factor
+    return shown(minute) if minute < 1e4 else f"{minute:.0f}"
+
+
+# -- bending moment --------------------------------------------------------------------------------
+
+
+def response_charts(response: ToolResponse, speed: float | None = None) -> dict[str, Chart]:
+    """``moment``: bending moment and displacement along the shaft at one speed of the engine.
+
+    speed : rad/s; that of work if None, or else the one at which the hands get most.
+    """
+    return {"moment": moment(response, speed)}
+
+
+def moment(response: ToolResponse, speed: float | None) -> Chart:
+    """RMS of the bending moment, and the shape of each order when it is largest."""
+    tool = response.tool
+    speed = speed_shown(response) if speed is None else speed
+    one = respond_tool(tool, speed)
+    places = _places(tool)
+    line = one.line(places)
+    loudest = _loudest(line)
+    drawn = _displaced(line, loudest)
+    keys = [("strong", say("all orders, root of squares"))]
+    for role, k in zip(ORDER_ROLES, loudest, strict=False):
+        keys.append((role, say("order {order}", order=shown(float(one.orders[k])))))
+    if {plane for _, plane in drawn} == {0, 1}:
+        keys.append(("other end", say("lateral plane")))
+    what = say("RMS of the bending moment, and shape of each order when it is largest")
+    panels = (
+        replace(_moments(tool, places, line, loudest), flags=station_flags(tool)),
+        _shapes_of_orders(tool, places, drawn),
+    )
+    told = f"{what}; {turns_told(speed)} rpm"
+    return Chart("moment", tool.title, told, panels, keys=tuple(keys))
+
+
+def speed_shown(response: ToolResponse) -> float:
+    """Speed, rad/s, of work; else the one at which hands get most, or a station moves most."""
+    operation, speeds = response.tool.operation, response.speed
+    if len(speeds) == 1:
+        return float(speeds[0])
+    if operation is not None and np.min(speeds) <= operation.speed <= np.max(speeds):
+        return operation.speed
+    if response.tool.grips:
+        felt = np.max([grip.a_hv for grip in grips(response).values()], axis=0)
+    else:
+        moved = [np.abs(response.displacement(one.name)) for one in response.tool.stations]
+        felt = np.max([np.sum(one**2, axis=(0, 1)) for one in moved], axis=0)
+    return float(speeds[np.argmax(felt)])
+
+
+def _places(tool: Tool) -> Array:
+    """Places along the shaft, and both sides of each station."""
+    at = np.array([station.position for station in tool.stations])
+    every = np.concatenate([np.linspace(0.0, tool.shaft.length, POINTS), at, at - BEFORE])
+    return np.unique(np.clip(every, 0.0, tool.shaft.length))
+
+
+def _loudest(line: ShaftLine) -> list[int]:
+    """Numbers of the orders whose moment is largest, the largest first."""
+    size = np.max(np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1), axis=0)
+    return [int(k) for k in np.argsort(-size, kind="stable")[:MOST_ORDERS]]
+
+
+def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Array]:
+    """(Place among the loudest, plane) -> displacement, m, at the instant when it is largest.
+
+    The lateral plane is left out where it does the same as the vertical one.
+    """
+    moved = line.displacement[..., 0]
+    least = MATTERS * float(np.max(np.abs(moved)))
+    found: dict[tuple[int, int], Array] = {}
+    for number, k in enumerate(loudest):
+        both = [_largest(moved[:, plane, k]) for plane in range(2)]
+        for plane, shape in enumerate(both):
+            same = plane == 1 and np.allclose(shape, both[0], atol=least)
+            if np.max(np.abs(shape)) > least and not same:
+                found[number, plane] = shape
+    return found
+
+
+def _largest(amplitude: Array) -> Array:
+    """Where an amplitude (X,) is at the instant when it is largest."""
+    turned = np.exp(-0.5j * np.angle(np.sum(amplitude**2)))
+    shape = np.real(amplitude * turned)
+    return np.asarray(shape * np.sign(shape[np.argmax(np.abs(shape))] or 1.0))
+
+
+def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> Panel:
+    """RMS over time of all orders and planes, and of both planes of the loudest orders."""
+    squares = np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1) / 2
+    total = np.sqrt(np.sum(squares, axis=1))
+    y = Axis.of(say("moment"), "torque", total, low=0.0, room=0.18)
+    curves = [Curve(places, total, "", "strong")]
+    if len(loudest) > 1 or squares.shape[1] > 1:
+        for role, k in zip(ORDER_ROLES, loudest, strict=False):
+            curves.append(Curve(places, np.sqrt(squares[:, k]), "", role))
+    k = int(np.argmax(total))
+    at, top = float(places[k]), float(total[k])
+    text = say("{value} at {place} mm", value=y.quantity(top), place=f"{MM * at:.0f}")
+    mark = Mark(at, top, text, "ink", 60.0, sign=False)
+    lines = shaft_lines(tool)
+    return Panel(shaft_axis(tool), y, tuple(curves), (mark,), lines=lines, height=150.0)
+
+
+def _shapes_of_orders(tool: Tool, places: Array, found: Mapping[tuple[int, int], Array]) -> Panel:
+    every = np.array([*found.values()]) if found else np.zeros((1, len(places)))
+    y = Axis.of(say("displacement"), "length", [*every.ravel(), 0.0], room=0.12)
+    curves = tuple(
+        Curve(places, shape, "", ORDER_ROLES[number], dashed=bool(plane))
+        for (number, plane), shape in found.items()
+    )
+    curves = curves or (Curve(places, every[0], "", "faint"),)
+    return Panel(shaft_axis(tool), y, curves, lines=shaft_lines(tool), height=150.0)

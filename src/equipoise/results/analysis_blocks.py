@@ -1,0 +1,219 @@
+"""What an analysis shows: motion, forces on frame and drive, joints, and all of it by orders."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.i18n import say
+from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
+from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.quantities import Dimension, angle
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.results.machine_blocks import (
+    angles_told,
+    driven,
+    largest,
+    motion_blocks,
+    place,
+    smallest,
+)
+from equipoise.results.naming import CAUSES
+from equipoise.signals import Periodic, figures
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
+
+Array = np.ndarray[Any, Any]
+
+MOST_ORDERS = 8
+"""Orders that are told of."""
+
+
+def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Motion, forces and joints."""
+    machine, motion = analysis.machine, analysis.motion
+    yield Text(f"{driven(machine, motion.speed)}; {angles_told(analysis)}")
+    yield from motion_blocks(analysis)
+    if analysis.solved is None:
+        yield Notes((massless(machine),))
+        return
+    yield from force_blocks(analysis)
+    yield joint_table(analysis)
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def force_blocks(analysis: Analysis) -> Iterator[Block]:
+    """Forces on frame and drive; what they come from; their orders."""
+    ones = [one for one in analysis.outputs.summed if one.group == "forces"]
+    rows: list[tuple[Cell, ...]] = []
+    for one in ones:
+        found, kind = one.figures, one.dimension
+        scale = max(other.figures.peak for other in ones if other.dimension == kind)
+        values = (found.mean, found.rms)
+        rows.append(
+            (
+                one.label(),
+                *(Value(value, scale, dimension=kind) for value in values),
+                largest(found, scale, kind),
+                smallest(found, scale, kind),
+                Value(found.peak_to_peak, scale, dimension=kind),
+            )
+        )
+    about = analysis.forces.about
+    title = say(
+        "On frame and drive; extremes with their crank angle, moments about ({place}) mm",
+        place=place((about.real, about.imag)),
+    )
+    labels = ("", say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
+    yield Table(title, tuple(map(Column, labels)), tuple(rows))
+    yield _by_link(analysis)
+    yield _causes(analysis)
+    if analysis.has_orders:
+        yield orders_table(analysis)
+
+
+def _by_link(analysis: Analysis) -> Table:
+    parts = analysis.forces.split.by_link("shaking_force")
+    rows = tuple(
+        (
+            name,
+            Value(figures(analysis.crank_angle, np.abs(parts[name])).peak),
+            Value(100 * share, after=0),
+        )
+        for name, share in shares(parts).items()
+    )
+    columns = (
+        Column(say("link")),
+        Column(say("peak"), "force"),
+        Column(say("share of the mean square"), unit="%"),
+    )
+    return Table(say("Shaking force by link"), columns, rows)
+
+
+def shares(parts: Mapping[str, Array]) -> dict[str, float]:
+    """Share of each part in the mean square of their sum, the largest first.
+
+    One below 0 works against the others.  parts : signals (N,), real or complex.
+    """
+    whole = np.sum(list(parts.values()), axis=0)
+    square = float(np.mean(np.abs(whole) ** 2)) or 1.0
+    found = {
+        name: float(np.mean((part * np.conj(whole)).real)) / square for name, part in parts.items()
+    }
+    return dict(sorted(found.items(), key=lambda item: -item[1]))
+
+
+def _causes(analysis: Analysis) -> Table:
+    scale, forces = analysis.summary["drive_torque"].peak, analysis.forces
+    given = {"load": forces.loads, "spring": forces.springs}
+    rows: list[tuple[Cell, ...]] = []
+    for cause, values in forces.split.by_cause("drive_torque").items():
+        if cause in given and not given[cause]:
+            continue
+        found = figures(analysis.crank_angle, values)
+        told = (found.mean, found.rms, found.max, found.min)
+        rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
+    labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
+    columns = (Column(""), *(Column(label, "torque") for label in labels))
+    return Table(say("Drive torque by cause"), columns, tuple(rows))
+
+
+def orders_table(analysis: Analysis) -> Table:
+    """Amplitudes of the first orders that there are."""
+    ones = [one for one in analysis.outputs.ordered if one.declared.summed]
+    kinds = {one.name: one.dimension for one in ones}
+    names, signals = list(kinds), {one.name: analysis.by_order[one.name] for one in ones}
+    count = max(len(signal.amplitudes) for signal in signals.values())
+    sizes = {name: np.pad(one.sizes, (0, count - len(one.sizes))) for name, one in signals.items()}
+    tops = {name: float(np.max(size[1:], initial=0.0)) for name, size in sizes.items()}
+    scales = {
+        name: max(tops[other] for other in names if kinds[other] == kinds[name]) for name in names
+    }
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
+        (
+            f"{k / analysis.motion.turns:.4g}",
+            Value(k / analysis.motion.turns * abs(analysis.motion.speed) / (2 * np.pi)),
+            *(Value(float(sizes[name][k]), 1e3 * scales[name]) for name in names),
+        )
+        for k in loud(list(sizes.values()))
+    )
+    columns = (Column(one.declared.say(one.item), one.dimension) for one in ones)
+    heads = (Column(say("order")), Column(say("frequency"), "frequency"), *columns)
+    return Table(say("Amplitudes by order"), heads, rows)
+
+
+def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
+    """Places of the first orders but the mean that are there in some of the amplitudes (K,)."""
+    relative = [size / (np.max(size[1:], initial=0.0) or 1.0) for size in sizes]
+    top = np.max(relative, axis=0)
+    return [k for k in range(1, len(top)) if top[k] > 1e-6][:most]
+
+
+def joint_table(analysis: Analysis) -> Table:
+    """The force in every joint and mesh."""
+    forces = analysis.forces
+    joints: dict[str, JointForce] = {**forces.joints, **forces.gears}
+    scale = analysis.summary["frame_moment"].peak
+    rows: list[tuple[Cell, ...]] = []
+    for name, joint in joints.items():
+        found = figures(analysis.crank_angle, joint.size)
+        couple = None
+        if isinstance(joint, SliderForce):
+            couple = Value(float(np.max(np.abs(joint.moment))), scale)
+        named = say("teeth") if name in forces.gears else joint_named(name)
+        ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
+        rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
+    labels = (say("mean"), say("RMS"), say("largest"))
+    columns = (Column(""), Column(say("by → on")), *(Column(label, "force") for label in labels))
+    if any(row[-1] is not None for row in rows):
+        columns = (*columns, Column(say("moment"), "torque"))
+    else:
+        rows = [row[:-1] for row in rows]
+    return Table(say("Force in each joint; largest with its crank angle"), columns, tuple(rows))
+
+
+# -- harmonics -------------------------------------------------------------------------------------
+
+
+def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Block]:
+    """Harmonics of each output, as in Table 4 of Yamashita and others, up to an order.
+
+    zero : rad, direction from which crank angles count.
+    """
+    yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
+    yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    signals = analysis.by_order
+    # the motion before the forces, as in that table
+    for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
+        kind = one.dimension
+        labels = ("A", "B", "R", say("phase"), say("RMS"))
+        dimensions: tuple[Dimension, ...] = (kind, kind, kind, "angle", kind)
+        columns = map(Column, labels, dimensions)
+        rows = tuple(_harmonics(signals[one.name].shifted(zero), orders))
+        title = one.declared.title(one.item)
+        yield Table(title, (Column(say("order")), *columns), rows)
+
+
+def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:
+    scale = 10 * float(np.max(signal.sizes))
+    for k in range(signal.count_to(orders)):
+        value = complex(signal.amplitudes[k])
+        size = abs(value)
+        silent = size <= 1e-10 * scale or k == 0
+        phase = None if silent else Value(float(np.angle(1j * value)), after=1)
+        parts = (Value(part, scale) for part in (value.real, -value.imag, size))
+        rms = Value(float(signal.rms_by_order[k]), scale)
+        yield f"{float(signal.orders[k]):.4g}", *parts, phase, rms
+
+
+def _shown(analysis: Analysis, orders: int | None = None, zero: float = 0.0) -> Iterator[Block]:
+    """What `Analysis` shows; its harmonics up to an order where that is given."""
+    return analysis_blocks(analysis) if orders is None else harmonic_blocks(analysis, orders, zero)
+
+
+SHOWS = {"Analysis": _shown}

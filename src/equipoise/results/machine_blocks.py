@@ -1,0 +1,274 @@
+"""What a machine shows, and how it moves: its parts, links, points and four-bar."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.outputs import body_named
+from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
+from equipoise.signals import Figures, figures
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.assessment import FourBar
+    from equipoise.mechanism.model import Machine
+    from equipoise.results.analysis import Analysis
+
+Array = np.ndarray[Any, Any]
+
+FOUR_BARS = (
+    to_say("double-crank (drag link)"),
+    to_say("crank-rocker"),
+    to_say("double-rocker"),
+    to_say("rocker-crank"),
+    to_say("change-point linkage"),
+    to_say("triple-rocker"),
+    to_say("Grashof"),
+    to_say("non-Grashof"),
+    to_say("change point"),
+)
+"""Types and classes of `four_bar`."""
+
+
+# -- figures as cells ------------------------------------------------------------------------------
+
+
+def largest(found: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
+    """Largest value and its crank angle; no angle where the value hardly changes."""
+    return Value(found.max, scale, _at(found, found.max_at, scale), dimension=dimension)
+
+
+def smallest(found: Figures, scale: float = 0.0, dimension: Dimension | None = None) -> Value:
+    """Smallest value and its crank angle; no angle where the value hardly changes."""
+    return Value(found.min, scale, _at(found, found.min_at, scale), dimension=dimension)
+
+
+def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
+    steady = found.peak_to_peak <= 1e-10 * max(found.peak, scale)
+    return None if steady else crank_angle
+
+
+def span_of(values: Array, scale: float = 0.0) -> Span:
+    """Smallest to largest of some values."""
+    return Span(float(np.min(values)), float(np.max(values)), scale)
+
+
+def place(xy: tuple[float, ...]) -> str:
+    """A place in mm."""
+    scale = 1e3 * max(map(abs, xy))
+    return ", ".join(number(1e3 * part, scale) for part in xy)
+
+
+# -- model -----------------------------------------------------------------------------------------
+
+
+def model_blocks(machine: Machine) -> Iterator[Block]:
+    """Everything that a model says in numbers."""
+    yield Table(
+        say("Links; places in the axes of each link"),
+        (
+            Column(""),
+            Column(say("mass"), "mass", "g"),
+            Column(f"{say('centre of mass')}, mm"),
+            Column(say("inertia"), "inertia", "kg mm^2"),
+        ),
+        tuple(
+            (
+                name,
+                None if link.mass is None else Value(link.mass),
+                None if link.center_of_mass is None else place(link.center_of_mass),
+                None if link.inertia is None else Value(link.inertia),
+            )
+            for name, link in machine.links.items()
+        ),
+    )
+    bodies = {say("frame"): machine.frame}
+    bodies |= {name: link.points for name, link in machine.links.items()}
+    yield Table(
+        say("Points; places in the axes of each body"),
+        (Column(say("body")), Column(f"{say('points')} (x, y), mm")),
+        tuple(
+            (body, "; ".join(f"{point} ({place(at)})" for point, at in points.items()))
+            for body, points in bodies.items()
+        ),
+    )
+    if parts := tuple(_parts(machine)):
+        yield Facts(say("Joints, loads and springs"), parts)
+    if len(machine.rows) > 1:
+        yield rows_table(machine)
+    if machine.support is not None:
+        yield Facts(say("Support"), tuple(_support(machine)))
+
+
+def rows_table(machine: Machine) -> Table:
+    """Rows with their places and phases."""
+    return Table(
+        say("Rows; the phase is the angle by which the crank is ahead"),
+        (
+            Column(say("row")),
+            Column(say("lateral place"), "length", "mm"),
+            Column(f"{say('offset')} x", "length", "mm"),
+            Column(f"{say('offset')} y", "length", "mm"),
+            Column(say("phase"), "angle", "deg"),
+        ),
+        tuple(
+            (
+                str(count),
+                Value(row.lateral),
+                *(Value(part) for part in row.offset),
+                Value(row.phase, after=1),
+            )
+            for count, row in enumerate(machine.rows, 1)
+        ),
+    )
+
+
+def _parts(machine: Machine) -> Iterator[str]:
+    for slider in machine.sliders:
+        yield say(
+            "Slider: {point} of {link} on a line of {on} through {through} at {angle}°",
+            point=slider.point,
+            link=slider.link,
+            on=body_named(slider.on),
+            through=slider.through,
+            angle=angle(slider.direction),
+        )
+    for gear in machine.gears:
+        yield say(
+            "Gears: {driver} drives {driven} on {carrier} with the speed ratio {ratio}",
+            driver=gear.driver,
+            driven=gear.driven,
+            carrier=body_named(gear.carrier),
+            ratio=number(gear.speed_ratio),
+        )
+    for spring in machine.springs:
+        yield say(
+            "Spring: {stiffness} N/m from {point} of {link} to {to}",
+            stiffness=number(spring.stiffness),
+            point=spring.point,
+            link=spring.link,
+            to=spring.to,
+        )
+    for load in machine.loads:
+        if load.point is None:
+            yield say("Load: a torque on {link}", link=load.link)
+        else:
+            yield say("Load: a force at {point} of {link}", point=load.point, link=load.link)
+
+
+def _support(machine: Machine) -> Iterator[str]:
+    support = machine.support
+    assert support is not None
+    if support.mass is not None:
+        yield say("Mass: {mass} kg", mass=number(support.mass))
+    yield say("Mounts: {names}", names=say(", ").join(support.mounts))
+    yield say("Gauges: {names}", names=say(", ").join(support.gauges))
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def driven(machine: Machine, speed: float) -> str:
+    """How the drive runs."""
+    return say(
+        "{link} driven at {speed} rpm ({rate} rad/s)",
+        link=machine.drive.link,
+        speed=number(speed / PER_RPM),
+        rate=number(speed),
+    )
+
+
+def angles_told(analysis: Analysis) -> str:
+    """How many crank angles there are, and when everything repeats."""
+    motion = analysis.motion
+    count = len(motion.crank_angle)
+    if not motion.whole_cycle:
+        return say("{angles} crank angles", angles=count)
+    if motion.turns == 1:
+        return say("{angles} crank angles in a turn, after which everything repeats", angles=count)
+    return say(
+        "{angles} crank angles in a turn, {turns} turns until everything repeats",
+        angles=count // motion.turns,
+        turns=motion.turns,
+    )
+
+
+def motion_blocks(analysis: Analysis) -> Iterator[Block]:
+    """How links and points move."""
+    if analysis.four_bar is not None:
+        yield Facts(say("Four-bar linkage"), tuple(_four_bar(analysis.four_bar)))
+    rate = abs(analysis.motion.speed)
+    yield Table(
+        say("Links: angle, angular velocity and acceleration"),
+        (
+            Column(""),
+            Column(say("angle"), "angle"),
+            Column(say("velocity"), "angular speed"),
+            Column(say("acceleration"), "angular acceleration"),
+        ),
+        tuple(
+            (
+                name,
+                span_of(link.angle),
+                span_of(link.angular_velocity, rate),
+                span_of(link.angular_acceleration, rate**2),
+            )
+            for name, link in analysis.motion.links.items()
+        ),
+    )
+    yield _points(analysis)
+
+
+def _points(analysis: Analysis) -> Table:
+    theta = analysis.crank_angle
+    rows: list[tuple[Cell, ...]] = []
+    for name, point in analysis.motion.points.items():
+        if name in analysis.machine.frame:
+            continue
+        reach = float(np.max(np.abs(point.place)))
+        tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
+        rows.append((name, span_of(point.x, reach), span_of(point.y, reach), *map(largest, tops)))
+    columns = (
+        Column(""),
+        Column("x", "length"),
+        Column("y", "length"),
+        Column(say("velocity"), "speed"),
+        Column(say("acceleration"), "acceleration"),
+    )
+    title = say("Moving points: places, largest velocity and acceleration (at crank angle)")
+    return Table(title, columns, tuple(rows))
+
+
+def _four_bar(found: FourBar) -> Iterator[str]:
+    lengths = (found.a, found.b, found.c, found.d)
+    frame, crank, coupler, rocker = (number(1e3 * length) for length in lengths)
+    yield f"{say(found.type)}, {say(found.grashof)}"
+    yield say(
+        "Frame {frame} mm, crank {crank} mm, coupler {coupler} mm, rocker {rocker} mm",
+        frame=frame,
+        crank=crank,
+        coupler=coupler,
+        rocker=rocker,
+    )
+    if found.transmission_min is not None and found.transmission_max is not None:
+        yield say(
+            "Transmission angle from {low}° to {high}°",
+            low=angle(found.transmission_min),
+            high=angle(found.transmission_max),
+        )
+    if found.swing is not None and found.time_ratio is not None:
+        yield say(
+            "The rocker swings by {swing}°, time ratio {ratio}",
+            swing=angle(found.swing),
+            ratio=f"{found.time_ratio:.3f}",
+        )
+    holds = {True: say("hold"), False: say("do not hold")}
+    yield say(
+        "Assembly conditions (5) {first}, (6) {second}",
+        first=holds[found.condition_5],
+        second=holds[found.condition_6],
+    )
