@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -58,7 +58,8 @@ class Conditions(Result):
     without_effect : parameters that stand in no row.
     """
 
-    shown_in = "balancing.condition_blocks"
+    shown_in: ClassVar[str] = "balancing.condition_blocks"
+    records: ClassVar[str] = "conditions"
 
     kind: Kind
     outputs: tuple[str, ...]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -121,7 +121,8 @@ class FreeVibration(Result):
     preloads : force (N) or torque (N m) of each mount at rest.
     """
 
-    shown_in = "vibration.sweep_blocks"
+    shown_in: ClassVar[str] = "vibration.sweep_blocks"
+    records: ClassVar[str] = "modes"
 
     linear: Linear
     modes: tuple[Mode, ...]
