@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -57,6 +57,8 @@ class Conditions(Result):
     readings : each row in words, divided by lengths.  sentences : the same with "= 0".
     without_effect : parameters that stand in no row.
     """
+
+    records: ClassVar[str] = "conditions"
 
     kind: Kind
     outputs: tuple[str, ...]

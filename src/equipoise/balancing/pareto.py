@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -38,6 +38,8 @@ class Front(Result):
     first, second : what is traded.  points : the balanced machine at each.
     values : (P, 2) of both objectives, SI units.
     """
+
+    records: ClassVar[str] = "points"
 
     original: Machine
     first: Objective

@@ -18,7 +18,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf, isfinite, sqrt
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -191,6 +191,8 @@ class Task:
 @dataclass(frozen=True, repr=False)
 class Exposure(Result):
     """A day's exposure; see docs/exposure.md."""
+
+    records: ClassVar[str] = "tasks"
 
     tasks: tuple[Task, ...]
 

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import fields
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
+
+import numpy as np
+
+from equipoise.results.data import dataset_of, frame_of
 
 if TYPE_CHECKING:
     import pandas
@@ -13,6 +18,8 @@ if TYPE_CHECKING:
     from equipoise.results.blocks import Block
 
 Values = dict[str, Any]
+Array = np.ndarray[Any, Any]
+PLAIN = (str, int, float, np.ndarray)
 
 
 class Result:
@@ -29,8 +36,22 @@ class Result:
         return next((str(one.title) for one in owners if one is not None), "")
 
     def to_dict(self) -> Values:
-        """The machine-readable output, in SI units: dicts, numbers and arrays."""
-        raise NotImplementedError
+        """The machine-readable output, in SI units: dicts, numbers and arrays.
+
+        Where a result does not say more, its fields that are plain values.
+        """
+        told = {one.name: getattr(self, one.name) for one in fields(cast("Any", self))}
+        return {name: value for name, value in told.items() if isinstance(value, PLAIN)}
+
+    records: ClassVar[str] = ""
+    """Entry of `to_dict` with a dict for each of its records, where it is a list of such."""
+
+    def columns(self) -> list[tuple[str, str, Array]]:
+        """Name, SI unit and values of the columns of its CSV file, over the first of them.
+
+        Empty where it has none.
+        """
+        return []
 
     shown_in: ClassVar[str] = ""
     """Module that tells what it shows; ``blocks`` of its room where not given."""
@@ -48,12 +69,12 @@ class Result:
         }
 
     def to_dataset(self) -> xarray.Dataset:
-        """Its arrays as an `xarray.Dataset`; loads xarray."""
-        return _room("present.data").dataset_of(self)  # type: ignore[no-any-return]
+        """Its arrays as an `xarray.Dataset`, by dotted path; loads xarray."""
+        return dataset_of(self)
 
     def to_frame(self) -> pandas.DataFrame:
         """Its arrays as columns of a `pandas.DataFrame`; loads pandas."""
-        return _room("present.data").frame_of(self)  # type: ignore[no-any-return]
+        return frame_of(self)
 
     def plot(self, *names: str) -> Any:
         """Its pictures by name, all if none is named, as `matplotlib.figure.Figure`s."""

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import isnan
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -49,6 +49,8 @@ class Searched(Result):
     volumes : after each generation: share of the box from the best to the worst figures of the last
         front that the front dominates (hypervolume); of one objective the best figure.
     """
+
+    records: ClassVar[str] = "designs"
 
     study: Study
     front: int

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -75,6 +75,8 @@ class Best(Result):
     kept, computed, stored : number of designs that keep every limit, that have figures, that are
         stored at all.
     """
+
+    records: ClassVar[str] = "designs"
 
     by: Mapping[str, Make]
     numbers: tuple[str, ...]

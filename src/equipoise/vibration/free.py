@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import copysign, sqrt
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -120,6 +120,8 @@ class FreeVibration(Result):
     linear : the machine as a linear system.  modes : by frequency.
     preloads : force (N) or torque (N m) of each mount at rest.
     """
+
+    records: ClassVar[str] = "modes"
 
     linear: Linear
     modes: tuple[Mode, ...]

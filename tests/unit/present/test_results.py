@@ -29,6 +29,7 @@ from equipoise.present.cells import grid, printed
 from equipoise.present.document import Document
 from equipoise.present.html import printed_grid
 from equipoise.present.pdf import pdf
+from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Change, Column, Section, Span, Table, Value
 from equipoise.schema.models import load_tool
 from support.printing import printed as shown
@@ -117,6 +118,75 @@ def test_every_result_can_be_set_by_typst(language: str) -> None:
         )
     document = Document("en", "title", "", "", (), (), "", sections)
     assert pdf(document).startswith(b"%PDF")
+
+
+# -- as data ---------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", RESULTS)
+def test_every_result_is_a_dataset_and_a_frame(name: str) -> None:
+    pytest.importorskip("xarray"), pytest.importorskip("pandas")
+    found = result(name)
+    dataset, frame = found.to_dataset(), found.to_frame()
+    assert len(frame) and (len(frame.columns) or name == "tool response")
+    told = dict(leaves(found.to_dict()))
+    for path, value in told.items():
+        if isinstance(value, np.ndarray):
+            np.testing.assert_array_equal(dataset[path], value)
+        elif isinstance(value, int | float | str) and not isinstance(found, Analysis):
+            assert dataset.attrs[path] == value
+    index = frame.index.name
+    if index is None:
+        return
+    assert dataset[index].dims == (index,)
+    for column in set(frame.columns) & set(dataset.data_vars):
+        assert dataset[column].dims == (index,)
+        np.testing.assert_array_equal(dataset[column], frame[column])
+
+
+def leaves(values: Any, path: str = "") -> Any:
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from leaves(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
+
+
+@pytest.mark.parametrize(
+    ("name", "index", "rows", "columns"),
+    [
+        ("sweep", "speed", 38, ["gauges.gauge.rms", "mounts.spring.transmissibility"]),
+        ("transient", "time", 2001, ["crank_angle", "gauges.gauge.displacement"]),
+        ("response", "time", 360, ["crank_angle", "gauges.roll.displacement"]),
+        ("free vibration", None, 6, ["natural_frequency"]),
+        ("front", None, 4, ["first", "second", "added_mass"]),
+        ("conditions", None, 4, ["condition", "residual"]),
+        ("tool modes", "places", 401, ["planes.vertical.shapes.4"]),
+        ("tool sweep", "speed", 12, ["engine.moment", "belt.phase_vertical"]),
+        ("sensitivities", "crank_angle", 720, ["sensitivities.crank.mass.values"]),
+        ("variation", "values", 4, ["natural_frequencies.0", "natural_frequencies.3"]),
+        ("exposure", None, 2, ["name", "a_hv"]),
+        ("planting", None, 1, ["curve.height", "max_speed.value"]),
+    ],
+)
+def test_rows_and_columns(name: str, index: str | None, rows: int, columns: list[str]) -> None:
+    pytest.importorskip("pandas")
+    found = result(name)
+    frame = found.to_frame()
+    assert (frame.index.name, len(frame)) == (index, rows)
+    prefix = f"{found.records}." if found.records else ""
+    assert {f"{prefix}{one}" for one in columns} <= set(frame.columns)
+
+
+def test_units_of_arrays_and_axes_of_tables() -> None:
+    pytest.importorskip("xarray")
+    told = result("sweep").to_dataset()
+    assert told["speed"].attrs == {"units": "rad/s"}
+    assert told["gauges.gauge.rms"].attrs == {"units": "m"}
+    assert told["gauges.gauge.harmonics"].dims == ("speed", "gauges.gauge.harmonics.index_1")
+    told = result("response").to_dataset()
+    assert told["gauges.roll.harmonics"].dims == ("gauges.roll.orders",)
+    assert result("transient").to_dataset()["mounts.spring.force"].attrs == {"units": "N"}
 
 
 # -- cells -----------------------------------------------------------------------------------------

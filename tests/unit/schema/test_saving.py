@@ -12,7 +12,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.mechanism.model import Drive, Link, Load, LoadTable, Machine, Position
+from equipoise.mechanism.model import Drive, Link, Machine, Position
 from equipoise.mechanism.support import UP
 from equipoise.schema import dumps, examples, load, loads, save
 from unit.schema.samples import EVERYTHING, FOUR_BAR
@@ -121,23 +121,6 @@ def test_saving_goes_through_a_link(tmp_path: Path) -> None:
     save(loads(FOUR_BAR), tmp_path / "link.toml")
     assert (tmp_path / "link.toml").is_symlink()
     assert (tmp_path / "model.toml").is_file()
-
-
-TABLE = LoadTable((0.0, 1.0, 2.5), ((1.0, 0.1, -3.0), (0.5, 1e-7, 1 / 3)), "force.csv")
-
-
-def test_tables_are_saved_beside(tmp_path: Path) -> None:
-    machine = replace(loads(FOUR_BAR), loads=(Load("coupler", "C", table=TABLE),))
-    save(machine, tmp_path / "model.toml")
-    again = load(tmp_path / "model.toml").loads[0].table
-    assert again == replace(TABLE, file="model.load-1.csv")
-
-
-def test_a_table_without_a_file_is_not_dumped() -> None:
-    load_ = Load("coupler", "C", table=replace(TABLE, file=""))
-    machine = replace(loads(FOUR_BAR), loads=(load_,))
-    with pytest.raises(ModelError, match=r"loads\[1\].table: the table has no file"):
-        dumps(machine)
 
 
 @pytest.mark.parametrize(

@@ -1,20 +1,29 @@
-"""Load tables in CSV."""
+"""Tables in CSV: of loads, soil, motors and hands, and beside a model file."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 from pathlib import Path
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from equipoise.errors import ModelError
-from equipoise.mechanism.model import LoadTable
-from equipoise.schema import load
-from equipoise.schema.tables import format_load, parse_load, read_load
-from unit.schema.samples import FOUR_BAR
+from equipoise.handheld.model import Impedance
+from equipoise.mechanism.field import Soil, SoilTable
+from equipoise.mechanism.force_elements import Motor, MotorTable
+from equipoise.mechanism.model import Load, LoadTable, Machine
+from equipoise.schema import dumps, load, loads, save, tables
+from equipoise.schema.saving import files_of, parts_of
+from equipoise.schema.tables import format_load, format_motor, parse_load, read_load
+from unit.schema.samples import FOUR_BAR, PLANTING
+from unit.schema.tool_samples import TOOL
 
+RPM = 2 * pi / 60
+LOADED = '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "f.csv"\n'
 FORCES = "crank_angle [deg],force_x [N],force_y [N]\n0,1,2\n90,3,-4.5\n"
 
 
@@ -29,9 +38,20 @@ def test_the_order_of_columns_does_not_matter() -> None:
     assert parse_load(swapped) == parse_load(FORCES)
 
 
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
+SORTS = {
+    # the file in which it is named, the name, and the place of that
+    "load": (FOUR_BAR + LOADED, "f.csv", "loads[1].table"),
+    "soil": (FOUR_BAR + PLANTING + 'soil.table = "soil.csv"\n', "soil.csv", "planting.soil.table"),
+    "motor": (f'{FOUR_BAR}\n[drive.motor]\ntable = "motor.csv"\n', "motor.csv",
+              "drive.motor.table"),
+    "impedance": (TOOL.replace('hand.stiffness = "8000 N/m"', 'hand.impedance = "hand.csv"'),
+                  "hand.csv", "shaft.stations[2].hand.impedance"),
+}  # fmt: skip
+TURNS = "speed [rpm],torque [N m]"
+HAND = "frequency [Hz],resistance [N s/m],reactance [N s/m]"
+BAD: dict[str, list[tuple[str | None, str]]] = {
+    # text of the table, what is said
+    "load": [
         ("", "line 1: got no column; the header is"),
         ("crank_angle [deg]\n0\n", "line 1: got crank_angle; the header is"),
         ("crank_angle [deg],force_x [N]\n0,1\n", "line 1: got crank_angle, force_x; the header"),
@@ -49,11 +69,170 @@ def test_the_order_of_columns_does_not_matter() -> None:
         ('crank_angle [deg],torque [N m]\n0,"1\n', "no table of comma-separated values"),
         (f"crank_angle [deg],torque [N m]\n0,{'1' * 200_000}\n", "no table of comma-separated"),
     ],
+    "soil": [
+        (None, "soil.csv: there is no such file"),
+        ("", "soil.csv, line 1: got no column; the header is depth [mm],resistance [N]"),
+        ("depth [mm]\n0\n", "line 1: got depth; the header is depth [mm],resistance [N]"),
+        ("depth [mm],force_x [N]\n0,1\n", "line 1: got the column 'force_x [N]'; the header is"),
+        ("depth,resistance [N]\n0,1\n", "line 1, column depth: the unit is missing; depth [m]"),
+        ("depth [N],resistance [N]\n0,1\n", "line 1, column depth: got '0 N'; N is the unit of"),
+        ("depth [mm],resistance [N]\n", "there are no rows"),
+        ("depth [mm],resistance [N]\n0,1\n0,2\n", "line 3, column depth: the depths must rise"),
+        ("depth [mm],resistance [N]\n0,1,2\n", "line 2: got 3 values; the header has 2 columns"),
+        ("depth [mm],resistance [N]\n0,x\n", "line 2, column resistance: got 'x'; give a finite"),
+        ("depth [mm],resistance [N]\n-1,1\n0,2\n", "the depths must rise from row to row, from 0"),
+        ("depth [mm],resistance [N]\n0,1\n5,-2\n", "got -2 N; soil resists, give 0 or more"),
+    ],
+    "motor": [
+        (None, "motor.csv: there is no such file"),
+        ("", f"motor.csv, line 1: got no column; the header is {TURNS}"),
+        ("speed [rpm]\n0\n", f"line 1: got speed; the header is {TURNS}"),
+        ("depth [mm],torque [N m]\n0,1\n", "line 1: got the column 'depth [mm]'; the header is"),
+        ("speed,torque [N m]\n0,1\n", "line 1, column speed: the unit is missing; speed [rad/s]"),
+        ("speed [m/s],torque [N m]\n0,1\n", "column speed: got '0 m/s'; m/s is the unit of a sp"),
+        ("speed [rpm],torque [N]\n0,1\n", "column torque: got '0 N'; N is the unit of a force"),
+        (f"{TURNS}\n", "there are no rows"),
+        (f"{TURNS}\n0,1\n", "the table has fewer than two rows; a curve needs two"),
+        (
+            f"{TURNS}\n0,1\n0,2\n",
+            "line 3, column speed: the speeds must rise from row to row",
+        ),
+        (f"{TURNS}\n0,1,2\n", "line 2: got 3 values; the header has 2 columns"),
+        (f"{TURNS}\n0,x\n", "line 2, column torque: got 'x'; give a finite number"),
+    ],
+    "impedance": [
+        (None, "hand.csv: there is no such file"),
+        (
+            "",
+            f"hand.csv, line 1: got no column; the header is {HAND} or frequency [Hz],magnit",
+        ),
+        (f"{HAND}\n20,1,1\n20,1,1\n", "line 3, column frequency: the frequencies must rise"),
+        ("frequency [Hz],resistance [N],reactance [N s/m]\n", "N is the unit of a force; a damp"),
+        ("frequency,resistance [N s/m],reactance [N s/m]\n", "the unit is missing; frequency [Hz]"),
+        (f"{HAND}\n20,1,1\n", "the table has fewer than two rows; a curve needs two"),
+        (f"{HAND}\n0,1,1\n1,1,1\n", "the first frequency is 0 Hz; give more than 0"),
+        (
+            f"{HAND}\n20,1,1\n30,-2,1\n",
+            "the resistance at 30 Hz is -2 N s/m; a hand only takes",
+        ),
+        (f"{HAND}\n20,x,1\n", "line 2, column resistance: got 'x'; give a finite number"),
+    ],
+}
+
+
+@pytest.mark.parametrize(
+    ("sort", "text", "said"), [(sort, *case) for sort, found in BAD.items() for case in found]
 )
-def test_bad_tables(text: str, said: str) -> None:
+def test_bad_tables(sort: str, text: str | None, said: str, tmp_path: Path) -> None:
+    model, name, place = SORTS[sort]
+    path = tmp_path / "model.toml"
+    path.write_text(model)
+    if text is not None:
+        (tmp_path / name).write_text(text)
     with pytest.raises(ModelError) as caught:
-        parse_load(text)
+        load(path)
+    assert str(caught.value).startswith(f"{path}: {place}: ")
     assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+SOIL_CSV = "depth [mm],resistance [N]\n0,1\n10,2.5\n40,1.5\n"
+MOTOR_CSV = "speed [rpm],torque [N m]\n0,2\n1500,1.9\n3000,-0.5\n"
+SOIL = SoilTable((0.0, 0.01, 0.04), (1.0, 2.5, 1.5), "soil.csv")
+CURVE = MotorTable((0.0, 1500 * RPM, 3000 * RPM), (2.0, 1.9, -0.5), "motor.csv")
+PUSH = LoadTable((0.0, 1.0, 2.5), ((1.0, 0.1, -3.0), (0.5, 1e-7, 1 / 3)), "f.csv")
+
+
+def table_of(machine: Machine, sort: str) -> Any:
+    """The table of a sort that a machine has."""
+    tables = {part.sort: part.value for part in parts_of(machine)}
+    return tables[sort]
+
+
+@pytest.mark.parametrize(
+    ("sort", "text", "table"), [("soil", SOIL_CSV, SOIL), ("motor", MOTOR_CSV, CURVE)]
+)
+def test_a_table_is_read_beside_the_model(sort: str, text: str, table: Any, tmp_path: Path) -> None:
+    model, name, _ = SORTS[sort]
+    (tmp_path / "model.toml").write_text(model)
+    (tmp_path / name).write_text(text)
+    found = table_of(load(tmp_path / "model.toml"), sort)
+    assert (found, found.file) == (table, name)
+
+
+def with_tables(file: str | None = None) -> Machine:
+    """A machine with a table of each sort; ``file`` is the name of all of them."""
+    push, soil, curve = (
+        one if file is None else replace(one, file=file) for one in (PUSH, SOIL, CURVE)
+    )
+    machine = replace(loads(FOUR_BAR + PLANTING), loads=(Load("coupler", "C", table=push),))
+    return machine.with_planting(soil=Soil(3.0, table=soil)).with_drive(motor=Motor(table=curve))
+
+
+def test_tables_are_saved_beside_the_model(tmp_path: Path) -> None:
+    machine = with_tables()
+    assert {part.where for part in parts_of(machine)} == {
+        "drive.motor.table", "loads[1].table", "planting.soil.table"
+    }  # fmt: skip
+    save(machine, tmp_path / "a.toml")
+    written = sorted(tmp_path.iterdir())
+    names = ["a.load-1.csv", "a.motor.csv", "a.soil.csv", "a.toml"]
+    assert [file.name for file in written] == names
+    assert sorted(files_of(machine, tmp_path / "a.toml")) == written
+    again = load(tmp_path / "a.toml")
+    assert again == machine
+    assert {table_of(again, sort).file for sort in ("load", "motor", "soil")} == {*names[:3]}
+
+
+@pytest.mark.parametrize("sort", ["load", "soil", "motor"])
+def test_a_table_without_a_file_is_not_dumped(sort: str) -> None:
+    bare, whole = with_tables(""), with_tables()
+    only = {
+        "load": replace(whole, loads=bare.loads),
+        "soil": replace(whole, planting=bare.planting),
+        "motor": replace(whole, drive=bare.drive),
+    }
+    with pytest.raises(ModelError) as caught:
+        dumps(only[sort])
+    assert str(caught.value).startswith(f"{SORTS[sort][2]}: the table has no file; save")
+
+
+def test_tables_are_named_in_the_text() -> None:
+    text = dumps(with_tables())
+    assert '[drive.motor]\ntable = "motor.csv"\n' in text
+    assert 'soil.table = "soil.csv"' in text
+    assert 'table = "f.csv"' in text
+
+
+def test_a_curve_is_written_in_handy_units() -> None:
+    assert format_motor(CURVE) == MOTOR_CSV.replace("0,2\n", "0,2.0\n", 1)
+
+
+SIZES = st.floats(1e-20, 1e20)
+POSITIVE = st.just(0.0) | SIZES
+TURNING = (
+    st.floats(1e-20, 1e6) | st.floats(-1e6, -1e-20) | st.integers(0, 9000).map(lambda n: n * RPM)
+)
+RANDOM: dict[str, tuple[Any, Any, int, tuple[Any, ...]]] = {
+    # its class, what its first column holds, its fewest rows, what the others hold
+    "soil": (SoilTable, st.floats(1e-20, 1e6), 1, (POSITIVE,)),
+    "motor": (MotorTable, TURNING, 2, (POSITIVE,)),
+    "impedance": (Impedance, SIZES, 2, (SIZES, SIZES | SIZES.map(lambda x: -x))),
+}
+
+
+@pytest.mark.parametrize("sort", RANDOM)
+@given(st.data())
+def test_random_tables_survive(
+    tmp_path_factory: pytest.TempPathFactory, sort: str, data: st.DataObject
+) -> None:
+    of, first, fewest, others = RANDOM[sort]
+    at = data.draw(st.lists(first, min_size=fewest, max_size=5, unique=True).map(sorted))
+    columns = (data.draw(st.tuples(*[other] * len(at))) for other in others)
+    table = of(tuple(at), *columns)
+    folder = tmp_path_factory.getbasetemp()
+    (folder / f"random-{sort}.csv").write_text(getattr(tables, f"format_{sort}")(table))
+    assert getattr(tables, f"read_{sort}")(f"random-{sort}.csv", folder) == table
 
 
 def complaint(text: str) -> str:
@@ -87,7 +266,7 @@ def test_whole_degrees_are_written_as_degrees() -> None:
 
 def test_errors_name_model_and_table(tmp_path: Path) -> None:
     path = tmp_path / "model.toml"
-    path.write_text(FOUR_BAR + '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "f.csv"\n')
+    path.write_text(FOUR_BAR + LOADED)
     table = tmp_path / "f.csv"
     with pytest.raises(ModelError, match=r"loads\[1\].table: f.csv: there is no such file"):
         load(path)

@@ -299,32 +299,6 @@ def test_an_impedance_for_each_plane(tmp_path: Path) -> None:
     assert lateral.resistance[0] == 0.0
 
 
-HEADER = "frequency [Hz],resistance [N s/m],reactance [N s/m]"
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        (None, "hand.csv: there is no such file"),
-        ("", f"hand.csv, line 1: got no column; the header is {HEADER} or frequency [Hz],magnit"),
-        (f"{HEADER}\n20,1,1\n20,1,1\n", "line 3, column frequency: the frequencies must rise"),
-        ("frequency [Hz],resistance [N],reactance [N s/m]\n", "N is the unit of a force; a damp"),
-        ("frequency,resistance [N s/m],reactance [N s/m]\n", "the unit is missing; frequency [Hz]"),
-        (f"{HEADER}\n20,1,1\n", "the table has fewer than two rows; a curve needs two"),
-        (f"{HEADER}\n0,1,1\n1,1,1\n", "the first frequency is 0 Hz; give more than 0"),
-        (f"{HEADER}\n20,1,1\n30,-2,1\n", "the resistance at 30 Hz is -2 N s/m; a hand only takes"),
-        (f"{HEADER}\n20,x,1\n", "line 2, column resistance: got 'x'; give a finite number"),
-    ],
-)
-def test_bad_impedances(text: str | None, said: str, tmp_path: Path) -> None:
-    files = {} if text is None else {"hand_csv": text}
-    path = beside(tmp_path, HAND, 'hand.impedance = "hand.csv"', **files)
-    with pytest.raises(ModelError) as caught:
-        load_tool(path)
-    assert str(caught.value).startswith(f"{path}: shaft.stations[2].hand.impedance: ")
-    assert said in str(caught.value)
-
-
 def engine(old: str = "", new: str = "") -> str:
     text = (
         Path(__file__).parents[3] / "src/equipoise/examples/slider-crank-engine.toml"

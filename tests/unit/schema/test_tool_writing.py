@@ -20,7 +20,6 @@ from equipoise.schema import examples, load
 from equipoise.schema.documents import dumps, save
 from equipoise.schema.models import load_tool, loads_tool
 from equipoise.schema.saving import files_of
-from equipoise.schema.tables import format_impedance, read_impedance
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 
 TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")
@@ -200,17 +199,3 @@ def test_places_that_cannot_be_written(tmp_path: Path, name: str, words: str) ->
     with pytest.raises(UsageError, match=words):
         save(loads_tool(TOOL), tmp_path / name)
     assert not list(tmp_path.iterdir())
-
-
-numbers = st.lists(size, min_size=2, max_size=5, unique=True)
-
-
-@given(numbers.map(sorted), st.lists(size.map(lambda x: -x) | size, min_size=5, max_size=5))
-def test_random_impedances_survive(
-    tmp_path_factory: pytest.TempPathFactory, frequency: list[float], values: list[float]
-) -> None:
-    rows = len(frequency)
-    table = Impedance(tuple(frequency), tuple(map(abs, values[:rows])), tuple(values[:rows]))
-    folder = tmp_path_factory.getbasetemp()
-    (folder / "random-hand.csv").write_text(format_impedance(table))
-    assert read_impedance("random-hand.csv", folder) == table
