@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from equipoise.figures.over_speed import Named, curves_of, log_ends
 from equipoise.figures.style import short
-from equipoise.figures.sweep import Named, curves_of, log_ends
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
 from equipoise.handheld.blocks import figure_named

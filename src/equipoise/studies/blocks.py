@@ -364,7 +364,7 @@ def _causes(found: Tolerances, units: Units | None) -> Table:
     for cause in found.causes:
         shares = (cause.halved, cause.removed) if kept else ()
         cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
-        given = say(", ").join(tolerance_told(found, path, units) for path in cause.numbers)
+        given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
         rows.append(
             (say(", ").join(cause.numbers), given, Value(100 * cause.gain, after=1), *cells)
         )

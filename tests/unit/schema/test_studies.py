@@ -9,12 +9,15 @@ from math import radians
 from pathlib import Path
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
 from equipoise.schema.studies import load_study, restore
+from equipoise.schema.template import Template
 from equipoise.studies.design_space import (
     Choices,
     Correlation,
@@ -22,7 +25,9 @@ from equipoise.studies.design_space import (
     Output,
     Range,
     Sampling,
+    Spread,
     Uniform,
+    Vary,
 )
 from equipoise.studies.sampling import samples
 from equipoise.studies.study import Study
@@ -426,3 +431,53 @@ def test_a_study_without_its_text_is_written_anew(name: str, tmp_path: Path) -> 
     eq.save(replace(study, file=""), path)
     again = eq.load(path)
     assert replace(again, model=study.model) == study
+
+
+SIZES = st.floats(1e-6, 1e6)
+LIMITS = st.none() | SIZES
+MODEL = Template.load("yamashita-1")
+PATHS = ("links.crank.mass", "links.rocker.inertia", "links.coupler.points.C.x", "drive.speed")
+
+
+def varied(grid: bool) -> st.SearchStrategy[tuple[Vary, ...]]:
+    """Some numbers, each with a spread; those of tolerances have no place on a grid."""
+    steps = st.integers(2, 9) if grid else st.none()
+    ordered = st.lists(SIZES, min_size=2, max_size=2, unique=True).map(sorted)
+    spreads: st.SearchStrategy[Spread] = st.builds(
+        lambda limits, count: Range(*limits, count), ordered, steps
+    ) | st.lists(SIZES, min_size=1, max_size=4, unique=True).map(lambda v: Choices(tuple(v)))
+    if not grid:
+        spreads |= st.builds(Normal, SIZES, SIZES, LIMITS) | st.builds(Uniform, SIZES, SIZES)
+    one = st.builds(Vary, st.sampled_from(PATHS), spreads)
+    return st.lists(one, min_size=1, max_size=4, unique_by=lambda vary: vary.path).map(tuple)
+
+
+@st.composite
+def studies(draw: st.DrawFn) -> Study:
+    """Any study of one model that its file can tell."""
+    make = st.sampled_from([None, "smallest", "largest"])
+    outputs = (
+        Output("up", "analyze", "shaking_force.y.rms", "force", at_most=draw(LIMITS)),
+        Output("drive_torque.peak", dimension="torque", at_least=draw(LIMITS), make=draw(make)),
+        Output("gap", "balance", "gap", at_most=draw(LIMITS)),
+    )
+    grid = draw(st.booleans())
+    method = "grid" if grid else draw(st.sampled_from(["sobol", "latin-hypercube", "monte-carlo"]))
+    seed = Sampling.seed if grid else draw(st.integers(0, 2**31))
+    designs = None if grid else draw(st.integers(1, 10**9))
+    angles = draw(st.none() | st.sampled_from([360, 720]))
+    return Study(
+        "Any",
+        MODEL,
+        draw(varied(grid)),
+        outputs[: draw(st.integers(1, 3))],
+        Sampling(method, designs, seed),  # type: ignore[arg-type]
+        angles=angles,
+        tolerance=1e-4 if angles else draw(st.floats(1e-12, 0.1)),
+    )
+
+
+@given(studies())
+@settings(max_examples=40)
+def test_any_study_survives(study: Study) -> None:
+    assert eq.loads(eq.dumps(study)) == study
