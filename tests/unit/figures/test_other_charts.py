@@ -266,7 +266,7 @@ def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
     assert "cannot turn" in told and "counterweights.crank.mass = 300 g" in told
     assert "cannot turn" not in words(objectives.landscape(smooth()))
     level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
-    for one in (chart, objectives.landscape(smooth()), studies.landscape(level)):
+    for one in (chart, objectives.landscape(smooth()), objectives.landscape(level)):
         check(one)
         assert render(one) == render(one)
 
