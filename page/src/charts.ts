@@ -296,6 +296,7 @@ export class Charts {
     const found = one && both(state, `output.${one.name}`);
     const { unit, factor } = one ?? { unit: "", factor: 1 };
     const curves = found ? [{ label: "", role: "third" as Role, ...scaled(found, factor) }] : [];
+    this.output.root.classList.toggle("empty", !found);
     this.output.show({ x: this.x.of(state.angles, state.turns), unit, curves });
   }
 

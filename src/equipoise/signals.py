@@ -38,13 +38,14 @@ def highest_at(values: Array, smooth: bool = True) -> Array:
         low = np.where(np.isfinite(low), low, high)
         rounding = ROUNDING * np.maximum(np.abs(high), np.abs(low))
         near = values >= high - np.maximum(EQUAL * (high - low), rounding)
-        if smooth:
-            edge = np.full((*values.shape[:-1], 1), -np.inf)
-            beside = (
-                np.concatenate([values[..., 1:], edge], axis=-1),
-                np.concatenate([edge, values[..., :-1]], axis=-1),
-            )
-            near &= (values >= np.maximum(*beside) - rounding) | (high - low <= rounding)
+        if smooth:  # of the few that are near, those that no neighbour exceeds
+            where = np.nonzero(near)
+            k, count = where[-1], values.shape[-1]
+            row, one = where[:-1], values[where]
+            before = np.where(k > 0, values[(*row, k - 1)], -np.inf)
+            after = np.where(k < count - 1, values[(*row, (k + 1) % count)], -np.inf)
+            least, steady = rounding[..., 0][row], (high - low <= rounding)[..., 0][row]
+            near[where] = (one >= np.maximum(before, after) - least) | steady
     found: Array = np.where(near.any(axis=-1), near.argmax(axis=-1), values.argmax(axis=-1))
     return found
 
@@ -85,17 +86,12 @@ def figures(crank_angle: Array, samples: Array) -> Figures:
 def figures_of_each(crank_angle: Array, samples: Array) -> list[Figures]:
     """The same of several signals (M, N) at once, which takes little longer than of one."""
     sizes = np.abs(samples)
-    rows = (
-        np.mean(samples, axis=1),
-        np.sqrt(np.mean(np.square(samples), axis=1)),
-        np.max(sizes, axis=1),
-        crank_angle[highest_at(sizes)],
-        np.max(samples, axis=1),
-        crank_angle[highest_at(samples)],
-        np.min(samples, axis=1),
-        crank_angle[highest_at(-samples)],
-    )
-    return [Figures(*map(float, one)) for one in zip(*rows, strict=True)]
+    whole = np.stack([sizes, samples, -samples])
+    peak, high, low = np.max(whole, axis=2)
+    peak_at, high_at, low_at = crank_angle[highest_at(whole)]
+    mean, rms = np.mean(samples, axis=1), np.sqrt(np.mean(np.square(samples), axis=1))
+    rows = (mean, rms, peak, peak_at, high, high_at, -low, low_at)
+    return [Figures(*one) for one in np.array(rows).T.tolist()]
 
 
 def harmonics(samples: Array, orders: int | None = None) -> Array:

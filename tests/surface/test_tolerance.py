@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,15 @@ from surface.studies import LENGTHS, TOLERANCES, written
 
 
 @pytest.fixture(scope="module")
-def shown(tmp_path_factory: pytest.TempPathFactory) -> str:
+def with_progress() -> Iterator[None]:
+    """Here the line of progress is looked at."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
+        yield
+
+
+@pytest.fixture(scope="module")
+def shown(tmp_path_factory: pytest.TempPathFactory, with_progress: None) -> str:
     """What is printed of the study."""
     path = tmp_path_factory.mktemp("shown") / "study.toml"
     path.write_text(TOLERANCES, encoding="utf-8")
@@ -52,7 +61,8 @@ def test_figures_in_the_units_of_the_files(shown: str) -> None:
     assert deviation == pytest.approx(one.deviation, rel=1e-3)
     assert own.within is not None
     assert f"Every limit is kept by {100 * own.within.value:.2f} % (" in shown
-    assert re.search(r"^links.coupler.mass +deviation 15.00 g, cut at 3 ", shown, re.MULTILINE)
+    mass = r"^links.coupler.mass, links.coupler.inertia +deviation 15.00 g, cut at 3; deviation "
+    assert re.search(mass, shown, re.MULTILINE)
     assert re.search(r"^links.coupler.center_of_mass.x +\+- 2.000 mm ", shown, re.MULTILINE)
 
 

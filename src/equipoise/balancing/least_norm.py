@@ -37,6 +37,8 @@ class Added(Result):
     machine : with them; masses, and moments of inertia about the centres of mass, are kept.
     """
 
+    shown_in = "balancing.condition_blocks"
+
     moments: Mapping[str, Vector]
     totals: Mapping[str, Vector]
     cost: float

@@ -58,6 +58,7 @@ class Conditions(Result):
     without_effect : parameters that stand in no row.
     """
 
+    shown_in: ClassVar[str] = "balancing.condition_blocks"
     records: ClassVar[str] = "conditions"
 
     kind: Kind

@@ -68,6 +68,8 @@ class Sensitivities(Result):
     crank_angle : (N,) rad, over the whole cycle.  turns : of the crank in it.
     """
 
+    shown_in = "balancing.condition_blocks"
+
     machine: Machine
     output: str
     crank_angle: Array

@@ -203,7 +203,7 @@ def sensitivities(
         found = tool_sensitivities(loaded, np.linspace(*asked.ends, BAND))
 
     def show() -> None:
-        from equipoise.handheld.blocks import sensitivity_blocks
+        from equipoise.handheld.hand_blocks import sensitivity_blocks
 
         print_tool(loaded, shown_in, sensitivity_blocks(loaded, found, asked.ends))
 

@@ -178,7 +178,7 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.figures.studies import landscape_charts, told_best
+    from equipoise.figures.objectives import landscape_charts, told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 

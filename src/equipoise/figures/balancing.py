@@ -1,4 +1,4 @@
-"""The charts of balancing: before and after, orders, rows and their phases, trade-offs."""
+"""The charts of balancing: before and after, orders, rows and their phases."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.problem import Problem
 from equipoise.figures.analysis import rounding, settled
 from equipoise.figures.crank import (
     closed,
@@ -27,7 +26,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
-from equipoise.quantities import Dimension, in_unit
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.results.naming import objective_named
@@ -35,7 +34,6 @@ from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
     from equipoise.mechanism.model import Drive, Machine
 
@@ -69,9 +67,6 @@ NEAR = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
 MOST_PANELS, IN_LINE = 4, 6
 """Panels of orders in a picture; dials side by side."""
-SENSIBLE, MARGIN = 3.0, 0.12
-"""Times the size of a trade-off: how far off the machine as it is may be to be in the picture;
-free at each side, over what is drawn."""
 
 
 def charts(found: Balanced) -> dict[str, Chart]:
@@ -333,65 +328,3 @@ def summed(machine: Machine, axis: str) -> tuple[Array, Array]:
     count = SAMPLES_OF_ROWS * read.turns
     found = Periodic(total, read.turns)
     return np.arange(count) * (found.period / count), found.samples(count)
-
-
-# -- trade-offs ------------------------------------------------------------------------------------
-
-
-def front(found: Front) -> Chart:
-    """The second objective against the first, each point as good as any can be."""
-    values, before = found.values, np.array(_before(found))
-    names = [objective_named(one, len(found.original.rows)) for one in (found.first, found.second)]
-    seen = _is_near(values, before)
-    held = np.vstack([values, before]) if seen else values
-    x, y = (
-        _objective_axis(short(name, most), unit, column)
-        for name, most, (_, unit, _), column in zip(
-            names, (60, 46), found.columns()[:2], held.T, strict=True
-        )
-    )
-    told = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
-    marks, remark = [], ""
-    if seen:
-        text = say("as it is: {places}", places=told)
-        marks.append(Mark(float(before[0]), float(before[1]), text, "own", 90.0))
-    else:
-        remark = say("as it is, far off: {places}", places=told)
-    for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
-        first, second = map(float, values[k])
-        text = f"{x.quantity(first)}, {y.quantity(second)}"
-        added = found.points[k].added_mass
-        if added > 1e-9:
-            text += "\n" + say("with {mass} more", mass=grams(added))
-        marks.append(Mark(first, second, text, "best", wish, sign=False))
-    curve = Curve(values[:, 0], values[:, 1], "", "best")
-    panel = Panel(x, y, (curve,), tuple(marks), remark=remark, height=250.0)
-    speed = told_speed(found.original.drive.speed)
-    title = say("Trade-off: the least of one for every value of the other")
-    return Chart("front", found.original.title, f"{title}, at {speed}", (panel,))
-
-
-def _objective_axis(label: str, unit: str, values: Array) -> Axis:
-    """An axis with room on which a displacement is told in mm or mrad, anything else as it is."""
-    shown_in = {"m": "mm", "rad": "mrad"}.get(unit, unit)
-    low, high = float(np.min(values)), float(np.max(values))
-    room = MARGIN * (high - low if high > low else max(abs(high), 1e-12))
-    return Axis(label, in_unit(shown_in), low=low - room, high=high + room)
-
-
-def _before(found: Front) -> tuple[float, float]:
-    """Both objectives of the machine as it is, SI units."""
-    one, other = (Problem.value_of(found.original, which) for which in (found.first, found.second))
-    return one, other
-
-
-def _is_near(values: Array, before: Array) -> bool:
-    """Whether the machine as it is can be shown without making the curve small."""
-    low, high = np.min(values, axis=0), np.max(values, axis=0)
-    room = SENSIBLE * (high - low)
-    return bool(np.all(before <= high + room) and np.all(before >= low - room))
-
-
-def grams(mass: float) -> str:
-    """A mass (kg) as a workshop would tell it."""
-    return f"{shown(mass)} kg" if mass >= 10 else f"{shown(1000 * mass)} g"

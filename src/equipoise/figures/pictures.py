@@ -30,7 +30,7 @@ CHARTS = {
     "ToolExposure": "tool_speeds:exposure_charts",
     "ToolDesign": "tool_designs:design_charts",
     "Variation": "tool_designs:variation_charts",
-    "Landscape": "studies:landscape_charts",
+    "Landscape": "objectives:landscape_charts",
 }
 """Kind of result that needs nothing else for its charts -> module here, and the function."""
 
@@ -110,10 +110,11 @@ def balance_pictures(
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
     from equipoise.figures import balancing as view
+    from equipoise.figures import objectives
     from equipoise.figures.changes import changes
 
     if isinstance(found, Front):
-        return {"front": view.front(found)}
+        return {"front": objectives.front(found)}
     if isinstance(found, Phasing):
         return {**view.phasing_charts(found, original)}
     pictures: Pictures = {**view.charts(found)}

@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-INK, LINES, FAINT, PALE = "#1a1a1a", "#595959", "#a6a6a6", "#d9d9d9"
-MAIN, STRESS = "#0060a8", "#c8500a"
-"""Blue and vermilion keep apart for the colour-blind; in grey, width and dashes tell them apart."""
-SOIL, STUBBLE, EARTH = "#efe4d2", "#dccbb0", "#7a5c33"
-"""Below the surface: fill, hatching, and the surface itself."""
-GRID, PAPER = "#e6e6e6", "#ffffff"
+from equipoise.symbols.looks import LIGHT
+
+INK, LINES, FAINT, PALE = (LIGHT[name] for name in ("ink", "lines", "faint", "pale"))
+MAIN, STRESS, PAPER = (LIGHT[name] for name in ("main", "stress", "paper"))
+SOIL, EARTH = (LIGHT[name] for name in ("soil", "earth"))
+"""As symbols have them."""
+GRID, STUBBLE = "#e6e6e6", "#dccbb0"
+"""Of charts alone: behind their curves, and the hatching below the surface."""
 
 SMALL, NORMAL, LARGE = 7.5, 8.5, 10.5
 """Sizes of type, points."""

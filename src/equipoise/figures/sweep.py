@@ -1,9 +1,9 @@
-"""Curves against speed: the axis, named and quieter ones, resonances, the resonance map."""
+"""Charts of vibration over a range of speeds: at gauges, in mounts, and the resonance map."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import pi
 from typing import TYPE_CHECKING, Any
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.figures.crank import read_axis
-from equipoise.figures.style import KINDS, short
+from equipoise.figures.over_speed import Named, bounded, curves_of, log_ends, ordered
+from equipoise.figures.style import KINDS
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
@@ -33,11 +34,8 @@ if TYPE_CHECKING:
     from equipoise.vibration.sweep import Sweep
 
 Array = np.ndarray[Any, Any]
-
 LOUD = 0.1
 """Share from which a resonance is loud."""
-UNBOUNDED = 5e3
-"""Over the median, what only a resonance without damping can reach."""
 QUANTITIES = {
     "displacement": (
         to_say("Peak-to-peak displacement at the gauges against crank speed"),
@@ -58,19 +56,6 @@ MOST_ORDERS, USUAL_ORDERS = 20, (1.0, 2.0, 3.0)
 HERTZ = Display("Hz", 1 / (2 * pi))
 
 
-@dataclass(frozen=True, eq=False)
-class Named:
-    """Values (S,) against speed, and what they are called."""
-
-    name: str
-    values: Array
-
-    @property
-    def largest(self) -> float:
-        """Largest value that is no resonance without damping."""
-        return float(np.max(bounded(self.values), initial=0.0))
-
-
 def sweep_charts(sweep: Sweep) -> dict[str, Chart]:
     """Every picture of the vibration over a range of speeds by name.
 
@@ -87,50 +72,6 @@ def sweep_charts(sweep: Sweep) -> dict[str, Chart]:
 
 
 # -- curves ----------------------------------------------------------------------------------------
-
-
-def bounded(values: Array) -> Array:
-    """Those of some values that are numbers, and no peak without bound."""
-    finite = values[np.isfinite(values)]
-    if not finite.size:
-        return finite
-    return np.asarray(finite[finite <= UNBOUNDED * np.median(finite)])
-
-
-def ordered(read: Mapping[str, Array]) -> list[Named]:
-    """Curves that are named, in their order; behind them the quieter ones that are not."""
-    found = [Named(name, values) for name, values in read.items()]
-    loudest = sorted(found, key=lambda one: -one.largest)[: len(KINDS)]
-    return [c for c in found if c in loudest] + [c for c in found if c not in loudest]
-
-
-def curves_of(x: Array, found: Sequence[Named], stable: Array | None = None) -> tuple[Curve, ...]:
-    """Curves over places (S,), dashed where they are not stable; the quieter ones share a name."""
-    drawn = []
-    quieter = say("{count} quieter ones", count=len(found) - len(KINDS))
-    for number, one in enumerate(found):
-        named = number < len(KINDS)
-        role = f"kind {number}" if named else "quieter"
-        label = short(one.name, 40) if named else quieter
-        y = np.where(one.values > 0, one.values, np.nan)
-        if stable is None or np.all(stable):
-            drawn.append(Curve(x, y, label, role))
-            continue
-        near = np.convolve(~stable, np.ones(3), "same") > 0
-        drawn.append(Curve(x, np.where(stable, y, np.nan), label, role))
-        drawn.append(Curve(x, np.where(near, y, np.nan), "", role, dashed=True))
-    return tuple(drawn)
-
-
-def log_ends(
-    found: Sequence[Named], below: float, above: float, more: Any = ()
-) -> tuple[float, float]:
-    """Ends of a log axis that holds curves and some more values, with room as factors."""
-    every = np.concatenate([*(bounded(one.values) for one in found), np.asarray(more, float)])
-    heard = every[np.isfinite(every) & (every > 0)]
-    high = float(np.max(heard, initial=0.0)) or 1.0
-    low = max(float(np.min(heard, initial=high)), high * 1e-6)
-    return low / below, high * above
 
 
 def speed_axis(sweep: Sweep) -> Axis:

@@ -8,14 +8,14 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from equipoise.figures.over_speed import Named, curves_of, log_ends
 from equipoise.figures.style import short
-from equipoise.figures.sweep import Named, curves_of, log_ends
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
-from equipoise.handheld.blocks import figure_named
 from equipoise.handheld.design_plan import KEYS, MEASURES
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.frequencies import scale_of
+from equipoise.handheld.hand_blocks import figure_named
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say

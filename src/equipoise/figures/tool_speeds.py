@@ -11,8 +11,8 @@ import numpy as np
 
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
+from equipoise.figures.over_speed import Named, curves_of, log_ends, ordered
 from equipoise.figures.style import KINDS, short
-from equipoise.figures.sweep import Named, curves_of, log_ends, ordered
 from equipoise.figures.tool_shaft import MOST_MODES, numbered, plane_named, turns_told
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Display

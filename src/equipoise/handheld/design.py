@@ -201,6 +201,8 @@ class ToolDesign(Result):
     speed : (S,), rad/s; a_hv : of the worst hand, before and after, (2, S), m/s2.
     """
 
+    shown_in = "handheld.hand_blocks"
+
     tool: Tool
     better: Tool
     variables: tuple[Before, ...]

@@ -92,6 +92,8 @@ class ToolExposure(Result):
         file does not tell both speeds.
     """
 
+    shown_in = "handheld.hand_blocks"
+
     response: ToolResponse
     grips: Mapping[str, Grip]
     named: Mapping[str, Mapping[str, Grip]]

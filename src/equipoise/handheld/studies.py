@@ -66,6 +66,8 @@ class Variation(Result):
     parameter : lambda of each, as in `modes.PlaneModes`.
     """
 
+    shown_in = "handheld.hand_blocks"
+
     tool: Tool
     station: str
     key: str

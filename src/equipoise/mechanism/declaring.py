@@ -123,7 +123,8 @@ class Declared:
 
     def path(self, item: str = "") -> tuple[str, ...]:
         """Keys that lead to a member in nested values; members may have dots in their names."""
-        return tuple(item if key == "{}" else key for key in self.name.split("."))
+        keys = self.name.split(".")
+        return tuple(item if key == "{}" else key for key in keys) if item else tuple(keys)
 
     def item_of(self, name: str) -> str | None:
         """The member that goes by a name; None where none can."""
@@ -169,7 +170,9 @@ class Declared:
 
     def component(self, whole: Array) -> Array:
         """That component of a vector which this is; all of it where it is its size."""
-        return {"x": np.real, "y": np.imag}.get(self.part, np.asarray)(whole)
+        if self.part == "x":
+            return whole.real
+        return whole.imag if self.part == "y" else whole
 
     def vector(self, found: Any, item: str = "") -> Array:
         """The same, complex of a vector, whichever of its parts this is.

@@ -7,9 +7,7 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING, Any, cast
 
-from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.assessment import remarks
-from equipoise.mechanism.linkage import assemble
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named
 from equipoise.planting.goals import dimension_of
 from equipoise.planting.stroke import finger_base
@@ -17,8 +15,6 @@ from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
-    from equipoise.planting.goals import Goal
-    from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
 
 INSTANTS = {
@@ -339,117 +335,4 @@ def _forces(page: Page) -> Iterator[Block]:
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-# -- a search --------------------------------------------------------------------------------------
-
-OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
-OTHERS = (
-    *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
-    "transmission.min",
-)
-
-
-def figure_named(name: str) -> str:
-    """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
-    labels = {**PATH, **SOIL, **{f"{key}.value": label for key, label in EXTREMES.items()}}
-    if name in labels:
-        return say(labels[name])
-    if name == "transmission.min":
-        return say("smallest transmission angle")
-    instant, _, key = name.partition(".")
-    what = say("crank angle") if key == "crank_angle" else say(OF_AN_INSTANT.get(key, ""))
-    if not what or instant not in INSTANTS:
-        return name
-    return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
-
-
-def fit_blocks(fit: Fit) -> Iterator[Block]:
-    """Goals, what was changed for them, and the figures before and after."""
-    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
-    yield _goals(fit)
-    yield _changes(fit)
-    yield _figures(fit)
-    missed = [figure_named(name) for name, met in fit.met.items() if not met]
-    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
-    if missed:
-        template = to_say(
-            "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
-        )
-        notes.append(Note(template, names=", ".join(missed)))
-    if notes:
-        yield Notes(tuple(notes))
-
-
-def _told(figures: PlantingFigures | None, name: str) -> Cell:
-    value = None if figures is None else figures.figures.get(name)
-    return say("none") if value is None else _figure(value, name)
-
-
-def _figure(value: float, name: str) -> Value:
-    found = cell(value, name)
-    assert found is not None
-    return Value(value, after=4) if found.dimension is None else found
-
-
-def _goals(fit: Fit) -> Table:
-    met = {True: say("yes"), False: say("no"), None: ""}
-    rows = tuple(
-        (
-            figure_named(goal.figure),
-            goal.make or "",
-            *_wanted(goal),
-            _told(fit.before, goal.figure),
-            _missed(_told(fit.after, goal.figure), fit.met.get(goal.figure)),
-            met[fit.met.get(goal.figure)],
-        )
-        for goal in fit.goals
-    )
-    labels = (
-        *("", say("make"), say("wanted"), say("at least"), say("at most")),
-        *(say("before"), say("after"), say("met")),
-    )
-    filled = [any(row[k] not in (None, "") for row in rows) for k in range(len(labels))]
-    kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
-    columns = tuple(Column(labels[k]) for k in kept)
-    return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
-
-
-def _missed(one: Cell, met: bool | None) -> Cell:
-    """A figure that misses its goal stands out."""
-    if met is not False or not isinstance(one, Value):
-        return one
-    return replace(one, broken=True)
-
-
-def _wanted(goal: Goal) -> Iterator[Cell]:
-    for value in (goal.target, goal.at_least, goal.at_most):
-        yield None if value is None else _figure(value, goal.figure)
-
-
-def _changes(fit: Fit) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for variable in fit.designs.variables:
-        values = (variable.start, fit.values[variable.name], variable.low, variable.high)
-        kind = variable.dimension
-        after = 2 if kind == "angle" else None
-        cells = (Value(v, after=after, dimension=kind, unit=UNITS.get(kind)) for v in values)
-        rows.append((variable.name, *cells))
-    old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
-    if old != new:
-        pair = (Value(speed, dimension="angular speed", unit="rpm") for speed in (old, new))
-        rows.append((say("crank speed"), *pair, None, None))
-    labels = ("", say("before"), say("after"), say("lowest allowed"), say("highest allowed"))
-    return Table(say("Changes"), tuple(map(Column, labels)), tuple(rows))
-
-
-def _figures(fit: Fit) -> Table:
-    asked = {goal.figure for goal in fit.goals}
-    rows: list[tuple[Cell, ...]] = []
-    for name in (*PATH, *SOIL, *(f"{name}.value" for name in EXTREMES), *OTHERS):
-        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
-        if name not in asked and known:
-            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
-    columns = (Column(""), Column(say("before")), Column(say("after")))
-    return Table(say("Other figures"), columns, tuple(rows))
-
-
-SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks, "Fit": fit_blocks}
+SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks}

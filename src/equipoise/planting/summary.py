@@ -196,9 +196,11 @@ def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
         if not name.endswith(".value"):
             continue
         if body.startswith("clearance.soil.") and value < 0:
-            yield f"{body.removeprefix('clearance.soil.')} goes {-1e3 * value:.4g} mm into the soil"
+            link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g}"
+            yield Note(to_say("{link} goes {depth} mm into the soil"), link=link, depth=depth)
         if body.startswith("clearance.tray.") and value == 0 and ".tray.tip " not in body:
-            yield f"{body.removeprefix('clearance.tray.')} goes through the tray's edge"
+            link = body.removeprefix("clearance.tray.")
+            yield Note(to_say("{link} goes through the tray's edge"), link=link)
 
 
 def _notes(

@@ -16,8 +16,7 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
-from equipoise.studies.blocks import Unit, Units, in_unit, labelled
-from equipoise.studies.design_space import Choices, Normal, Range
+from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Outcome
 from equipoise.vibration.body import Body, at_rest
@@ -31,7 +30,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.linkage import Linkage
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount
-    from equipoise.studies.design_space import Spread
     from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]
@@ -296,8 +294,6 @@ def _design(design: DesignPlan) -> str:
 # -- studies ---------------------------------------------------------------------------------------
 
 FAST, SLOW = "many at once, in compiled loops", "one after the other"
-MOST_CHOICES = 5
-"""Values of a list that are told."""
 
 
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
@@ -309,13 +305,13 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
     yield Text(f"model: {study.model.base().title}")
     yield Text(f"{study.size} designs, {sampling.method}{seed}")
-    header = ("", "model", "in the study")
-    yield Table("What varies", tuple(map(Column, header)), tuple(_varied(study, units, own)))
+    varied = tuple(map(Column, ("", "model", "in the study")))
+    yield Table("What varies", varied, tuple(_varied(study, units, own)))
     for one in study.correlations:
         yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
-    header = ("", "of", "model", "at least", "at most", "make")
+    computed = tuple(map(Column, ("", "of", "model", "at least", "at most", "make")))
     rows = tuple(_computed(study, units, outcome))
-    yield Table("What is computed", tuple(map(Column, header)), rows)
+    yield Table("What is computed", computed, rows)
     yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
     if outcome.reason[0] != COMPUTED:
         reason = REASONS[int(outcome.reason[0])]
@@ -328,25 +324,6 @@ def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]
         unit = units[one.path]
         spread = spread_told(one.spread, unit)
         yield labelled(one.path, unit.name), in_unit(value, unit), spread
-
-
-def spread_told(spread: Spread, unit: Unit) -> str:
-    """How a number varies, such as ``60.00 to 80.00`` or ``71.50 +- 0.2000``, without its unit."""
-
-    def told(value: float) -> str:
-        return number(unit.of_si(value))
-
-    if isinstance(spread, Range):
-        steps = "" if spread.steps is None else f", {spread.steps} steps"
-        return f"{told(spread.low)} to {told(spread.high)}{steps}"
-    if isinstance(spread, Choices):
-        some = ", ".join(map(told, spread.values[:MOST_CHOICES]))
-        more = len(spread.values) - MOST_CHOICES
-        return f"{some} and {more} more" if more > 0 else some
-    if isinstance(spread, Normal):
-        cut = "" if spread.cut is None else f", cut at {spread.cut:g}"
-        return f"{told(spread.mean)}, deviation {told(spread.deviation)}{cut}"
-    return f"{told(spread.centre)} +- {told(spread.half_width)}"
 
 
 def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:

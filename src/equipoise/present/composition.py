@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
-from math import pi
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks, said
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
+from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, say, speaking, to_say
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.document import Document
@@ -18,11 +18,12 @@ from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.remedies import nothing_told
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import tool_answers, tool_tiles
-from equipoise.quantities import number
+from equipoise.quantities import PER_RPM, number
 from equipoise.results.analysis_blocks import force_blocks, joint_table
 from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks, motion_blocks
-from equipoise.vibration.blocks import model_told, resonances_table, response_blocks
+from equipoise.vibration.blocks import model_told, response_blocks
+from equipoise.vibration.sweep_blocks import resonances_table
 
 TITLES = {
     "model": to_say("Model"),
@@ -37,6 +38,9 @@ TITLES = {
     "settings": to_say("Version and settings"),
     "file": to_say("The model file"),
 }
+
+Parts = dict[str, list[Block | Section]]
+"""What stands in each section, by its name."""
 
 MOST_TRACED = 3
 """Points whose paths are drawn beside the moving linkage, where no finger plants."""
@@ -67,7 +71,7 @@ def build(
 def _of_linkage(found: Findings, language: str, command: str, together: bool) -> Document:
     machine, analysis = found.machine, found.analysis
     drawn = drawings(found, together)
-    blocks: dict[str, list[Block]] = {"model": list(model_blocks(machine))}
+    blocks: Parts = {"model": [*model_blocks(machine)]}
     blocks["motion"] = [*drawn.pop("motion", []), *motion_blocks(analysis)]
     if found.planting is not None:
         blocks["planting"] = [*drawn.pop("planting", []), *planting_blocks(found.planting)]
@@ -75,11 +79,10 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         blocks["forces"] = [*drawn.pop("forces", []), *force_blocks(analysis)]
         blocks["joints"] = [*drawn.pop("joints", []), joint_table(analysis)]
     if found.response is not None:
-        shown = [*drawn.pop("vibration", []), *drawn.pop("modes", [])]
-        blocks["vibration"] = [*shown, *_vibration(found)]
+        blocks["vibration"] = [*drawn.pop("vibration", []), *drawn.pop("modes", [])]
+        blocks["vibration"].extend(_vibration(found))
     if found.balanced is not None:
         blocks["balance"] = [*balance_blocks(found), *drawn.pop("balance", [])]
-    settings = [*_settings_of_linkage(found), _made(found)]
     return Document(
         language,
         machine.title,
@@ -88,7 +91,7 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         tuple(tiles(found)),
         tuple(answers(found)),
         _animation(found),
-        _sections(found, blocks, settings, command),
+        _sections(found, blocks, [*_settings_of_linkage(found), _made(found)], command),
     )
 
 
@@ -124,19 +127,19 @@ def balance_blocks(found: Findings) -> Iterator[Block]:
 
 
 def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
-    blocks: list[Block] = list(drawings(found).get("tool", []))
+    blocks: list[Block | Section] = [*drawings(found).get("tool", [])]
     if found.design is not None:
-        blocks.extend(of_tools.design_blocks(found.design))
+        blocks.extend(design_blocks(found.design))
     if found.exposure is not None:
-        blocks.extend(of_tools.exposure_of_tool(found.exposure))
+        blocks.extend(exposure_of_tool(found.exposure))
     if found.modes is not None:
         blocks.extend(of_tools.modes_blocks(found.modes))
     operation = found.tool.operation
     subtitle = ""
     if operation is not None:
-        speed = number(operation.speed * 30 / pi)
-        subtitle = say("hand-held tool, engine at {speed} rpm", speed=speed)
-    named = {"model": list(of_tools.model_blocks(found.tool)), "tool": blocks}
+        rpm = number(operation.speed / PER_RPM)
+        subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
+    named: Parts = {"model": [*of_tools.model_blocks(found.tool)], "tool": blocks}
     return Document(
         language,
         found.tool.title,
@@ -151,14 +154,14 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
 
 def _sections(
     found: Findings | ToolFindings,
-    blocks: dict[str, list[Block]],
+    blocks: Parts,
     settings: Iterable[str],
     command: str,
 ) -> tuple[Section, ...]:
     """Sections of the blocks, then what every report ends with."""
     notes = [Notes(found.notes)] if found.notes else []
     again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
-    last: dict[str, list[Block]] = {
+    last: Parts = {
         "sources": [Facts("", tuple(sources(found)))],
         "settings": [Facts("", tuple(settings)), *notes, *again],
         "file": [Listing(found.file, found.text)],

@@ -3,19 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 from equipoise.results.blocks import Section
-
-
-@dataclass(frozen=True)
-class Drawn:
-    """A picture as SVG, among the blocks of a section."""
-
-    kind: ClassVar[str] = "drawn"
-    name: str
-    caption: str
-    svg: str
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 from equipoise.figures import render
 from equipoise.i18n import say
-from equipoise.present.document import Drawn
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.pictures import SECTIONS, each
+from equipoise.results.blocks import Drawn
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection

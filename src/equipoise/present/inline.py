@@ -5,33 +5,10 @@ from __future__ import annotations
 import re
 from html import escape
 
-from equipoise.figures.style import (
-    EARTH,
-    FAINT,
-    INK,
-    LINES,
-    MAIN,
-    PALE,
-    SOIL,
-    STRESS,
-    STUBBLE,
-)
+from equipoise.figures.style import GRID, STUBBLE
 from equipoise.symbols.looks import DARK, LIGHT
 
-GRID = "#e6e6e6"
-NAMES = {
-    "#ffffff": "paper",
-    INK: "ink",
-    LINES: "lines",
-    FAINT: "faint",
-    PALE: "pale",
-    MAIN: "main",
-    STRESS: "stress",
-    GRID: "grid",
-    SOIL: "soil",
-    STUBBLE: "stubble",
-    EARTH: "earth",
-}
+NAMES = {color: name for name, color in LIGHT.items()} | {GRID: "grid", STUBBLE: "stubble"}
 """Colour of a picture -> name of the page's property that takes its place."""
 DARK_ONLY = {"grid": "#2b3138", "soil": "#332c20", "stubble": "#57492f", "earth": "#c9a774"}
 

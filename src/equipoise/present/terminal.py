@@ -168,8 +168,8 @@ class _Printer:
             table.add_row(*(self._cell(row[column]) for column in columns))
         with self.console.capture() as caught:
             self.console.print(table)
-        lines = (line.rstrip() for line in caught.get().splitlines())
-        self.console.file.write("\n".join(lines) + "\n")
+        printed = (line.rstrip() for line in caught.get().splitlines())
+        self.console.file.write("\n".join(printed) + "\n")
 
     def _cell(self, cell: Text) -> RichText:
         style = STRONG if cell.strong and self.coloured else ""

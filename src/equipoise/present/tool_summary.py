@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.exposure.blocks import VERDICTS
-from equipoise.handheld.blocks import UNITS, varied_named
+from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
+from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken
 from equipoise.present.document import Answer, Tile

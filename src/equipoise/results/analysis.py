@@ -237,7 +237,7 @@ def _parts(values: Array) -> Any:
 
 def _summary(analysis: Analysis) -> Values:
     summary: Values = {
-        name: {**asdict(figure), "peak_to_peak": figure.peak_to_peak}
+        name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
         for name, figure in analysis.summary.items()
     }
     if analysis.four_bar is not None:

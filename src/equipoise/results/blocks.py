@@ -145,6 +145,16 @@ class Picture:
 
 
 @dataclass(frozen=True)
+class Drawn:
+    """A picture as SVG, as it has been drawn."""
+
+    kind: ClassVar[str] = "drawn"
+    name: str
+    caption: str
+    svg: str
+
+
+@dataclass(frozen=True)
 class Listing:
     """Text as it stands in a file."""
 
@@ -153,7 +163,7 @@ class Listing:
     text: str
 
 
-Block = Text | Facts | Table | Notes | Picture | Listing
+Block = Text | Facts | Table | Notes | Picture | Drawn | Listing
 
 
 @dataclass(frozen=True)
@@ -163,4 +173,4 @@ class Section:
     kind: ClassVar[str] = "section"
     name: str
     title: str
-    blocks: tuple[Block, ...]
+    blocks: tuple[Block | Section, ...]

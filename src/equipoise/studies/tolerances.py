@@ -78,6 +78,8 @@ class Tolerances(Result):
     computed : machines in all.
     """
 
+    shown_in = "studies.tolerance_blocks"
+
     study: Study
     designs: int
     failures: Mapping[str, int]

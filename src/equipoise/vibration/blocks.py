@@ -16,9 +16,7 @@ from equipoise.results.blocks import (
     Cell,
     Column,
     Facts,
-    Many,
     Notes,
-    Span,
     Table,
     Text,
     Value,
@@ -27,10 +25,8 @@ from equipoise.results.machine_blocks import driven
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.mode_shapes import Mode
     from equipoise.vibration.response import GaugeSignals, Response
-    from equipoise.vibration.sweep import Sweep
     from equipoise.vibration.transient import Transient
 
 Array = np.ndarray[Any, Any]
@@ -51,10 +47,6 @@ MODELS = {
 """What each model of the support stands for."""
 NOTHING = 1e-2
 """m, rad and their rates: scale beside which what is smaller than atoms is rounding."""
-MOST_PEAKS = 6
-"""Peaks that are told of each gauge."""
-MET_ORDERS = (1, 2, 3, 4)
-"""Orders of which the speeds that meet a mode are told."""
 PARTS = 5
 """Equal stretches of a time, of which the first and the last show whether it has settled."""
 
@@ -154,7 +146,7 @@ def gauge_tables(response: Response) -> Iterator[Table]:
         (say("Gauges; RMS about the mean"), MOVED, False),
         (say("Gauges of rotation; RMS about the mean"), TURNED, True),
     ):
-        rows = tuple(
+        rows: tuple[tuple[Cell, ...], ...] = tuple(
             (name, *(cell for signal in _signals(gauge) for cell in _ranges(signal)))
             for name, gauge in response.gauges.items()
             if gauge.rotation is rotation
@@ -182,7 +174,7 @@ def _orders(response: Response) -> Table:
         for name, gauge in gauges.items()
     }
     places = loud(list(padded.values()))
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for name, sizes in padded.items():
         scale = max(1e3 * float(np.max(sizes[1:], initial=0.0)), NOTHING)
         cells = (reading(float(sizes[k]), gauges[name].rotation, scale) for k in places)
@@ -299,158 +291,6 @@ def _solution(response: Response) -> Iterator[str]:
         )
 
 
-# -- over speeds -----------------------------------------------------------------------------------
-
-
-def sweep_blocks(sweep: Sweep) -> Iterator[Block]:
-    """Natural frequencies, resonances, and what each gauge reads at its peaks."""
-    low, high = (number(float(sweep.speed[k]) / PER_RPM) for k in (0, -1))
-    yield Text(
-        say(
-            "{link} driven at {low} to {high} rpm, {count} speeds",
-            link=sweep.machine.drive.link,
-            low=low,
-            high=high,
-            count=len(sweep.speed),
-        )
-    )
-    yield Text(model_told(sweep.model))
-    yield modes_table(sweep.modes)
-    if sweep.resonances:
-        yield resonances_table(sweep)
-    else:
-        yield Text(say("There is no resonance in this range."))
-    yield _peaks(sweep)
-    if sweep.notes:
-        yield Notes(sweep.notes)
-
-
-def resonances_table(sweep: Sweep) -> Table:
-    """Where orders of the crank meet modes."""
-    rows = tuple(
-        (
-            Value(one.speed),
-            f"{one.order:.4g}",
-            str(one.mode),
-            Value(one.frequency / 2 / pi),
-            Value(100 * one.share),
-            say("no need") if one.avoid is None else Span(*one.avoid),
-        )
-        for one in sweep.resonances
-    )
-    columns = (
-        Column(say("crank speed"), "angular speed", "rpm"),
-        Column(say("order")),
-        Column(say("mode")),
-        Column(say("frequency"), "frequency"),
-        Column(say("share"), unit="%"),
-        Column(say("keep away from"), "angular speed", "rpm"),
-    )
-    title = (
-        say("Resonances of small motion: crank speeds at which an order meets a mode")
-        if sweep.model == "exact"
-        else say("Resonances: crank speeds at which an order meets a mode")
-    )
-    what = say("share of the loudest; to be kept away from where amplified more than three times")
-    return Table(f"{title} ({what})", columns, rows)
-
-
-def _peaks(sweep: Sweep) -> Table:
-    rows = []
-    for name, curve in sweep.gauges.items():
-        tops = tuple(
-            reading_at(value, speed, curve.rotation)
-            for speed, value in sweep.peaks[name][:MOST_PEAKS]
-        )
-        k = int(np.nanargmin(curve.peak_to_peak))
-        lowest = reading_at(float(curve.peak_to_peak[k]), float(sweep.speed[k]), curve.rotation)
-        rows.append((name, lowest, Many(tops) if tops else say("none")))
-    columns = (
-        Column(""),
-        Column(say("smallest"), at=("angular speed", "rpm")),
-        Column(say("peaks, the largest first"), at=("angular speed", "rpm")),
-    )
-    return Table(say("Gauges: peak to peak, at the speed of the crank"), columns, tuple(rows))
-
-
-def reading_at(value: float, speed: float, rotation: bool) -> Value:
-    """What a gauge reads at a speed of the crank."""
-    units = TURNED if rotation else MOVED
-    return Value(value, NOTHING, speed, dimension=units.dimensions[0], unit=units.names[0])
-
-
-# -- free, and in time -----------------------------------------------------------------------------
-
-
-def free_blocks(free: FreeVibration) -> Iterator[Block]:
-    """Natural frequencies, damping, shapes, and the crank speeds that meet them."""
-    step = free.linear.excitation.step
-    if step == "moment":
-        yield Text(say("Mass of the linkages spread as in the mean of a turn."))
-    else:
-        yield Text(say("Mass of the linkages at the drive's pivot."))
-    yield Text(model_told(step))
-    yield modes_table(free.modes)
-    yield _met(free)
-    yield from _shapes(free)
-    yield _rest(free)
-
-
-def _met(free: FreeVibration) -> Block:
-    rows = tuple(
-        (str(count), *(Value(mode.natural_frequency / order) for order in MET_ORDERS))
-        for count, mode in enumerate(free.modes, 1)
-        if mode.swings
-    )
-    if not rows:
-        return Text(say("No mode swings, so no crank speed meets one."))
-    heads = (say("order {order}", order=order) for order in MET_ORDERS)
-    columns = (Column(say("mode")), *(Column(head, "angular speed", "rpm") for head in heads))
-    return Table(say("Crank speeds that meet a mode"), columns, rows)
-
-
-def _shapes(free: FreeVibration) -> Iterator[Table]:
-    """Each mode in the coordinates and at the gauges; the largest coordinate is 1."""
-    shapes = tuple(
-        (str(count), *map(_part, mode.shape.tolist())) for count, mode in enumerate(free.modes, 1)
-    )
-    title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
-    yield Table(title, tuple(map(Column, (say("mode"), *free.coordinates))), shapes)
-    gauges = tuple(
-        (str(count), *(_part(complex(values[count - 1])) for values in free.gauges.values()))
-        for count in range(1, len(free.modes) + 1)
-    )
-    yield Table(
-        say("Shapes at the gauges"), tuple(map(Column, (say("mode"), *free.gauges))), gauges
-    )
-
-
-def _part(value: complex) -> Value:
-    size, phase = abs(value), float(np.angle(value))
-    if size < 1e-6:
-        return Value(0.0)
-    if abs(phase) < np.radians(0.05):
-        return Value(size)
-    if abs(abs(phase) - pi) <= np.radians(0.05):
-        return Value(-size)
-    return Value(size, at=phase)
-
-
-def _rest(free: FreeVibration) -> Table:
-    mounts = free.linear.body.support.mounts
-    scale = max((abs(value) for value in free.preloads.values()), default=0.0)
-    rows = tuple(
-        (
-            name,
-            Value(force, scale, dimension="force" if mounts[name].axis is None else "torque"),
-            "" if free.linear.rest.carries(name, mounts[name]) else say("does not touch"),
-        )
-        for name, force in free.preloads.items()
-    )
-    columns = (Column(""), Column(say("force on the support")), Column(""))
-    return Table(say("Mounts at rest"), columns, rows)
-
-
 def transient_blocks(found: Transient) -> Iterator[Block]:
     """Extremes of every gauge and mount, in the first and the last stretch of the time."""
     yield Text(
@@ -490,7 +330,5 @@ def _stretch(
 
 SHOWS = {
     "Response": response_blocks,
-    "Sweep": sweep_blocks,
-    "FreeVibration": free_blocks,
     "Transient": transient_blocks,
 }

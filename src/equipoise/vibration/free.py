@@ -121,6 +121,7 @@ class FreeVibration(Result):
     preloads : force (N) or torque (N m) of each mount at rest.
     """
 
+    shown_in: ClassVar[str] = "vibration.sweep_blocks"
     records: ClassVar[str] = "modes"
 
     linear: Linear

@@ -77,6 +77,8 @@ class Sweep(Result):
     NaN and `notes` tell.
     """
 
+    shown_in = "vibration.sweep_blocks"
+
     machine: Machine
     model: Model
     speed: Array

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.blocks import conditions_blocks
+from equipoise.balancing.condition_blocks import conditions_blocks
 from equipoise.balancing.least_norm import least_moments
 from equipoise.balancing.linear_conditions import conditions
 from equipoise.balancing.physical_consistency import feasibility

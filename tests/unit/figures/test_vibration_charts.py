@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.figures.over_speed import bounded, ordered
 from equipoise.figures.pictures import pictures_of
 from equipoise.figures.style import LOOKS, look_of
-from equipoise.figures.sweep import bounded, fraction, meeting, merged, ordered, sweep_charts
+from equipoise.figures.sweep import fraction, meeting, merged, sweep_charts
 from equipoise.figures.vibration import response_charts, transient_charts
 from equipoise.results.charts import Chart, Curve
 from equipoise.vibration.forced import respond

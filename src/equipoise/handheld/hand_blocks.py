@@ -1,0 +1,205 @@
+"""What a hand-held tool does to the hands, what each of its numbers does, and what to change."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from equipoise.exposure.blocks import exposure_blocks
+from equipoise.handheld.blocks import (
+    DIGITS,
+    MOST_ROWS,
+    SIDES,
+    cell,
+    column,
+    ends_told,
+    unbounded,
+)
+from equipoise.handheld.design_plan import KEYS
+from equipoise.handheld.exposed import IDLING, RACING, WORKING
+from equipoise.handheld.model import PLANES
+from equipoise.handheld.studies import number_of
+from equipoise.i18n import say, to_say
+from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.results.blocks import Block, Cell, Change, Column, Section, Table, Text, Value
+
+if TYPE_CHECKING:
+    from equipoise.handheld.design import Before, ToolDesign
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.studies import Variation
+
+
+EDGES = {
+    "lowest": to_say("as low as it may be"),
+    "highest": to_say("as high as it may be"),
+}
+VARIED = {
+    "position": to_say("position of {station}"),
+    "mass": to_say("mass of {station}"),
+    "stiffness": to_say("stiffness under {station}"),
+    "damping": to_say("damping under {station}"),
+    "rotational_stiffness": to_say("rotational stiffness under {station}"),
+    "rotational_damping": to_say("rotational damping under {station}"),
+    "harness.stiffness": to_say("stiffness of the harness at {station}"),
+    "harness.damping": to_say("damping of the harness at {station}"),
+    "absorber.mass": to_say("mass of the absorber at {station}"),
+    "absorber.stiffness": to_say("stiffness of the absorber at {station}"),
+    "absorber.damping": to_say("damping of the absorber at {station}"),
+}
+"""Key of a number that a design may change -> what it is."""
+
+
+NAMED = {WORKING: to_say("working"), IDLING: to_say("idling"), RACING: to_say("racing")}
+
+
+def varied_named(name: str) -> str:
+    """A number that a design may change, such as ``belt harness.stiffness``, in words."""
+    station, _, key = name.rpartition(" ")
+    return say(VARIED[key], station=station) if key in VARIED else name
+
+
+# -- hands -----------------------------------------------------------------------------------------
+
+
+def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
+    """Weighted acceleration of every hand, and the day of the one that gets most."""
+    yield _hands(found)
+    low, high = (int(k) for k in (np.argmin(found.a_hv), np.argmax(found.a_hv)))
+    least, most = (
+        say(
+            "{value} m/s² at {speed} rpm",
+            value=number(float(found.a_hv[k])),
+            speed=number(float(found.speed[k]) / PER_RPM),
+        )
+        for k in (low, high)
+    )
+    yield Text(say("Worst hand over this range: a_hv from {low} to {high}", low=least, high=most))
+    yield Text(say("Along the shaft nothing moves in bending, so a_hv has two axes."))
+    yield from unbounded(found.response.tool)
+    if found.worst is None:
+        yield Text(say("There is no daily exposure without work; the file tells none."))
+        return
+    title = say("A day at {hand}, the hand that gets most", hand=found.worst)
+    yield Section("day", title, tuple(exposure_blocks(found.days[found.worst])))
+
+
+def _hands(found: ToolExposure) -> Table:
+    """At the speeds that the file names: a_hv, with idling and racing as one value."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, grip in found.grips.items():
+        for what, part in found.named.items():
+            vertical, lateral = (float(value) for value in part[name].a_hw[:, 0])
+            plain = float(np.sqrt(np.sum(part[name].acceleration[:, 0] ** 2)))
+            values = (plain, vertical, lateral, float(part[name].a_hv[0]))
+            rows.append((name, say(NAMED.get(what, what)), *map(Value, values)))
+        if name in found.equivalents:
+            label = say("idling and racing, ISO 22867")
+            rows.append((name, label, None, None, None, Value(found.equivalents[name])))
+        k = int(np.argmax(grip.a_hv))
+        top = Value(float(grip.a_hv[k]), at=float(found.speed[k]))
+        rows.append((name, say("most"), None, None, None, top))
+    labels = (say("unweighted"), say("vertical"), say("lateral"), "a_hv")
+    columns = (
+        Column(say("hand")),
+        Column(say("engine")),
+        *(column(label, "acceleration") for label in labels),
+    )
+    title = say("Acceleration of the hands, RMS, weighted by Wh of ISO 5349-1")
+    return Table(title, columns, tuple(rows))
+
+
+# -- what to change --------------------------------------------------------------------------------
+
+
+def design_blocks(found: ToolDesign) -> Iterator[Block]:
+    """What to change, and what that brings: before and after."""
+    rows: list[tuple[Cell, ...]] = []
+    for one, edge in zip(found.variables, found.edges, strict=True):
+        told = say(EDGES[edge]) if edge in EDGES else ""
+        rows.append((figure_named(one), *_pair(one), told))
+    rows += [(figure_named(one), *_pair(one, told=True), "") for one in found.figures]
+    labels = ("", say("before"), say("after"), say("change"), "")
+    title = say(
+        "What to change, and what that brings at {low} to {high} rpm", **ends_told(found.speed)
+    )
+    yield Table(title, tuple(map(Column, labels)), tuple(rows))
+    yield from unbounded(found.tool)
+    yield Text(
+        say(
+            "{arrived} of {searches} searches from places spread over the whole room came to this "
+            "design",
+            arrived=found.arrived,
+            searches=found.searches,
+        )
+    )
+
+
+def _pair(one: Before, told: bool = False) -> tuple[Cell, ...]:
+    worse = told and one.dimension != "mass" and one.after > 1.001 * one.before
+    pair = (cell(one.before, one.dimension), cell(one.after, one.dimension))
+    return (*pair, Change(one.before, one.after, worse))
+
+
+def figure_named(one: Before) -> str:
+    """A figure of a design, or a number that it may change, in words."""
+    return varied_named(one.name) if one.said is None else one.said.said()
+
+
+def variation_blocks(found: Variation) -> Iterator[Block]:
+    """Natural frequencies against a number of a station."""
+    step = -(-len(found.values) // MOST_ROWS)
+    kind: Dimension = KEYS[found.key]
+    for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
+        rows = tuple(
+            (
+                Value(float(found.values[v])),
+                *(Value(one, digits=DIGITS) for one in found.parameter[plane, v].tolist()),
+                *(Value(30 / np.pi * one) for one in found.frequency[plane, v].tolist()),
+            )
+            for v in range(0, len(found.values), step)
+        )
+        count = found.frequency.shape[-1]
+        columns = (
+            column(varied_named(f"{found.station} {found.key}"), kind),
+            *(Column(f"λ {k + 1}") for k in range(count)),
+            *(Column(f"N{k + 1}", unit="1/min") for k in range(count)),
+        )
+        what = varied_named(f"{found.station} {found.key}")
+        title = say("Natural frequencies against {what}", what=what)
+        if not found.tool.alike:
+            title = say(
+                "Natural frequencies against {what}, {plane}", what=what, plane=say(SIDES[side])
+            )
+        yield Table(title, columns, rows)
+
+
+def sensitivity_blocks(
+    tool: Tool, found: Mapping[tuple[str, str], float], ends: tuple[float, float]
+) -> Iterator[Block]:
+    """What each number of the tool does to the hands over a band of speeds, the strongest first."""
+    rows = []
+    for (station, key), slope in found.items():
+        value = number_of(tool, station, key)
+        step = 0.01 * (tool.shaft.length if key == "position" else value)
+        effect = Value(1e3 * slope * step, digits=3)
+        rows.append((varied_named(f"{station} {key}"), cell(value, KEYS[key]), effect))
+    rows = sorted((row for row in rows if row[2].value), key=lambda row: -abs(row[2].value))
+    columns = (Column(""), Column(say("now")), Column(say("effect"), unit="mm/s^2"))
+    low, high = (number(end / PER_RPM) for end in ends)
+    title = say(
+        "What 1 % more of each number (of a position, 1 % of the shaft) does to a_hv of the worst "
+        "hand, RMS over {low} to {high} rpm",
+        low=low,
+        high=high,
+    )
+    yield Table(title, columns, tuple(rows))
+
+
+SHOWS: dict[str, Any] = {
+    "ToolExposure": exposure_of_tool,
+    "ToolDesign": design_blocks,
+    "Variation": variation_blocks,
+}

@@ -1,0 +1,194 @@
+"""What tolerances show: scatter, limits kept, causes, and what to tighten first."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
+
+from equipoise.i18n import Note, say, to_say
+from equipoise.quantities import number, percent
+from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.studies.blocks import Units, in_unit, labelled, unit_in
+from equipoise.studies.design_space import Normal, Uniform
+
+if TYPE_CHECKING:
+    from equipoise.studies.tolerances import Cause, Tolerances
+    from equipoise.studies.variance import Estimate, Scatter
+
+
+# -- tolerances ------------------------------------------------------------------------------------
+
+LITTLE = 0.01
+"""Share of the variance below which it is not worth tightening anything."""
+CHANCE, FINE = 4, 1000
+"""Machines that a change has to bring within all limits not to be chance; rows for two digits."""
+
+
+def tolerances_blocks(found: Tolerances, units: Units | None = None) -> Iterator[Block]:
+    """Scatter, limits, causes, and a sentence on what to do."""
+    drawn = say(
+        "{count} machines drawn, seed {seed}", count=found.designs, seed=found.study.sampling.seed
+    )
+    failed = say(", ").join(f"{what} {count}" for what, count in found.failures.items())
+    yield Text(f"{drawn}; {say('failed: {list}', list=failed)}" if failed else drawn)
+    if found.within is not None:
+        yield Text(say("Every limit is kept by {share} of them.", share=_share(found.within)))
+    yield _scatters(found, units)
+    if any(one.within is not None for one in found.scatters.values()):
+        yield _kept(found, units)
+    yield _causes(found, units)
+    yield _variances(found)
+    yield Text(advice(found))
+    notes: tuple[Note | str, ...] = (*_outside(found), *found.notes)
+    if notes:
+        yield Notes(notes)
+
+
+def _scatters(found: Tolerances, units: Units | None) -> Table:
+    scatters = found.scatters.values()
+    every = sorted({p for one in scatters for p in one.percentiles})
+    shared = [p for p in every if all(p in one.percentiles for one in scatters)]
+    rows = []
+    for name, one in found.scatters.items():
+        unit = unit_in(units, name)
+        told = (one.base, one.mean, one.deviation, *(one.percentiles[p] for p in shared))
+        rows.append((labelled(name, unit.name), *(in_unit(value, unit) for value in told)))
+    labels = ("", say("model"), say("mean"), say("deviation"), *(f"{p:g} %" for p in shared))
+    title = say("Figures; the columns with % tell below what so many machines lie")
+    return Table(title, tuple(map(Column, labels)), tuple(rows))
+
+
+def _kept(found: Tolerances, units: Units | None) -> Table:
+    rows = []
+    for name, one in found.scatters.items():
+        if one.within is None:
+            continue
+        unit = unit_in(units, name)
+        ends = (in_unit(end, unit) for end in (one.output.at_least, one.output.at_most))
+        out = (Value(100 * share, after=2) for share in (one.below, one.above))
+        inside = _share(one.within).replace(" %", "")
+        rows.append((labelled(name, unit.name), *ends, *out, inside))
+    columns = (
+        Column(""),
+        Column(say("at least")),
+        Column(say("at most")),
+        Column(say("below"), unit="%"),
+        Column(say("above"), unit="%"),
+        Column(f"{say('within')}, %"),
+    )
+    return Table(say("Limits"), columns, tuple(rows))
+
+
+def _share(share: Estimate) -> str:
+    """A share with its interval: ``93.2 % (92.7 to 93.7 %)``."""
+    value, low, high = (percent(one, 2) for one in (share.value, share.low, share.high))
+    return f"{value} % ({say('{low} to {high}', low=low, high=high)} %)"
+
+
+def _causes(found: Tolerances, units: Units | None) -> Table:
+    digits, kept = _digits(found), found.unchanged is not None
+    rows: list[tuple[Cell, ...]] = []
+    for cause in found.causes:
+        shares = (cause.halved, cause.removed) if kept else ()
+        cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
+        given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
+        rows.append(
+            (say(", ").join(cause.numbers), given, Value(100 * cause.gain, after=1), *cells)
+        )
+    columns = [Column(""), Column(say("tolerance")), Column(say("variance less by"), unit="%")]
+    title = say("What half of a tolerance does, the most first")
+    if found.unchanged is not None:
+        columns += [
+            Column(say("keep limits with half"), unit="%"),
+            Column(say("keep limits without"), unit="%"),
+        ]
+        share = percent(found.unchanged, digits)
+        title = say("{title}; with all of them {share} % keep limits", title=title, share=share)
+    return Table(title, tuple(columns), tuple(rows))
+
+
+def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
+    """A tolerance as one says it: ``+- 0.1000 mm`` or ``deviation 2.000 g``."""
+    unit = unit_in(units, path)
+    (spread,) = (one.spread for one in found.study.vary if one.path == path)
+    if isinstance(spread, Uniform):
+        return f"+- {number(unit.of_si(spread.half_width))} {unit.name}".strip()
+    assert isinstance(spread, Normal)
+    size = f"{number(unit.of_si(spread.deviation))} {unit.name}".strip()
+    if spread.cut is None:
+        return say("deviation {size}", size=size)
+    return say("deviation {size}, cut at {cut}", size=size, cut=f"{spread.cut:g}")
+
+
+def _variances(found: Tolerances) -> Table:
+    """The share of each cause in the variance of each figure."""
+    names = [name for name in found.scatters if name in found.causes[0].effects]
+    rows = tuple((say(", ").join(cause.numbers), *_effects(cause, names)) for cause in found.causes)
+    title = say("Share of the variance by cause, with what it does together with others, %")
+    return Table(title, (Column(""), *map(Column, names)), rows)
+
+
+def _effects(cause: Cause, names: Sequence[str]) -> Iterator[str]:
+    for name in names:
+        total = cause.effects[name].total
+        half = 0.5 * (total.high - total.low)
+        yield f"{percent(total.value, 1)} +- {percent(half, 1)}"
+
+
+def _digits(found: Tolerances) -> int:
+    """Digits of a share of the rows that mean something."""
+    return 2 if found.rows >= FINE else 1
+
+
+def advice(found: Tolerances) -> str:
+    """What to tighten first, and what that brings."""
+    first = found.causes[0]
+    if first.gain < LITTLE:
+        return say(
+            "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
+        )
+    limited = [name for name, one in found.scatters.items() if one.within is not None]
+    names = [*(limited or found.scatters)]
+    if len(names) == 1:
+        of = names[0]
+    else:
+        of = say("the figures with limits") if limited else say("the figures")
+    what = say(" and ").join(first.numbers)
+    told = {
+        "what": say("{names} together", names=what) if len(first.numbers) > 1 else what,
+        "share": f"{100 * first.gain:.0f}",
+        "of": of,
+    }
+    text = say(
+        "Tighten first: {what}. Half of the tolerance takes {share} % off the variance of {of}",
+        **told,
+    )
+    if first.halved is None or found.unchanged is None:
+        return f"{text}."
+    if (first.halved - found.unchanged) * found.rows < CHANCE:
+        return say("{text}; hardly more machines keep every limit then.", text=text)
+    before, after = (percent(share, _digits(found)) for share in (found.unchanged, first.halved))
+    return say(
+        "{text}, and {after} % of the machines keep every limit, not {before} %.",
+        text=text,
+        after=after,
+        before=before,
+    )
+
+
+def _outside(found: Tolerances) -> Iterator[Note]:
+    """Limits that the model itself does not keep."""
+    for name, one in found.scatters.items():
+        if _beyond(one):
+            template = to_say(
+                "the model itself does not keep the limits of {name}; change its numbers first"
+            )
+            yield Note(template, name=name)
+
+
+def _beyond(one: Scatter) -> bool:
+    low, high = one.output.at_least, one.output.at_most
+    return (low is not None and one.base < low) or (high is not None and one.base > high)
+
+
+SHOWS: dict[str, Any] = {"Tolerances": tolerances_blocks}
