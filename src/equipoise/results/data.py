@@ -31,7 +31,8 @@ beside what it stands in."""
 class Tabular(Protocol):
     """What a result has to have for tables of it; see `equipoise.results.result.Result`."""
 
-    records: Any
+    @property
+    def records(self) -> str: ...
 
     def to_dict(self) -> dict[str, Any]: ...
 
