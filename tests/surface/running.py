@@ -100,6 +100,14 @@ def process(*arguments: str | Path, **options: Any) -> Result:
     return Result(done.returncode, done.stdout or "", done.stderr or "")
 
 
+def told(*arguments: str) -> Result:
+    """Run a command that tells its help, on a terminal of 80 signs.
+
+    In a process of its own: within this one help is as wide as the first that was told here.
+    """
+    return process(*arguments, env={**os.environ, "COLUMNS": "80"})
+
+
 def succeeded(result: Result) -> str:
     """Return the output of a command that has to succeed."""
     assert result.status == 0, result.err

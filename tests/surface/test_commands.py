@@ -27,6 +27,7 @@ from surface.running import (
     process,
     refused,
     succeeded,
+    told,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -70,7 +71,7 @@ def test_version() -> None:
 
 
 def test_help_names_every_command() -> None:
-    for result in (equipoise("--help"), equipoise("-h"), equipoise()):
+    for result in (told("--help"), told("-h"), told()):
         listed = re.findall(r"^[│|] ([a-z]+) ", succeeded(result), re.MULTILINE)
         assert sorted(listed) == sorted(COMMANDS)
 
@@ -139,7 +140,7 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_help_of_a_command_tells_each_option(name: str) -> None:
-    text = succeeded(equipoise(*name.split(), "--help"))
+    text = succeeded(told(*name.split(), "--help"))
     assert text.startswith(f"Usage: equipoise {name}")
     shown = re.findall(r"^[│|] \*? *([A-Z]+|--[a-z-]+) +\S", text, re.MULTILINE)
     assert shown == OPTIONS[name]
