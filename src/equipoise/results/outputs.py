@@ -90,13 +90,13 @@ class Outputs:
         had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         self._found: dict[str, Output] = {}
-        for _, group in groupby(had, key=lambda one: (one.group, one.is_family)):
-            ones = list(group)
-            for one in ones:
+        for _, group in groupby(had, key=lambda one: one.group):
+            own = []
+            for one in group:
                 who = one.items or one.members
                 if who not in members:
                     members[who] = dict.fromkeys(one.items_of(analysis))
-            own = [(one, members[one.items or one.members]) for one in ones]
+                own.append((one, members[who]))
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for one, items in own:
                     if item in items:
