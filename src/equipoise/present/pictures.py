@@ -58,11 +58,12 @@ def each(
     """Those of some sections one by one: what only later ones need is not computed before."""
     from equipoise.figures.style import free_name
 
-    parts = {"tool": _of_tool} if isinstance(found, ToolFindings) else OF_LINKAGE
+    parts: dict[str, Callable[[Any], Iterator[Entry]]] = {"tool": _of_tool}
+    if isinstance(found, Findings):
+        parts = {"motion": partial(_motion, at=at), **OF_LINKAGE}
     taken: dict[str, None] = {}
     for section in (name for name in parts if name in sections):
-        entries = _motion(found, at) if section == "motion" else parts[section](found)
-        for name, caption, draw in entries:
+        for name, caption, draw in parts[section](found):
             own = free_name(name, taken)
             taken[own] = None
             yield Picture(own, section, caption, draw)
@@ -81,7 +82,7 @@ def _made(chart: Chart) -> Chart:
 # -- of a linkage; nothing of what it does not have ------------------------------------------------
 
 
-def _motion(found: Findings, at: Sequence[float] | None = None) -> Iterator[Entry]:
+def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     from equipoise.figures.linkage import linkage
     from equipoise.figures.outputs import main_kinematics
     from equipoise.figures.points import curves, hodograph
@@ -178,10 +179,10 @@ def _vibration(found: Findings) -> Iterator[Entry]:
 def _modes(found: Findings) -> Iterator[Entry]:
     from equipoise.figures.modes import mode_chart
 
-    free = found.modes
-    caption = to_say("Shape of a natural vibration of the machine on its support.")
-    for number in range(1, 1 + (0 if free is None else len(free.modes))):
-        yield f"mode-{number}", caption, partial(mode_chart, free, number)
+    if found.modes is not None:
+        caption = to_say("Shape of a natural vibration of the machine on its support.")
+        for number in range(1, len(found.modes.modes) + 1):
+            yield f"mode-{number}", caption, partial(mode_chart, found.modes, number)
 
 
 def _balance(found: Findings) -> Iterator[Entry]:
@@ -210,8 +211,7 @@ def _balance(found: Findings) -> Iterator[Entry]:
         yield "rows", caption, partial(together, *both)
 
 
-OF_LINKAGE: dict[str, Callable[[Any], Iterator[Entry]]] = {
-    "motion": _motion,
+OF_LINKAGE: dict[str, Callable[[Findings], Iterator[Entry]]] = {
     "planting": _planting,
     "forces": _forces,
     "joints": _joints,
