@@ -18,7 +18,7 @@ from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
 from equipoise.quantities import number
-from equipoise.results.naming import (
+from equipoise.results.outputs import (
     MEASURES,
     objective_named,
     output_named,
