@@ -17,7 +17,7 @@ from equipoise.figures.curves import (
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
 from equipoise.figures.style import GRID, INK, LINES, NORMAL, PALE, SMALL, Look, look_of
-from equipoise.figures.view import Scale, View, corners_of
+from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Mark, Panel
 
 RINGS = 4
@@ -29,13 +29,15 @@ def draw(view: View) -> None:
     panel = view.panel
     if not panel.bare:
         _grid(view)
+    left, top, right, bottom = view.box
     for band in panel.bands:
-        ends = np.array([band.low, band.high])
-        across = view.y.at(ends) if band.axis == "y" else view.x.at(ends)
-        left, top, right, bottom = view.box
-        box = (left, across[1], right, across[0]) if band.axis == "y" else (*across, top, bottom)
-        corners = corners_of(box) if band.axis == "y" else corners_of((box[0], top, box[1], bottom))
-        view.area(corners, look_of(band.role))
+        if band.axis == "y":
+            low, high = view.y.at([band.low, band.high])
+            box = (left, high, right, low)
+        else:
+            low, high = view.x.at([band.low, band.high])
+            box = (low, top, high, bottom)
+        view.area(look_of(band.role), corners_of(box))
     if panel.surface is not None:
         draw_surface(view, panel.surface)
     for area in panel.areas:
@@ -70,7 +72,8 @@ def _grid(view: View) -> None:
         _rings(view)
     elif panel.grid:
         across, up = (
-            [float(s.of(p)) for p, _ in t] for s, t in zip(_both(view), view.ticks, strict=True)
+            [float(s.of(p)) for p, _ in t]
+            for s, t in zip((view.x, view.y), view.ticks, strict=True)
         )
         if panel.bars:
             standing = panel.bars[0].across
@@ -83,10 +86,6 @@ def _grid(view: View) -> None:
         level = panel.zero and (axis == "y" or panel.equal)
         if level and scale.axis.scale == "linear" and scale.low < 0 < scale.high:
             _level(view, 0.0, look_of("zero"), axis)
-
-
-def _both(view: View) -> tuple[Scale, Scale]:
-    return view.x, view.y
 
 
 def _rings(view: View) -> None:

@@ -77,7 +77,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         return found
     for chart in (forces.polar, forces.force, forces.moment, forces.torque):
         found[chart.__name__] = chart(analysis)
-    if forces.has_orders(analysis):
+    if analysis.has_orders:
         found["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints(analysis), *joint_polars(analysis))
     return found | {chart.name: chart for chart in of_joints}

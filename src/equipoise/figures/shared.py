@@ -120,15 +120,13 @@ def extremes(
 
     places : crank angles (rad) and values.  angles : whether the crank angles are told too.
     """
-    if not varies(values):
-        return ()
-    middle = float(np.mean(values))
     found = []
-    for angle, value in places:
+    for angle, value in places if varies(values) else ():
         text = axis.told(value)
         if angles:
             text = say("{value} at {angle}", value=text, angle=degrees_told(angle))
-        found.append(Mark(angle, value, text, role, 90.0 if value > middle else -90.0))
+        wish = 90.0 if value > float(np.mean(values)) else -90.0
+        found.append(Mark(angle, value, text, role, wish))
     return tuple(found)
 
 
@@ -176,23 +174,14 @@ def told_angles(angles: Array) -> dict[int, int]:
 
 def numbers(told: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
     """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
-    apart: dict[int, int] = {}
-    for angle, k in told.items():
-        if all(abs(values[k] - values[other]) > ALIKE * size for other in apart.values()):
-            apart[angle] = k
+    found: dict[complex, Mark] = {}
     middle = complex(np.mean(values))
-    return tuple(
-        Mark(
-            float(values[k].real),
-            float(values[k].imag),
-            f"{angle}",
-            role,
-            float(np.degrees(np.angle(values[k] - middle))),
-            optional=True,
-            near=5.0,
-        )
-        for angle, k in apart.items()
-    )
+    for angle, k in told.items():
+        place = complex(values[k])
+        if all(abs(place - other) > ALIKE * size for other in found):
+            wish = float(np.degrees(np.angle(place - middle)))
+            found[place] = Mark.of(place, f"{angle}", role, wish, optional=True, near=5.0)
+    return tuple(found.values())
 
 
 def extent(*parts: Array) -> float:
@@ -201,10 +190,7 @@ def extent(*parts: Array) -> float:
     return max(float(np.ptp(every.real)), float(np.ptp(every.imag)))
 
 
-def halves(places: Array) -> tuple[Array, Array]:
-    """Real and imaginary parts of places, complex."""
-    return places.real, places.imag
-
+# -- over speed ------------------------------------------------------------------------------------
 
 UNBOUNDED = 5e3
 """Over the median, what only a resonance without damping can reach."""
