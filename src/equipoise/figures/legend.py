@@ -48,15 +48,10 @@ def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
     elif not chart_level:
         return []
     if chart_level:
-        kinds = (
-            ("patch", (*panel.bars, *panel.areas, *panel.outlines)),
-            ("line", panel.lines),
-            ("sign", panel.marks),
-            ("patch", panel.bands),
-        )
-        found += [
-            Key(one.role, one.label, kind) for kind, every in kinds for one in every if one.label
-        ]
+        patches = (*panel.bars, *panel.areas, *panel.outlines)
+        kinds = (("patch", patches), ("line", panel.lines), ("sign", panel.marks))
+        for kind, every in (*kinds, ("patch", panel.bands)):
+            found += [Key(one.role, one.label, kind) for one in every if one.label]
         if panel.surface is not None and panel.surface.lacking:
             found.append(Key("whole", panel.surface.lacking, "patch"))
     return [*dict.fromkeys(found)]
