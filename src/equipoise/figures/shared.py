@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,7 +13,9 @@ from equipoise import signals
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
-from equipoise.results.charts import DEGREES, RPM, Array, Axis, Curve, Mark, Panel, shown
+from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
+
+One = TypeVar("One")
 
 ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
@@ -60,6 +62,17 @@ def crank_axis(drive: str, speed: float, turns: int, with_motor: bool = False) -
     return Axis(label, DEGREES, "crank", 0.0, 2 * pi * turns)
 
 
+def ends(axis: Axis) -> tuple[float, float]:
+    """Both ends of an axis whose ends are given, SI units."""
+    assert axis.low is not None and axis.high is not None
+    return axis.low, axis.high
+
+
+def by_name(charts: Iterable[Chart]) -> dict[str, Chart]:
+    """Charts by their names."""
+    return {chart.name: chart for chart in charts}
+
+
 def angle_step(turns: int) -> int:
     """Degrees between crank angles that are told along a path."""
     return next((step for step in STEPS if 360 * turns / step < 13), 360 * turns)
@@ -95,7 +108,7 @@ def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
     return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 
-def groups(names: Sequence[str], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[str]]]:
+def groups(names: Sequence[One], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[One]]]:
     """Names by so many for each picture, with what is added to the name of the picture."""
     for number, start in enumerate(range(0, len(names), most), 1):
         yield f"-{number}" if number > 1 else "", names[start : start + most]
