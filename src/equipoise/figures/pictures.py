@@ -117,7 +117,7 @@ def balance_pictures(
     if isinstance(found, Front):
         return {"front": objectives.front(found)}
     if isinstance(found, Phasing):
-        return {**view.phasing_charts(found, original)}
+        return {**view.row_charts(original, found.machine)}
     pictures: Pictures = {**view.charts(found)}
     if any(change.kind != "phases" for change in found.changes):
         pictures["changes"] = changes(found)
