@@ -168,7 +168,8 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     drawn, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
-    at, marks = told_angles(angles), []
+    at = told_angles(angles)
+    marks: list[Mark] = []
     curves = [Curve.of(np.append(one, one[0]), "", role) for role, one in drawn.items()]
     for role, values in reversed(drawn.items()):
         if np.any(values):

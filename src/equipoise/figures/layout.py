@@ -122,7 +122,7 @@ def _same_x(one: Cell, other: Cell) -> bool:
 
 def _cell(panel: Panel, height: float) -> Cell:
     curves = panel.curves
-    x: list[Any] = [one.x for one in (*curves, *panel.areas)]
+    x: list[Any] = [*(curve.x for curve in curves), *(area.x for area in panel.areas)]
     y: list[Any] = [curve.y for curve in curves]
     y += [ends for area in panel.areas for ends in (area.low, area.high)]
     for bars in panel.bars:

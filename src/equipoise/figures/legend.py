@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -48,8 +50,8 @@ def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
     elif not chart_level:
         return []
     if chart_level:
-        patches = (*panel.bars, *panel.areas, *panel.outlines)
-        kinds = (("patch", patches), ("line", panel.lines), ("sign", panel.marks))
+        patches: Sequence[Any] = (*panel.bars, *panel.areas, *panel.outlines)
+        kinds = ("patch", patches), ("line", panel.lines), ("sign", panel.marks)
         for kind, every in (*kinds, ("patch", panel.bands)):
             found += [Key(one.role, one.label, kind) for one in every if one.label]
         if panel.surface is not None and panel.surface.lacking:

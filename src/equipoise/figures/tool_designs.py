@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import Named, by_name, curves_of, ends, log_ends
+from equipoise.figures.shared import Named, curves_of, ends, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
@@ -93,7 +93,8 @@ def zeros_of(parameter: Array, value: Array, known: Array) -> list[float]:
 def variation_charts(variation: Variation) -> dict[str, Chart]:
     """``variation``: lambda and frequency against a number of a station (their Figs. 3 and 4)."""
     tool, values = variation.tool, variation.values
-    apart = not np.allclose(*variation.parameter, rtol=1e-6, atol=1e-9)
+    vertical, lateral = variation.parameter
+    apart = not np.allclose(vertical, lateral, rtol=1e-6, atol=1e-9)
     top = 1.06 * float(np.max(variation.parameter)) or 1.0
     x = Axis(named(variation), number_unit(KEYS[variation.key]), *_along(values))
     names = [plane_named(plane, alike=not apart) for plane in ((0, 1) if apart else (0,))]
@@ -185,11 +186,6 @@ def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
 
 
 # -- a design --------------------------------------------------------------------------------------
-
-
-def design_charts(found: ToolDesign) -> dict[str, Chart]:
-    """``design``."""
-    return by_name([design(found)])
 
 
 def design(found: ToolDesign) -> Chart:
