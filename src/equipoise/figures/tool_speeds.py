@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.transmission import Transmissions
+    from equipoise.handheld.sweep import Transmissions
 
 Array = np.ndarray[Any, Any]
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from equipoise.figures import Picture as Drawing
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.transmission import Transmissions
+    from equipoise.handheld.sweep import Transmissions
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.charts import Chart
     from equipoise.vibration.response import Response
