@@ -87,9 +87,9 @@ def find_turns(record: Record) -> Turns:
     places = [place for place in (first, *places, last) if place is not None]
     if len(places) <= NEEDED:
         raise _too_few(len(places) - 1)
-    turned = np.array([(place.at, place.value, place.spread) for place in places])
+    time, displacement, spread = np.array([(one.at, one.value, one.spread) for one in places]).T
     passed = np.array([steepest_time(whole, *ends, half) for ends in pairwise(places)])
-    return Turns(*turned.T, *passed.T, noise=_noise(whole, half))
+    return Turns(time, displacement, spread, *passed.T, noise=_noise(whole, half))
 
 
 def _seen(places: list[Local]) -> list[Local]:
