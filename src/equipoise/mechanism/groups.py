@@ -41,10 +41,7 @@ def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     link, other = first.link, second.link
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
-    arms = (
-        builder.arm(link, first.point, pin),
-        builder.arm(other, second.point, pin),
-    )
+    arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     margin = f"s({pin})"
     motion = (
         *builder.reach(first.body, first.point),

@@ -93,9 +93,7 @@ class Position(Frozen):
     """Where the machine is, roughly, at one crank angle: the start of Newton's method."""
 
     crank_angle: float = key(
-        "angle",
-        "at which it holds; 0 where gears are among these links",
-        default=0.0,
+        "angle", "at which it holds; 0 where gears are among these links", default=0.0
     )
     points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
     angles: Mapping[str, float] = key(

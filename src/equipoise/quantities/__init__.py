@@ -27,15 +27,7 @@ from equipoise.quantities.reading import (
     plain_unit,
     rounded,
 )
-from equipoise.quantities.units import (
-    FACTORS,
-    HUGE,
-    KINDS,
-    SI,
-    TINY,
-    Dimension,
-    Kind,
-)
+from equipoise.quantities.units import FACTORS, HUGE, KINDS, SI, TINY, Dimension, Kind
 
 __all__ = [
     "FACTORS",
