@@ -10,7 +10,8 @@ from equipoise.figures.analysis import ALL, angle_axis, over, title
 from equipoise.figures.crank import compared
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.outputs import FRAME, joint_named
+from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.outputs import joint_named
 from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:

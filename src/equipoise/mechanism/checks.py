@@ -35,6 +35,15 @@ def _listed(names: list[str]) -> str:
     return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
 
 
+def bodies_at(bodies: Bodies) -> dict[str, list[str]]:
+    """The bodies that have a point, by its name: two and more are pinned together there."""
+    found: dict[str, list[str]] = {}
+    for body, points in bodies.items():
+        for point in points:
+            found.setdefault(point, []).append(body)
+    return found
+
+
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
     """Each of a list of tables with its place, numbered from 1."""
     return ((f"{key}[{number}]", item) for number, item in enumerate(items, 1))

@@ -13,6 +13,7 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.kinematics import LinkMotion, PointMotion, SliderMotion
 from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
 from equipoise.mechanism.model import Machine, Slider, unknown
@@ -83,9 +84,7 @@ class Motion:
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
         """Motion of each point, by name; the frame's points stand still."""
-        names = dict.fromkeys(self.machine.frame)
-        for link in self.machine.links.values():
-            names.update(dict.fromkeys(link.points))
+        names = bodies_at(self.machine.bodies)
         return Named("point", ((point, self._point(point)) for point in names))
 
     @cached_property
