@@ -76,28 +76,31 @@ def quantities_of(value: Frozen) -> Mapping[str, Key]:
 
 
 def changed(
-    value: Any, steps: Sequence[str], number: float, make: Callable[..., Any] = replace
+    value: Any,
+    steps: Sequence[str],
+    change: Callable[[Any], Any],
+    make: Callable[..., Any] = replace,
 ) -> Any:
-    """An object with another number at a place.
+    """An object with something else at a place.
 
     steps : keys of the file and names; of lists the number from 1, of points ``x``, ``y`` or ``z``.
-    make : as `dataclasses.replace`.
+    change : from what is there to what is to be there.  make : as `dataclasses.replace`.
 
     Raises
     ------
-    KeyError : there is no such place.
+    KeyError, IndexError : there is no such place.
     """
     if not steps:
-        return number
+        return change(value)
     step, rest = steps[0], steps[1:]
     if isinstance(value, tuple):
         index = XYZ.index(step) if step in XYZ else int(step) - 1
-        inner = changed(value[index], rest, number, make)
+        inner = changed(value[index], rest, change, make)
         return (*value[:index], inner, *value[index + 1 :])
     if isinstance(value, Mapping):
-        return {**value, step: changed(value[step], rest, number, make)}
+        return {**value, step: changed(value[step], rest, change, make)}
     one = keys_of(type(value))[step]
     held = getattr(value, one.field)
     if isinstance(one.kind, Table) and not isinstance(held, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
-    return make(value, **{one.field: changed(held, rest, number, make)})
+    return make(value, **{one.field: changed(held, rest, change, make)})

@@ -222,7 +222,7 @@ class Machine(Frozen):
         first, last = steps[0], steps[-1]
         massive = first == "links" and bool({*steps} & MASS_FIELDS) and "points" not in steps
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
-        return self._same_motion(changed(self, steps, number), same)
+        return self._same_motion(changed(self, steps, lambda _: number), same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""
