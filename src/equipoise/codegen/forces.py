@@ -9,10 +9,10 @@ import numpy as np
 
 from equipoise.codegen.motion import Find, Writer, write_step
 from equipoise.errors import MassError
-from equipoise.mechanism.applied import load_at
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.model import FRAME, Load
+from equipoise.mechanism.reactions import load_at
 from equipoise.mechanism.steps import demand_names, planar
 
 Array = np.ndarray[Any, Any]

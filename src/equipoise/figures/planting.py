@@ -18,7 +18,7 @@ from equipoise.figures.crank import (
 from equipoise.figures.joints import named
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.instants import largest, smallest
+from equipoise.mechanism.tip import largest, smallest
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
 
