@@ -29,7 +29,7 @@ from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.results.naming import objective_named
+from equipoise.results.outputs import objective_named
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:

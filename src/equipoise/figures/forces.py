@@ -32,7 +32,7 @@ from equipoise.i18n import say
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import LEAST_ANGLES
 from equipoise.results.charts import Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
-from equipoise.results.naming import CAUSES
+from equipoise.results.outputs import CAUSES
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, in_unit, typeset
 from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, Surface, shown
-from equipoise.results.naming import objective_named
+from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
     from equipoise.balancing.pareto import Front
