@@ -20,7 +20,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.outputs import FRAME, joint_named
+from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.outputs import joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 
