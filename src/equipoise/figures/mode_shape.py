@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount, Support
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.mode_shapes import Mode
+    from equipoise.vibration.response import Mode
 
 Array = np.ndarray[Any, Any]
 View = Literal["side", "rear", "top"]

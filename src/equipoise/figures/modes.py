@@ -19,7 +19,7 @@ from equipoise.symbols.shapes import Shape
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.mode_shapes import Mode
+    from equipoise.vibration.response import Mode
 
 Array = np.ndarray[Any, Any]
 

@@ -164,9 +164,8 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     if cell is None or isinstance(cell, str):
         return Text(cell or "")
     if isinstance(cell, Change):
-        told = change(cell.before, cell.after)
-        text = say("same") if told == UNCHANGED else told
-        return Text(text, number=True, strong=cell.worse)
+        share = change(cell.before, cell.after)
+        return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
     if isinstance(cell, Many):
         told = [_text(value, column, shown) for value in cell.values]
         words = [f"{one.text} ({one.at})" if one.at else one.text for one in told]

@@ -122,10 +122,8 @@ class Table:
     rows: tuple[tuple[Cell, ...], ...]
 
     @classmethod
-    def of(
-        cls, title: str, columns: Iterable[Column | str], rows: Iterable[Iterable[Cell]]
-    ) -> Table:
-        """From any iterables; words alone head a column of plain numbers or words."""
+    def of(cls, title: str, columns: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Table:
+        """From columns and rows of cells; words alone head a column of plain numbers or words."""
         heads = (Column(one) if isinstance(one, str) else one for one in columns)
         return cls(title, tuple(heads), tuple(map(tuple, rows)))
 

@@ -17,8 +17,7 @@ from equipoise.vibration.response import MODELS, Model
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.vibration.linear import Mode
-    from equipoise.vibration.response import Response
+    from equipoise.vibration.response import Mode, Response
     from equipoise.vibration.transient import Transient
 
 Array = np.ndarray[Any, Any]
