@@ -223,11 +223,11 @@ def _points(analysis: Analysis) -> Table:
 
 
 def _four_bar(found: FourBar) -> Iterator[str]:
-    lengths = zip(("frame", "crank", "coupler", "rocker"), (found.a, found.b, found.c, found.d))
+    lengths = {"frame": found.a, "crank": found.b, "coupler": found.c, "rocker": found.d}
     yield f"{say(found.type)}, {say(found.grashof)}"
     yield say(
         "Frame {frame} mm, crank {crank} mm, coupler {coupler} mm, rocker {rocker} mm",
-        **{link: number(1e3 * length) for link, length in lengths},
+        **{link: number(1e3 * length) for link, length in lengths.items()},
     )
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(

@@ -110,8 +110,8 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
     yield modes_table(free.modes)
     yield _met(free)
     title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
-    shapes = dict(zip(free.coordinates, np.transpose([mode.shape for mode in free.modes])))
-    yield _shapes(title, shapes)
+    parts = np.transpose([mode.shape for mode in free.modes])
+    yield _shapes(title, dict(zip(free.coordinates, parts, strict=True)))
     yield _shapes(say("Shapes at the gauges"), free.gauges)
     yield _rest(free)
 
