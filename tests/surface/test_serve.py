@@ -10,7 +10,7 @@ import urllib.request
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.web.assets import assets
+from equipoise.web.server import assets
 from surface.running import changed, command, refuses
 
 
