@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.program import Affine, Program, stacked
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
@@ -296,10 +296,8 @@ class FreeSpring(DesignVariables):
         if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
             return None
         return Note(
-            to_say(
-                "the spring on {link} has come to twice the largest distance of "
-                "points, where its free length was stopped; give it free_length"
-            ),
+            "the spring on {link} has come to twice the largest distance of "
+            "points, where its free length was stopped; give it free_length",
             link=self.link,
         )
 

@@ -264,10 +264,8 @@ def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> Non
 
 
 ROWS_AFTER_LINKAGE = Note(
-    to_say(
-        "the linkage was balanced first and its rows were turned after it; both together "
-        "might do better"
-    )
+    "the linkage was balanced first and its rows were turned after it; both together "
+    "might do better"
 )
 
 
@@ -305,10 +303,7 @@ def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Ph
         cost=float(search.cost.of([after[name] for name in before])),
         bound=None,
         method=Note(
-            to_say(
-                "{count} arrangements of the rows on a grid of {step} deg, the best of them "
-                "polished"
-            ),
+            "{count} arrangements of the rows on a grid of {step} deg, the best of them polished",
             count=phasing.combinations,
             step=f"{np.degrees(phasing.step):.4g}",
         ),

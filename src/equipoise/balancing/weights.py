@@ -22,7 +22,7 @@ import numpy as np
 from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
 from equipoise.balancing.pieces import SPREAD, pieces_of
 from equipoise.balancing.program import Affine, Block, Program, stacked
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
 
@@ -135,10 +135,8 @@ class AddedWeight(DesignVariables):
         if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
             return None
         return Note(
-            to_say(
-                "the weight on {link} has come to ten times the mass of the links, "
-                "where it was stopped; more would do better still: give it at_most"
-            ),
+            "the weight on {link} has come to ten times the mass of the links, "
+            "where it was stopped; more would do better still: give it at_most",
             link=self.link,
         )
 
