@@ -7,8 +7,6 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from equipoise.balancing.design_variables import Bound, Change
 from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
 from equipoise.balancing.geared import geared_range
@@ -20,8 +18,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,8 @@ from math import inf, isfinite
 import numpy as np
 
 from equipoise.balancing.design_variables import Square
-from equipoise.balancing.program import Array, NoSolutionError, Program, Solved, StalledError
+from equipoise.balancing.program import NoSolutionError, Program, Solved, StalledError
+from equipoise.signals import Array
 
 MISSED = 1e-8
 """Of a square, scaled numbers, that is taken for rounding."""

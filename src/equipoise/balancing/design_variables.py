@@ -23,8 +23,7 @@ from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import spring_columns
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 ROUNDING = 1e-14
 """Over a moment of inertia: what is left of it about the centre of mass that is rounding."""

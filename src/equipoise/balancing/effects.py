@@ -24,8 +24,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.mechanism.outputs import Declared, matches
 from equipoise.mechanism.reactions import JointForce, Pass, VectorSignal, reactions
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 ANGLES = 720
 """Crank angles in a turn at which balancing looks."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import isclose, sqrt
-from typing import Any
 
 import numpy as np
 
@@ -16,8 +15,7 @@ from equipoise.mechanism.motion import move
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 GONE = 1e-9
 """Share of a figure before below which it is rounding."""

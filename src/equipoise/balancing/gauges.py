@@ -8,7 +8,6 @@ by each number there.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -22,12 +21,10 @@ from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, Step, gauges_of
 from equipoise.vibration.linkages import rows_of
-
-Array = np.ndarray[Any, Any]
 
 SAMPLES = 1440
 """Of a gauge's signal in a turn."""

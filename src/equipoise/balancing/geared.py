@@ -21,8 +21,6 @@ from equipoise.mechanism.model import Gear, Link, Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.parameters import parameter_values
 
-Array = np.ndarray[Any, Any]
-
 GRID, COARSE, WAYS = 33, 13, 24
 """Ratios at which a range is looked at, before the best are followed to their tops; the same where
 directions are looked for too; directions."""

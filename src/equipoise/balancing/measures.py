@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -17,8 +16,7 @@ from equipoise.mechanism.balance import Measure, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import output_of, quantity_of
 from equipoise.quantities import SI
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -27,12 +26,10 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, wrong_objective
 from equipoise.mechanism.support import Row
 from equipoise.results.analysis import Analysis
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
 from equipoise.vibration.linear import ANGLES, Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
-
-Array = np.ndarray[Any, Any]
 
 SHAKING, FRAME = 0, 3
 """Among signals of one row: force x, y and moment about the drive's pivot, twice."""

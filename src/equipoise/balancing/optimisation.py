@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
-from typing import Any
 
 import numpy as np
 
@@ -28,6 +27,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]
@@ -118,9 +118,6 @@ def reach_of(machine: Machine, link: str) -> float:
     points = machine.links[link].points
     center = complex(*points[pin_of(machine, link)])
     return max(abs(complex(*point) - center) for point in points.values()) or SMALLEST
-
-
-Array = np.ndarray[Any, Any]
 
 
 LARGE = 1e300

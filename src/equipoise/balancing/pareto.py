@@ -19,8 +19,8 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 
 POINTS = 21

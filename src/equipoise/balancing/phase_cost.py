@@ -17,9 +17,8 @@ import numpy as np
 
 from equipoise.balancing.multi_row import RowSignals
 from equipoise.mechanism.balance import Measure, Objective
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 
-Array = np.ndarray[Any, Any]
 Combine = Literal["sum", "squares"]
 
 AREA_SAMPLES = 1440

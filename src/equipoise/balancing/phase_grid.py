@@ -16,16 +16,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, permutations
 from math import comb, factorial, prod
-from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.multi_row import RowSignals
 from equipoise.balancing.phase_cost import Cost, Term, by_orders, size
 from equipoise.mechanism.balance import Measure
-from equipoise.signals import synthesis
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, synthesis
 
 MOST = 5_000_000
 """Arrangements that are looked at."""

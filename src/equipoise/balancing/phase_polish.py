@@ -8,13 +8,10 @@ all tops, in a trust region too, find it.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
 from equipoise.balancing.phase_cost import Cost, Pieces, Tops
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 """e over the value that counts as one."""

@@ -34,8 +34,8 @@ from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.results.result import Result
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 """Is called with the arrangements looked at, and how many there are to look at."""
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -26,8 +25,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9
 """Over the RMS of an output: change by a unit of every number that is taken for none."""

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
-from typing import Any
 
 import numpy as np
 
@@ -24,8 +23,8 @@ from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 
 SLACK, WORSE = 2e-9, 5e-9

@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import asin, cos, isfinite, pi, sin, sqrt
-from typing import Any
 
 import numpy as np
 
@@ -25,8 +24,7 @@ from equipoise.balancing.program import Affine, Block, Program, stacked
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 NAMES = {
     "any": ("m", "x", "y", "i"),

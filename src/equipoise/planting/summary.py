@@ -21,9 +21,7 @@ from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.results.result import Result
-from equipoise.signals import Figures, figures
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, Figures, figures
 
 
 @dataclass(frozen=True, eq=False)
