@@ -7,13 +7,14 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
-from equipoise.balancing.design_variables import Bound, Change
+from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
 from equipoise.balancing.geared import geared_range
 from equipoise.balancing.measures import unit_of
 from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
+from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine

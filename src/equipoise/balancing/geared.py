@@ -12,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import Change, with_parameters
+from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import BalanceShafts, GearedWeight
 from equipoise.mechanism.kernels import about

@@ -16,12 +16,12 @@ from math import inf
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced, result_of
-from equipoise.balancing.design_variables import Change
 from equipoise.balancing.geared import Gearing, Mesh, with_shafts
 from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight

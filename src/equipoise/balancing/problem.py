@@ -8,11 +8,11 @@ from functools import cached_property
 
 import numpy as np
 
+from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import (
     DesignVariables,
     FreeSpring,
     MovedCenter,
-    Square,
     with_parameters,
 )
 from equipoise.balancing.effects import Effects

@@ -14,11 +14,12 @@ from math import inf, isfinite
 import numpy as np
 
 from equipoise.balancing.branch_and_bound import Best, minimise
-from equipoise.balancing.design_variables import Change, DesignVariables, MovedCenter
+from equipoise.balancing.design_variables import DesignVariables, MovedCenter
 from equipoise.balancing.measures import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Limit

@@ -18,9 +18,10 @@ from math import asin, cos, isfinite, pi, sin, sqrt
 
 import numpy as np
 
-from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
-from equipoise.balancing.pieces import SPREAD, pieces_of
+from equipoise.balancing.branch_and_bound import Square
+from equipoise.balancing.design_variables import Bound, DesignVariables
 from equipoise.balancing.program import Affine, Block, Program, stacked
+from equipoise.balancing.workshop import SPREAD, Change, pieces_of
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of

@@ -19,7 +19,7 @@ from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 
 if TYPE_CHECKING:
-    from equipoise.balancing.design_variables import Change
+    from equipoise.balancing.workshop import Change
     from equipoise.mechanism.balance import Balance, CenterMove
     from equipoise.mechanism.model import Machine
 
