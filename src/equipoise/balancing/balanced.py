@@ -10,7 +10,7 @@ from typing import Any
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
 from equipoise.balancing.geared import geared_range
-from equipoise.balancing.measures import unit_of
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution

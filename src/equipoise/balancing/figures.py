@@ -7,7 +7,7 @@ from math import isclose, sqrt
 import numpy as np
 
 from equipoise.balancing.effects import ANGLES
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import measured
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
@@ -57,8 +57,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     """Figures of all rows together, where there are several."""
     if len(machine.rows) < 2:
         return {}
-    from equipoise.balancing.multi_row import Rows
-    from equipoise.balancing.phase_cost import Term
+    from equipoise.balancing.multi_row import Rows, Term
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}

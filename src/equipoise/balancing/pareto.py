@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.measures import unit_of
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError

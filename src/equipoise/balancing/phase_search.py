@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Rows, RowSignals
-from equipoise.balancing.phase_cost import NOTHING, Combine, Cost, Term
+from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
 from equipoise.balancing.phase_grid import (
     BETTER,
     Grid,

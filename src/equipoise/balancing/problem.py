@@ -15,10 +15,8 @@ from equipoise.balancing.design_variables import (
     MovedCenter,
     with_parameters,
 )
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near, supports_more
-from equipoise.balancing.measures import Signal, bound_measure, measured
-from equipoise.balancing.multi_row import signals_of
+from equipoise.balancing.effects import Effects, Signal
+from equipoise.balancing.objectives import Near, bound_measure, measured, signals_of, supports_more
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError

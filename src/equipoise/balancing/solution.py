@@ -15,7 +15,7 @@ import numpy as np
 
 from equipoise.balancing.branch_and_bound import Best, minimise
 from equipoise.balancing.design_variables import DesignVariables, MovedCenter
-from equipoise.balancing.measures import mean_square_rows, unit_of
+from equipoise.balancing.objectives import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
 from equipoise.balancing.weights import AddedWeight

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 import equipoise as eq
 from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import FreeSpring, with_parameters
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.balancing.workshop import Change
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
