@@ -75,8 +75,9 @@ def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Sign
         here = one
         if output.endswith("_moment"):
             arm = arm_of(effects.machine, effects.motion, row, about)
-            both = ((force.start, one.start), (force.columns, one.columns))
-            here = Signal(*(moment_of_row(output, row, arm, *each) for each in both), one.turns)
+            there = moment_of_row(output, row, arm, force.start, one.start)
+            by_number = moment_of_row(output, row, arm, force.columns, one.columns)
+            here = Signal(there, by_number, one.turns)
         here = here.ahead_by(row.phase)
         start, columns = start + here.start, columns + here.columns
     return Signal(start, columns, one.turns)

@@ -7,6 +7,7 @@ where a design does not have it.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from functools import partial
 from itertools import combinations
 from typing import Any
 
@@ -43,8 +44,6 @@ def tip_figures(
 ) -> Figures:
     """Every figure of the path, of the instants and of the stay in the soil.
 
-    Parameters
-    ----------
     entry, leave : (P,) crank angles at which the tip enters and leaves the soil, running on in the
         sense of the drive.
     breaks : (P, B) crank angles from entry to leave between which the path is smooth; None for
@@ -144,8 +143,7 @@ def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
 
     value, slowest = smallest(rate2, rising, curve.theta, rate2(curve.grid.theta))
     at = slowest[:, None]
-    width = np.sqrt(value)[:, None] / np.abs(curve.at(at).place_2)
-    width = np.minimum(0.5 * width, curve.theta[1])
+    width = np.minimum(0.5 * np.sqrt(value)[:, None] / np.abs(curve.at(at).place_2), curve.theta[1])
     return np.asarray(roots(slope, at - width, at + width)[:, 0])
 
 
@@ -269,11 +267,10 @@ def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
 
     The forward speed is the one at which hills stay as far apart as they are.
     """
-    planting = curve.planting
     result: Figures = {}
     for name, limit, ends in (
-        ("acceleration", planting.acceleration_limit, _cycle(curve)),
-        ("soil_acceleration", planting.soil_acceleration_limit, (entry, leave)),
+        ("acceleration", curve.planting.acceleration_limit, _cycle(curve)),
+        ("soil_acceleration", curve.planting.soil_acceleration_limit, (entry, leave)),
     ):
         if limit is not None:
             samples = SAMPLES_OF_TURN * curve.turns
@@ -313,7 +310,7 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
         return np.min(places(theta, link).imag, axis=0) - curve.surface[:, None]
 
     for link in outlines:
-        result |= _smallest(curve, f"clearance.soil.{link}", lambda x, link=link: height(x, link))
+        result |= _smallest(curve, f"clearance.soil.{link}", partial(height, link=link))
     if tray is None:
         return result
     start, stop = (complex(*point) for point in tray)
@@ -324,11 +321,13 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
         return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
 
     for link in outlines:
-        result |= _smallest(curve, f"clearance.tray.{link}", lambda x, link=link: apart(x, link))
+        result |= _smallest(curve, f"clearance.tray.{link}", partial(apart, link=link))
     name, passes = f"clearance.tray.tip {tip}", pick_up(curve, entry)
     found = _smallest(curve, name, lambda theta: _to_line(curve.at(theta).place, start, stop))
-    met = {f"{name}.value": 0.0, f"{name}.crank_angle": wrapped(curve, passes)}
-    return result | {key: np.where(np.isfinite(passes), met[key], found[key]) for key in met}
+    met = np.isfinite(passes)
+    found[f"{name}.value"][met] = 0.0
+    found[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
+    return result | found
 
 
 def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
