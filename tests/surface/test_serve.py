@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.web.assets import assets
+from equipoise.web.server import assets
 from surface.running import command, equipoise, refused
 
 

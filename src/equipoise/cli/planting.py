@@ -59,7 +59,7 @@ def plant(
     """
     from equipoise.planting.summary import plant as read_off
     from equipoise.planting.summary import table
-    from equipoise.present.units import read_units
+    from equipoise.present.cells import read_units
     from equipoise.schema.models import load_linkage
 
     check_belonging("--csv", outputs.csv is not None, angles=angles)
@@ -108,7 +108,7 @@ def fit(
     from equipoise.planting.goals import figure_names
     from equipoise.planting.search import fit_planting
     from equipoise.planting.summary import table
-    from equipoise.present.units import read_units
+    from equipoise.present.cells import read_units
     from equipoise.schema.files import printable
     from equipoise.schema.models import load_linkage
     from equipoise.schema.targets import read_targets

@@ -135,7 +135,7 @@ class Asked:
 
 def tool_of(file: str, units: str) -> tuple[Tool, Units]:
     """The tool of a file, and the units in which its vibration is printed."""
-    from equipoise.present.units import read_units
+    from equipoise.present.cells import read_units
     from equipoise.schema.models import load_tool
 
     return load_tool(file), read_units(units)

@@ -138,7 +138,7 @@ def simulate(
 
 def _machine(file: str, units: str, outputs: Outputs) -> tuple[Machine, Units]:
     """The machine of a file, and the units in which its vibration is printed."""
-    from equipoise.present.units import read_units
+    from equipoise.present.cells import read_units
     from equipoise.schema.models import load_linkage
 
     machine = load_linkage(file)

@@ -13,9 +13,17 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism.instants import Signal, integral, largest, lowest_within, roots, smallest
 from equipoise.mechanism.kernels import cross, dot
-from equipoise.mechanism.tip import STEP, TipCurve
+from equipoise.mechanism.tip import (
+    STEP,
+    Signal,
+    TipCurve,
+    integral,
+    largest,
+    lowest_within,
+    roots,
+    smallest,
+)
 from equipoise.planting.stroke import (
     Figures,
     direction,

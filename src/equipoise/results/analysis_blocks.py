@@ -20,7 +20,7 @@ from equipoise.results.machine_blocks import (
     place,
     smallest,
 )
-from equipoise.results.naming import CAUSES
+from equipoise.results.outputs import CAUSES
 from equipoise.signals import Periodic, figures
 
 if TYPE_CHECKING:

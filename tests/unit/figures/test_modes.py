@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.mode_shape import SHOWN_SIZE, ModeShape
-from equipoise.figures.modes import described
+from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
 from equipoise.figures.pictures import pictures_of
 from equipoise.results.charts import Chart
 from equipoise.symbols.scene import Scene
