@@ -166,7 +166,7 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
         told = feasibility(machine)
 
         def show() -> None:
-            from equipoise.balancing.condition_blocks import conditions_blocks
+            from equipoise.balancing.linear_conditions import conditions_blocks
             from equipoise.present import show_blocks
 
             show_blocks(machine.title, conditions_blocks(*found.values(), verdict=told))

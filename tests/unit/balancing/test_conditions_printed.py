@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.condition_blocks import conditions_blocks
 from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.linear_conditions import conditions, conditions_blocks
 from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import known_outputs, sensitivities
 from support.printing import words
