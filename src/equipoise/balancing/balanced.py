@@ -94,9 +94,13 @@ class Balanced(Result):
         """Between what was found and the proved bound, over the value before; None without one."""
         if self.bound is None:
             return None
-        before = self.plan.combined([1.0] * len(self.plan.objectives))
         # A bound above the cost is rounding, which is as large as it may be below.
-        return abs(self.cost - self.bound) / before
+        return abs(self.cost - self.bound) / self.whole
+
+    @property
+    def whole(self) -> float:
+        """Cost of the original."""
+        return self.plan.combined([1.0] * len(self.plan.objectives))
 
     @property
     def added_mass(self) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
@@ -32,9 +32,6 @@ from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array, harmonics
-
-if TYPE_CHECKING:
-    from equipoise.balancing.physical_consistency import Feasibility
 
 Kind = Literal["zero", "sine"]
 
@@ -165,7 +162,8 @@ def _effects(machine: Machine, outputs: tuple[str, ...]) -> tuple[Array, int]:
     """
     turns = assemble(machine).cycle.turns
     motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
-    found, parts = Found(motion, regressor(motion)), []
+    found = Found(motion, regressor(motion))
+    parts: list[Array] = []
     for one in map(DECLARED.__getitem__, outputs):
         whole = one.component(one.vector(found))
         if one.dimension == "torque":
@@ -313,16 +311,16 @@ SHOWN = {"kg": ("kg", 1.0), "kg m": ("kg mm", 1e3), "kg m2": ("kg mm^2", 1e6)}
 """SI unit of a combination -> unit in which it is shown, and how many of these it is."""
 
 
-def conditions_blocks(*found: Conditions, verdict: Feasibility | None = None) -> Iterator[Block]:
+def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
     """Conditions, one table for each kind, and whether they can be met."""
     yield Text(
         say("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")
     )
     for one in found:
         yield _conditions(one)
-    if verdict is not None:
+    if verdict:
         title = say("By the links' own masses, none of them lighter than now")
-        yield Facts(title, tuple(str(answer.reason) for answer in verdict.answers))
+        yield Facts(title, tuple(verdict))
 
 
 def _conditions(found: Conditions) -> Block:

@@ -15,7 +15,6 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.blocks import OF_UNIT
 from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
 from equipoise.i18n import say
@@ -26,7 +25,7 @@ from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.mechanism.tip import roots
 from equipoise.quantities import angle
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
-from equipoise.results.outputs import output_named, unit_of_measure
+from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
@@ -144,9 +143,9 @@ def sensitivities(
     """
     if output not in known_outputs():
         raise UsageError(unknown(output, known_outputs(), "output of this kind"))
-    whole = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
-    if not whole or angles < LEAST_ANGLES:
-        raise UsageError(f"got {angles!r} crank angles; give a number of at least {LEAST_ANGLES}")
+    given: Any = angles
+    if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
+        raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")
     motion = move(machine, int(angles), acceleration=0.0)
     values = _derivatives(motion, output)
     size, mass = machine_size(machine), machine.mass or 1.0
@@ -220,7 +219,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
         places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
         rows.append((one.name, Value(size * one.rms), unit, Value(one.percent), places))
-    kind = OF_UNIT[unit_of_measure(found.output, "rms")]
+    kind = DECLARED[found.output].dimension
     columns = (
         Column(""),
         Column(say("RMS"), kind),

@@ -169,7 +169,8 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
             from equipoise.balancing.linear_conditions import conditions_blocks
             from equipoise.present import show_blocks
 
-            show_blocks(machine.title, conditions_blocks(*found.values(), verdict=told))
+            reasons = [one.reason for one in told.answers]
+            show_blocks(machine.title, conditions_blocks(*found.values(), verdict=reasons))
 
         values = {name: one.to_dict() for name, one in found.items()}
         outputs.print(lambda: values | {"verdict": told.to_dict()}, show)
@@ -242,7 +243,7 @@ def arrangements(
         check_moving(machine)
 
     def show() -> None:
-        from equipoise.balancing.blocks import pattern_blocks
+        from equipoise.balancing.patterns import pattern_blocks
         from equipoise.present import show_blocks
 
         show_blocks(machine.title, pattern_blocks(machine, rows, spacing))

@@ -16,7 +16,9 @@ from support.printing import words
 def test_conditions() -> None:
     given = eq.load("yamashita-1")
     found = conditions(given), conditions(given, "sine")
-    text = words(conditions_blocks(*found, verdict=feasibility(given)))
+    text = words(
+        conditions_blocks(*found, verdict=[one.reason for one in feasibility(given).answers])
+    )
     assert "Conditions for shaking force to be zero" in text
     assert "Conditions for shaking force to be a pure sine of the crank angle" in text
     assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0 -0.3768 kg" in text
