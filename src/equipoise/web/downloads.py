@@ -10,7 +10,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
 from equipoise.schema.documents import dumps
-from equipoise.schema.output import to_csv
+from equipoise.schema.files import to_csv
 from equipoise.web.edits import Solved
 
 KINDS = {
