@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.figures import KINDS
 from equipoise.codegen.source import Source
 from equipoise.mechanism import kernels
 
@@ -28,8 +29,13 @@ FLAGS = (
     ["-mprefer-vector-width=512", "-funroll-loops"],
 )
 """Added to `ALWAYS`, each tried."""
-KINDS = {"squares": ("0.0", "{g} += {x} * {x};"), "sum": ("0.0", "{g} += {x};")}
-"""What is gathered -> its start and its line; others are not timed here."""
+ADD = {
+    "squares": "{g} += {x} * {x};",
+    "sum": "{g} += {x};",
+    "highest": "{g} = {x} > {g} ? {x} : {g};",
+    "lowest": "{g} = {x} < {g} ? {x} : {g};",
+}
+"""The line of what is gathered; others are not timed here."""
 Loop = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
@@ -53,7 +59,7 @@ def compiled(source: Source, flags: list[str], folder: Path) -> Loop:
     loop.restype = None
 
     def run(table: np.ndarray, grid: np.ndarray) -> np.ndarray:
-        out = np.empty((len(table), source.width))
+        out = np.empty((len(table), len(source.gathered.columns)))
         places = [array.ctypes.data_as(double) for array in (table, grid, out)]
         loop(places[0], len(table), places[1], grid.shape[1], places[2])
         return out
@@ -67,35 +73,29 @@ def compiled(source: Source, flags: list[str], folder: Path) -> Loop:
 def in_c(source: Source) -> str:
     """The loop as a C program."""
     assert not source.running, "angles that are counted on need more than arithmetic"
-    width = sum(1 + slot.vector for slot in source.slots)
     lines, results = _state(source)
-    signals = dict(zip(source.gathered.signals, results, strict=False))
+    signals = dict(zip(source.gathered.signals, results, strict=True))
     starts, gathered = [], []
     for k, (signal, kind) in enumerate(source.gathered.columns):
-        start, line = KINDS[kind]
-        starts.append(f"double g{k} = {start};")
-        gathered.append(line.format(g=f"g{k}", x=signals[signal]))
-    for k, number in enumerate(results[len(signals) :]):
-        low, high = f"g{source.weakest.start + k}", f"g{source.strongest.start + k}"
-        starts += [f"double {low} = 1e300, {high} = -1e300;"]
-        gathered += [
-            f"{low} = {number} < {low} ? {number} : {low};",
-            f"{high} = {number} > {high} ? {number} : {high};",
-        ]
+        starts.append(f"double g{k} = {KINDS[kind].start};")
+        gathered.append(ADD[kind].format(g=f"g{k}", x=signals[signal]))
     return "\n".join(
         [
             "#include <math.h>",
             "void loop(const double *restrict table, long designs,",
             "          const double *restrict grid, long angles, double *restrict out) {",
             "for (long i = 0; i < designs; i++) {",
-            *(f"double t{k} = table[i * {width} + {k}];" for k in range(width)),
+            *(f"double t{k} = table[i * {source.width} + {k}];" for k in range(source.width)),
             *starts,
             "for (long k = 0; k < angles; k++) {",
             *(f"double r{k} = grid[{k} * angles + k];" for k in range(len(source.rows))),
             *lines,
             *gathered,
             "}",
-            *(f"out[i * {source.width} + {k}] = g{k};" for k in range(source.width)),
+            *(
+                f"out[i * {source.width} + {k}] = g{k};"
+                for k in range(len(source.gathered.columns))
+            ),
             "}",
             "}",
             "",
@@ -107,9 +107,8 @@ def _state(source: Source) -> tuple[list[str], list[str]]:
     """Lines of C for one crank angle, and the names of what ``state`` returns."""
     lines: list[str] = []
     arguments = [Number(lines, f"r{k}") for k in range(len(source.rows))]
-    columns = (f"t{k}" for k in range(sum(1 + slot.vector for slot in source.slots)))
     arguments += [
-        Number(lines, next(columns), next(columns) if slot.vector else None)
+        Number(lines, f"t{slot.column}", f"t{slot.column + 1}" if slot.vector else None)
         for slot in source.slots
     ]
     module = {name: found for name, found in vars(kernels).items() if inspect.isfunction(found)}

@@ -26,8 +26,7 @@ import sympy_four_bar
 from asked import Limit, Table, agree
 from equipoise.codegen import backends
 from equipoise.codegen.backends import run_loop
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.codegen.gram import MassBatch
 from equipoise.mechanism import kernels
@@ -66,9 +65,11 @@ class Loop:
     def by_numpy(self) -> Array:
         """The same as where Numba is missing."""
         module = {name: one for name, one in vars(kernels).items() if inspect.isfunction(one)}
-        module |= vars(backends.NUMPY_FUNCTIONS)
+        module |= backends.NUMPY_FUNCTIONS
         exec(self.source.text, module)
-        return backends.run_numpy(self.source, module["state"], self.table, self.grid)
+        out = np.empty((len(self.table), len(self.source.gathered.columns)))
+        backends.run_numpy(out, self.source, module["state"], self.table, self.grid)
+        return out
 
 
 def batch_of(machine: Machine, paths: tuple[str, ...], wanted: list[Figure]) -> Batch:

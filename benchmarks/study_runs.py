@@ -20,8 +20,7 @@ import numpy as np
 import equipoise as eq
 from asked import Limit, Table, agree
 from equipoise.codegen.backends import FOLDER, run_loop
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.figures import Figure
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import Output, Range, Sampling, Vary

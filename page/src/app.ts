@@ -4,6 +4,7 @@ import { Charts } from "./charts";
 import { Conversation } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
+import { follow } from "./format";
 import { Frames } from "./frames";
 import { Hands } from "./hands";
 import { Heading } from "./heading";
@@ -176,6 +177,7 @@ export class App {
   private greet(hello: Hello): void {
     const first = !this.hello;
     this.hello = hello;
+    follow(hello.numbers);
     this.toolbar.offer(hello.examples);
     if (this.state) this.toolbar.show(this.state);
     else if (first && !hello.machine) {

@@ -2,27 +2,29 @@
 
 import { chooser, finder } from "./chooser";
 import { h } from "./dom";
+import { lengths } from "./format";
 import { Plane, type Trace } from "./plane";
-import type { Numbers, ResponseMessage, State } from "./protocol";
+import type { Numbers, Output, ResponseMessage, State, Unit } from "./protocol";
+import { capital } from "./readings";
 import { Abscissa, both, closed, rounding } from "./signals";
 import { Strip } from "./strip";
 import type { Role, Theme } from "./theme";
+import type { Content } from "./uplot_options";
 
 const HIGHEST = 10;
-const SPECTRA = {
-  shaking_force: ["Shaking force, by order", "N"],
-  shaking_moment: ["Shaking moment, by order", "N m"],
-  drive_torque: ["Drive torque, by order", "N m"],
-} as const;
-type Spectrum = keyof typeof SPECTRA;
-/** Of what no sum over several rows is told. */
-const OF_ONE = ", one row";
+/** Whose spectra there are; only the first is told of all rows together too. */
+const SPECTRA = ["shaking_force", "shaking_moment", "drive_torque"];
+/** What stands before the names of all rows together. */
+const ROWS = "rows.";
 
 export class Charts {
   readonly root: HTMLElement;
   private readonly x = new Abscissa();
   private readonly squares = h("div", { class: "squares" });
-  private readonly whose = chooser("Forces of", () => this.chosen());
+  private readonly whose = chooser("Forces of", () => {
+    if (this.state) this.offerSpectra(this.state);
+    this.chosen();
+  });
   private readonly whoseRow = h("div", { class: "whose" }, this.whose.label);
   private readonly pathOf = chooser("Path of", () => this.chosen());
   private readonly jointOf = chooser("Force in joint", () => this.chosen());
@@ -56,20 +58,17 @@ export class Charts {
     private readonly wanted: (names: string[]) => void,
   ) {
     const over = { xLabel: "°", xStep: (span: number) => (span > 400 ? 180 : 90), picked };
-    const strip = (title: string, height: number, xAxis: boolean, control?: HTMLElement) =>
-      new Strip({ title, height, xAxis, ...over, ...(control && { control }) }, theme);
-    this.force = strip("Shaking force", 88, false);
-    this.moment = strip("Shaking moment", 72, false);
-    this.torque = strip("Drive torque", 92, true);
-    this.joint = strip("Joint force", 100, true, this.jointOf.label);
-    const bars = { title: "Spectrum", height: 104, xAxis: true, bars: true };
+    const strip = (height: number, xAxis: boolean, control?: HTMLElement) =>
+      new Strip({ height, xAxis, ...over, ...(control && { control }) }, theme);
+    this.force = strip(88, false);
+    this.moment = strip(72, false);
+    this.torque = strip(92, true);
+    this.joint = strip(100, true, this.jointOf.label);
+    const bars = { height: 104, xAxis: true, bars: true };
     this.spectrum = new Strip({ ...bars, control: this.spectrumOf.label }, theme);
-    this.output = strip("Output", 110, true, this.outputOf.label);
-    this.response = strip("Response", 110, true, this.gaugeOf.label);
-    this.sweep = new Strip(
-      { title: "Response against speed", height: 110, xAxis: true, quiet: true },
-      theme,
-    );
+    this.output = strip(110, true, this.outputOf.label);
+    this.response = strip(110, true, this.gaugeOf.label);
+    this.sweep = new Strip({ height: 110, xAxis: true, quiet: true }, theme);
     this.strips = [
       this.force,
       this.moment,
@@ -188,19 +187,30 @@ export class Charts {
       ...points.map((p): [string, string] => [p, `Path of ${p}`]),
     ]);
     const joints = state.numbers.names("joint.").map((name) => name.slice(6));
-    const one = this.whoseRow.hidden ? "" : OF_ONE;
-    this.jointOf.offer(joints.map((name) => [name, `Force in ${name}${one}`]));
-    this.spectrumOf.offer(
-      Object.entries(SPECTRA).map(([name, [label]]) => [
-        name,
-        name === "shaking_force" ? label : `${label}${one}`,
-      ]),
-    );
+    this.jointOf.offer(joints.map((name) => [name, capital(known(state, `joints.${name}`).label)]));
     this.whose.offer([
-      ["rows.", "Forces of all rows together"],
+      [ROWS, "Forces of all rows together"],
       ["", "Forces of one row"],
     ]);
     if (this.whoseRow.hidden) this.whose.value = "";
+    this.offerSpectra(state);
+  }
+
+  private offerSpectra(state: State): void {
+    const there = SPECTRA.filter((name) => state.numbers.has(name));
+    const chosen = this.spectrumOf.value;
+    this.spectrumOf.offer(
+      there.map((name) => {
+        const { label } = known(state, name === SPECTRA[0] ? `${this.rows}${name}` : name);
+        return [name, `${capital(label)}, by order`];
+      }),
+    );
+    if (there.includes(chosen)) this.spectrumOf.value = chosen;
+  }
+
+  /** What stands before the names of the forces that are shown. */
+  private get rows(): string {
+    return this.whoseRow.hidden ? "" : this.whose.value;
   }
 
   private chosen(): void {
@@ -219,7 +229,7 @@ export class Charts {
 
   private drawForces(state: State): void {
     const x = this.x.of(state.angles, state.turns);
-    const rows = this.whoseRow.hidden ? "" : this.whose.value;
+    const { rows } = this;
     const force = `${rows}shaking_force`;
     const traces: Trace[] = [];
     const least = rounding(state);
@@ -228,34 +238,35 @@ export class Charts {
     const now = state.numbers.get(force);
     if (now) traces.push({ points: now, kind: "now", closed: true });
     const every = state.angles / (12 * state.turns);
-    this.polar.show({ title: "Shaking force", unit: "N", factor: 1, traces, every, least });
-    const curve = (name: string, label: string, role: Role, stride = 1, part = 0) => {
-      const found = both(state, name, stride, part);
-      return found ? [{ label, role, ...found }] : [];
+    const { label, ...unit } = known(state, force);
+    this.polar.show({ title: capital(label), ...unit, traces, every, least });
+    const strip = (name: string, array = name): Content => {
+      const { label, ...unit } = known(state, name);
+      const found = both(state, array);
+      const curves = found ? [{ label: "", role: "main" as Role, ...scaled(found, unit) }] : [];
+      return { title: capital(label), x, unit: unit.unit, curves, least };
     };
-    const xy = [...curve(force, "x", "main", 2, 0), ...curve(force, "y", "stress", 2, 1)];
-    this.force.show({ x, unit: "N", curves: xy, least });
-    this.moment.show({ x, unit: "N m", curves: curve(`${rows}shaking_moment`, "", "main"), least });
-    this.torque.show({ x, unit: "N m", curves: curve(`${rows}drive_torque`, "", "main"), least });
-    this.joint.show({
-      x,
-      unit: "N",
-      curves: curve(`joint.${this.jointOf.value}`, "", "main"),
-      least,
+    const parts = (["main", "stress"] as const).flatMap((role, part) => {
+      const found = both(state, force, 2, part);
+      return found ? [{ label: "xy".charAt(part), role, ...scaled(found, unit) }] : [];
     });
+    this.force.show({ ...strip(force), curves: parts });
+    this.moment.show(strip(`${rows}shaking_moment`));
+    this.torque.show(strip(`${rows}drive_torque`));
+    this.joint.show(strip(`joints.${this.jointOf.value}`, `joint.${this.jointOf.value}`));
     this.drawSpectrum(state, rows, least);
   }
 
   private drawSpectrum(state: State, rows: string, least: number): void {
-    const chosen = this.spectrumOf.value as Spectrum;
-    const [, unit] = SPECTRA[chosen];
+    const chosen = this.spectrumOf.value;
+    const { label, ...unit } = known(state, chosen);
     const most = state.turns > 1 ? HIGHEST / 2 : HIGHEST;
     const kept = state.orders
       .map((order, i) => [order, i] as const)
       .filter(([o]) => o > 0 && o <= most);
     const column = (name: string) => {
       const row = state.numbers.get(name);
-      return row && Float64Array.from(kept, ([, i]) => row[i] ?? 0);
+      return row && Float64Array.from(kept, ([, i]) => (row[i] ?? 0) * unit.factor);
     };
     const bars = (name: string, label: string, role: Role) => {
       const values = column(`spectrum.${name}`);
@@ -270,7 +281,8 @@ export class Charts {
             ...bars(`${prefix}shaking_force.y`, "y", "stress"),
           ]
         : bars(chosen, "", "main");
-    this.spectrum.show({ x: Float64Array.from(kept, ([order]) => order), unit, curves, least });
+    const x = Float64Array.from(kept, ([order]) => order);
+    this.spectrum.show({ title: `${capital(label)}, by order`, x, unit: unit.unit, curves, least });
   }
 
   private drawPath(state: State): void {
@@ -282,7 +294,7 @@ export class Charts {
     const every = state.angles / (24 * state.turns);
     const level = over ? state.planting?.surface : undefined;
     const traces: Trace[] = [{ points, kind: "now", closed: !over }];
-    this.path.show({ title: "Path", unit: "mm", factor: 1000, traces, every, level, least: 1e-6 });
+    this.path.show({ title: "Path", ...lengths(), traces, every, level, least: 1e-6 });
   }
 
   /** Ask for the numbers of an output; they come with the state, now and after every change. */
@@ -294,10 +306,10 @@ export class Charts {
   private drawOutput(state: State): void {
     const one = state.outputs.find(({ name }) => state.numbers.has(`output.${name}`));
     const found = one && both(state, `output.${one.name}`);
-    const { unit, factor } = one ?? { unit: "", factor: 1 };
-    const curves = found ? [{ label: "", role: "third" as Role, ...scaled(found, factor) }] : [];
+    const curves = found ? [{ label: "", role: "third" as Role, ...scaled(found, one) }] : [];
     this.output.root.classList.toggle("empty", !found);
-    this.output.show({ x: this.x.of(state.angles, state.turns), unit, curves });
+    const [title, unit] = [capital(one?.label ?? "output"), one?.unit ?? ""];
+    this.output.show({ title, x: this.x.of(state.angles, state.turns), unit, curves });
   }
 
   private answer(): void {
@@ -309,33 +321,40 @@ export class Charts {
     this.response.root.hidden = this.sweep.root.hidden = !values || !angle;
     if (!gauge || !values || !angle) return;
     const x = this.x.of(angle.length, this.state.turns);
-    const curve = { label: "", role: "third" as Role, values: thousand(closed(values)) };
-    this.response.show({ x, unit: `m${gauge.unit}`, curves: [curve] });
+    const curve = { label: "", role: "third" as Role, values: times(closed(values), gauge) };
+    this.response.show({ title: `Response of ${gauge.label}`, x, unit: gauge.unit, curves: [curve] });
     this.drawSweep(message, numbers);
   }
 
   private drawSweep(message: ResponseMessage, numbers: Numbers): void {
     const found =
       message.sweep?.of.find((g) => g.name === this.gaugeOf.value) ?? message.sweep?.of[0];
-    const speeds = message.sweep && numbers.get(message.sweep.speeds);
+    const { sweep } = message;
+    const speeds = sweep && numbers.get(sweep.speeds);
     const values = found && numbers.get(found.array);
     this.sweep.root.hidden = !values || !speeds;
-    if (!message.sweep || !found || !values || !speeds) return;
-    const rpm = Float64Array.from(speeds, (speed) => (speed * 30) / Math.PI);
-    const curve = { label: "", role: "third" as Role, values: thousand(Float64Array.from(values)) };
-    this.sweep.show({ x: rpm, unit: `m${found.unit} peak to peak, over rpm`, curves: [curve] });
-    this.sweep.point((message.sweep.own * 30) / Math.PI, null);
+    if (!sweep || !found || !values || !speeds) return;
+    const x = times(Float64Array.from(speeds), sweep);
+    const curves = [{ label: "", role: "third" as Role, values: times(Float64Array.from(values), found) }];
+    const unit = `${found.unit} peak to peak, over ${sweep.unit}`;
+    this.sweep.show({ title: "Response against speed", x, unit, curves });
+    this.sweep.point(sweep.own * sweep.factor, null);
   }
 }
 
 type Pair = { values: Float64Array; before?: Float64Array | undefined };
 
-function scaled(found: Pair, factor: number): Pair {
-  const times = (values: Float64Array) => values.map((value) => value * factor);
-  return { values: times(found.values), before: found.before && times(found.before) };
+/** What is known of an output: its label, its unit. */
+function known(state: State, name: string): Output {
+  const found = state.outputs.find((one) => one.name === name);
+  return found ?? { name, label: "", group: "", unit: "", factor: 1 };
 }
 
-/** Displacements in m and rad are told in mm and mrad. */
-function thousand(values: Float64Array): Float64Array {
-  return values.map((value) => value * 1000);
+/** Values in SI units in those of something else. */
+function times(values: Float64Array, { factor }: Unit): Float64Array {
+  return values.map((value) => value * factor);
+}
+
+function scaled({ values, before }: Pair, unit: Unit): Pair {
+  return { values: times(values, unit), before: before && times(before, unit) };
 }

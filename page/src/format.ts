@@ -1,15 +1,42 @@
 /** Numbers as people read them, and round numbers for scales. */
 
-const MINUS = "\u2212";
+import type { NumberRules, Unit } from "./protocol";
 
-/** Some significant digits, a true minus, no exponent where it can be helped. */
+const MINUS = "\u2212";
+const FIXED = "\u00a0";
+
+/** Those of the server, which are the product's: told before anything is drawn. */
+let rules: NumberRules = {
+  least: 0,
+  most: Infinity,
+  length: { unit: "m", factor: 1 },
+  units: [],
+};
+let quantity = /$^/g;
+
+export function follow(told: NumberRules): void {
+  rules = told;
+  const units = told.units.map((unit) => unit.replace(/[/^]/g, "\\$&")).join("|");
+  quantity = new RegExp(`([\\d)]) (${units})(?![\\w/^])`, "g");
+}
+
+/** Some significant digits, a true minus, no power of ten where it can be helped. */
 export function shown(value: number, digits = 4): string {
   if (!Number.isFinite(value)) return "–";
   const size = Math.abs(value);
   if (size === 0) return "0";
-  if (size >= 1e6 || size < 1e-4) return signed(value.toExponential(Math.max(digits - 2, 0)));
-  const places = Math.min(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0), 8);
-  return signed(value.toFixed(places));
+  if (size >= rules.most || size < rules.least) return signed(value.toExponential(digits - 1));
+  return signed(value.toFixed(Math.max(digits - 1 - Math.floor(Math.log10(size)), 0)));
+}
+
+/** A sentence in which units stay with their numbers. */
+export function unbroken(sentence: string): string {
+  return sentence.replace(quantity, (_, last, unit) => `${last}${FIXED}${unit.replace(/ /g, FIXED)}`);
+}
+
+/** A name with underscores, that may go on in a new line after each. */
+export function breakable(name: string): string {
+  return name.replace(/_/g, "_\u200b");
 }
 
 /** A number whose last digit stays where it is while the value changes. */
@@ -29,15 +56,14 @@ export function plain(value: number): string {
   return signed(String(Number(value.toPrecision(6))));
 }
 
-export function millimetres(metres: number): string {
-  return signed((metres * 1000).toFixed(2));
+/** Unit of the drawing's lengths. */
+export function lengths(): Unit {
+  return rules.length;
 }
 
-export function percent(before: number, after: number): string {
-  if (!before) return "–";
-  const change = (after / before - 1) * 100;
-  const text = change.toFixed(Math.abs(change) < 9.95 ? 1 : 0);
-  return `${Number(text) > 0 ? "+" : ""}${signed(text)}\u00a0%`;
+/** Lengths (m) as the drawing tells them, without their unit. */
+export function length(metres: number): string {
+  return signed((metres * rules.length.factor).toFixed(2));
 }
 
 export function degrees(angle: number): number {

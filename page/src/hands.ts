@@ -2,7 +2,7 @@
 
 import type { Conversation } from "./conversation";
 import { set } from "./dom";
-import { millimetres, round } from "./format";
+import { length, lengths, round } from "./format";
 import { Gesture } from "./gesture";
 import type { Edit, Pair, State } from "./protocol";
 import { type Grip, keyOf, type Stage } from "./stage";
@@ -67,10 +67,11 @@ export class Hands {
     for (const element of this.stage.grips.values()) {
       const place = this.stage.place(gripOf(element));
       if (!place) continue;
-      const [x, y] = [millimetres(place[0]), millimetres(place[1])];
+      const [x, y] = [length(place[0]), length(place[1])];
+      const { unit, factor } = lengths();
       set(element, {
-        "aria-valuetext": `x ${x} mm, y ${y} mm`,
-        "aria-valuenow": (place[0] * 1000).toFixed(2),
+        "aria-valuetext": `x ${x} ${unit}, y ${y} ${unit}`,
+        "aria-valuenow": (place[0] * factor).toFixed(2),
       });
     }
   }
@@ -98,7 +99,7 @@ export class Hands {
   private focus(grip: Grip): void {
     this.page.chosen(grip);
     const step = this.step();
-    this.tell(grip, `arrow keys ${millimetres(step)} mm, Shift × ${COARSE}, Alt ÷ ${1 / FINE}`);
+    this.tell(grip, `arrow keys ${length(step)} ${lengths().unit}, Shift × ${COARSE}, Alt ÷ ${1 / FINE}`);
   }
 
   private blur(): void {
@@ -114,7 +115,7 @@ export class Hands {
   private tell(grip: Grip, more: string): void {
     const place = this.stage.place(grip);
     if (!place) return;
-    const where = `${nameOf(grip)}: ${millimetres(place[0])}, ${millimetres(place[1])} mm`;
+    const where = `${nameOf(grip)}: ${length(place[0])}, ${length(place[1])} ${lengths().unit}`;
     this.told = [grip, more];
     this.page.hint(more ? `${where} · ${more}` : where);
   }

@@ -3,7 +3,7 @@
 import type { Conversation } from "./conversation";
 import { h } from "./dom";
 import type { Field, State } from "./protocol";
-import { breakable } from "./quantities";
+import { breakable } from "./format";
 import { Row } from "./row";
 
 /** x or y of a place. */

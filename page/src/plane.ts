@@ -1,6 +1,7 @@
 /** A curve in a plane with equal scales: the shaking force's polar diagram, paths of points. */
 
 import { h, s, set, write } from "./dom";
+import type { Unit } from "./protocol";
 import { degrees, multiples, plain, round, shown, signed } from "./format";
 
 export interface Trace {
@@ -10,11 +11,8 @@ export interface Trace {
   closed: boolean;
 }
 
-export interface Plot {
+export interface Plot extends Unit {
   title: string;
-  unit: string;
-  /** What one unit of the numbers is in the unit shown: 1000 for m in mm. */
-  factor: number;
   traces: Trace[];
   /** Samples between marks along the curve "now", and the crank angle at the first sample. */
   every: number;

@@ -33,15 +33,35 @@ export interface Hello {
   largest: number;
   /** Whether the server holds a machine already. */
   machine?: boolean;
+  numbers: NumberRules;
 }
 
-export interface Field {
+/** In which something is read, and how many of it one SI unit is. */
+export interface Unit {
+  unit: string;
+  factor: number;
+}
+
+/** How numbers are written everywhere in the product. */
+export interface NumberRules {
+  /** Sizes between which there is no power of ten. */
+  least: number;
+  most: number;
+  /** Of drawings. */
+  length: Unit;
+  /** What may follow a number in a sentence; longer ones first. */
+  units: string[];
+}
+
+export interface Field extends Unit {
   path: string;
   group: string;
   label: string;
   value: number;
+  /** With all digits that are kept, as it is typed. */
   text: string;
-  unit: string;
+  /** As it is read where it is not typed. */
+  shown: string;
   min?: number | null;
   max?: number | null;
   step?: number | null;
@@ -89,12 +109,9 @@ export interface Scene {
 }
 
 /** What can be drawn over the crank angle, once its numbers have been asked for. */
-export interface Output {
+export interface Output extends Unit {
   name: string;
   label: string;
-  /** In which it is read, and how many of it one SI unit is. */
-  unit: string;
-  factor: number;
   /** Heading under which it is offered. */
   group: string;
 }
@@ -109,6 +126,9 @@ export interface Figure {
   /** Null where it is not finite. */
   value: number | null;
   before?: number | null;
+  text: string;
+  /** What it was and by how much it has changed; empty where it is the same. */
+  was?: string;
 }
 
 export type Arrays = Record<string, [offset: number, length: number]>;
@@ -137,10 +157,9 @@ export interface StateMessage {
   planting?: { tip: string; surface: number } | null;
 }
 
-export interface Gauge {
+export interface Gauge extends Unit {
   name: string;
   label: string;
-  unit: string;
 }
 
 export interface ResponseMessage {
@@ -149,13 +168,20 @@ export interface ResponseMessage {
   gauges: Gauge[];
   arrays: Arrays;
   notes: string[];
-  sweep?: { speeds: string; own: number; of: (Gauge & { array: string })[] } | null;
+  sweep?: Sweep | null;
+}
+
+/** Response over speed: names of arrays, and the unit in which speeds are read. */
+export interface Sweep extends Unit {
+  speeds: string;
+  own: number;
+  of: (Gauge & { array: string })[];
 }
 
 /** Figures of a planting finger; null where they are not finite. */
 export interface Planted {
   type: "planting";
-  figures: { name: string; label: string; unit: string; value: number | null }[];
+  figures: { name: string; label: string; unit: string; value: number | null; text: string }[];
   notes: string[];
 }
 
@@ -164,6 +190,9 @@ export interface Change {
   unit: string;
   before: number;
   after: number;
+  /** Before, after, and the change. */
+  texts: [string, string, string];
+  way: "same" | "better" | "worse";
   /** Whether it comes first: of a whole signal on the frame, or the mass that it takes. */
   main?: boolean;
 }

@@ -1,9 +1,8 @@
 /** Figures of what shakes, and what balancing made of them. */
 
 import { h, write } from "./dom";
-import { percent, shown } from "./format";
+import { unbroken } from "./format";
 import type { Balanced, Change, Figure, Planted, State } from "./protocol";
-import { unbroken } from "./quantities";
 
 interface Line {
   label: string;
@@ -25,13 +24,8 @@ export class Readings {
     for (const figure of state.figures) {
       const cell = this.cells.get(figure.name);
       if (!cell) continue;
-      const value = figure.value ?? NaN;
-      write(cell.value, shown(value, 4));
-      if (cell.before && typeof figure.before === "number") {
-        const { before } = figure;
-        const same = Math.abs(value - before) <= 5e-4 * before;
-        write(cell.before, same ? "" : `${shown(before, 4)} · ${percent(before, value)}`);
-      }
+      write(cell.value, figure.text);
+      if (cell.before) write(cell.before, figure.was ?? "");
     }
   }
 
@@ -81,12 +75,12 @@ export class PlantedTable {
   readonly root = h("div", { class: "readings planted", hidden: true });
 
   show(planted: Planted): void {
-    const rows = planted.figures.map(({ label, unit, value }) =>
+    const rows = planted.figures.map(({ label, unit, text }) =>
       h(
         "tr",
         {},
         h("th", { scope: "row" }, capital(label)),
-        h("td", {}, h("span", { class: "value" }, shown(value ?? NaN, 4))),
+        h("td", {}, h("span", { class: "value" }, text)),
         h("td", { class: "unit" }, unbroken(unit)),
       ),
     );
@@ -131,9 +125,7 @@ export class BalancePanel {
 
   show(found: Balanced): void {
     const whole = found.figures.filter(({ main }) => main);
-    const changed = whole.filter(
-      ({ before, after }) => Math.abs(after - before) > 5e-4 * Math.abs(before),
-    );
+    const changed = whole.filter(({ way }) => way !== "same");
     const rest = (changed.length ? changed : whole).filter(
       ({ label }) => !found.aims.some((aim) => aim.label === label),
     );
@@ -165,7 +157,7 @@ export class BalancePanel {
 }
 
 function comparison(figures: Change[]): HTMLTableElement {
-  const rows = figures.map(({ label, unit, before, after }) =>
+  const rows = figures.map(({ label, unit, texts: [before, after, change], way }) =>
     h(
       "tr",
       {},
@@ -175,9 +167,9 @@ function comparison(figures: Change[]): HTMLTableElement {
         capital(label),
         h("span", { class: "unit" }, `\u00a0${unbroken(unit)}`),
       ),
-      h("td", {}, shown(before, 4)),
-      h("td", { class: "after" }, shown(after, 4)),
-      h("td", { class: after > before * 1.0005 ? "worse" : "better" }, percent(before, after)),
+      h("td", {}, before),
+      h("td", { class: "after" }, after),
+      h("td", { class: way }, change),
     ),
   );
   const head = ["before", "after", "change"].map((text) => h("th", { scope: "col" }, text));

@@ -4,9 +4,11 @@ import type { Conversation } from "./conversation";
 import { fresh, h, set, write } from "./dom";
 import { Gesture } from "./gesture";
 import type { Field } from "./protocol";
-import { bare, breakable, compact, unitOf, written } from "./quantities";
+import { breakable } from "./format";
 
 const STEPS = 1000;
+/** Of a number that is dragged. */
+const DIGITS = 5;
 /** A held key pauses no longer than this between two of its events, ms. */
 const PAUSE = 600;
 
@@ -68,7 +70,7 @@ export class Row {
     if (this.exact !== field.text) {
       this.exact = field.text;
       this.input.title = field.text;
-      if (!this.typing) this.input.value = this.focused ? field.text : compact(field.text);
+      if (!this.typing) this.input.value = this.focused ? field.text : field.shown;
       if (!this.typing) this.complain(null);
     }
     if (this.slider && !this.gesture) this.place(this.slider);
@@ -102,7 +104,7 @@ export class Row {
     this.typing = false;
     delete this.input.dataset.typed;
     this.complain(null);
-    this.input.value = this.focused ? this.exact : compact(this.exact);
+    this.input.value = this.focused ? this.exact : this.field.shown;
   }
 
   private commit(): void {
@@ -110,8 +112,9 @@ export class Row {
     const text = this.input.value.trim().replace(/−/g, "-");
     if (!this.typing || text === this.exact || text === "") return this.revert();
     this.talk.release();
-    const { path } = this.field;
-    const edits = [{ set: path, text: bare(text) ? `${text} ${unitOf(this.exact)}`.trim() : text }];
+    const { path, unit } = this.field;
+    const bare = Number.isFinite(Number(text));
+    const edits = [{ set: path, text: bare ? `${text} ${unit}` : text }];
     this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal) => {
       if (refusal === null) this.typing = false;
       this.complain(refusal);
@@ -138,10 +141,9 @@ export class Row {
         this.holding(false);
       });
     }
-    this.gesture.move(
-      [{ set: this.field.path, text: written(value, this.exact, this.field.value) }],
-      stamp,
-    );
+    const { path, factor, unit } = this.field;
+    const text = `${Number((value * factor).toPrecision(DIGITS))} ${unit}`;
+    this.gesture.move([{ set: path, text }], stamp);
   }
 
   private get label(): string {
@@ -169,7 +171,7 @@ export class Row {
     const part = high > low ? (value - low) / (high - low) : 0;
     slider.value = String(Math.round(part * STEPS));
     slider.style.setProperty("--part", part.toFixed(3));
-    set(slider, { "aria-valuetext": compact(this.field.text) });
+    set(slider, { "aria-valuetext": this.field.shown });
   }
 
   private complain(message: string | null): void {

@@ -1,7 +1,7 @@
-/** Fine lines as on a drawing board, with a scale in mm at the left and below. */
+/** Fine lines as on a drawing board, with a scale at the left and below. */
 
 import { s } from "./dom";
-import { multiples, plain, round } from "./format";
+import { lengths, multiples, plain, round } from "./format";
 import type { View } from "./view";
 
 /** Pixels between two bold lines, at least. */
@@ -9,7 +9,8 @@ const APART = 70;
 
 export function ruled(view: View): SVGElement[] {
   const { width, height } = view;
-  const step = round(APART / (view.scale / 1000)) / 1000;
+  const { unit, factor } = lengths();
+  const step = round((APART / view.scale) * factor) / factor;
   const [x0, y0] = view.metres(0, height);
   const [x1, y1] = view.metres(width, 0);
   const across = (x: number) => view.px(x, 0)[0];
@@ -21,14 +22,14 @@ export function ruled(view: View): SVGElement[] {
     multiples(apart, y0, y1)
       .map((y) => `M0 ${down(y).toFixed(1)}H${width}`)
       .join("");
-  const texts: SVGElement[] = [text(width - 8, height - 6, "mm", "end")];
+  const texts: SVGElement[] = [text(width - 8, height - 6, unit, "end")];
   for (const x of multiples(step, x0, x1)) {
     const px = across(x);
-    if (px > 34 && px < width - 52) texts.push(text(px, height - 6, plain(x * 1000), "middle"));
+    if (px > 34 && px < width - 52) texts.push(text(px, height - 6, plain(x * factor), "middle"));
   }
   for (const y of multiples(step, y0, y1)) {
     const py = down(y);
-    if (py > 14 && py < height - 22) texts.push(text(6, py + 3.5, plain(y * 1000), "start"));
+    if (py > 14 && py < height - 22) texts.push(text(6, py + 3.5, plain(y * factor), "start"));
   }
   const paths = [
     s("path", { class: "fine", d: lines(step / 5) }),

@@ -22,6 +22,7 @@ export class Strip {
   readonly root: HTMLElement;
   private readonly holder = h("div", { class: "canvas" });
   private readonly legend = h("span", { class: "legend" });
+  private readonly title = h("b");
   private readonly unit = h("span", { class: "unit" });
   private readonly cursor = h("div", { class: "cursor" });
   /** Numbers on the scales: text on a canvas would be drawn anew, slowly, at every change. */
@@ -29,7 +30,7 @@ export class Strip {
   private numbered = "";
   private readonly readings: HTMLElement[] = [];
   private plot: uPlot | null = null;
-  private content: Content = { x: NONE, unit: "", curves: [] };
+  private content: Content = { title: "", x: NONE, unit: "", curves: [] };
   private shape = "";
   private range: [number, number] = [-1, 1];
   private ticks = 1;
@@ -44,8 +45,8 @@ export class Strip {
   ) {
     this.root = h(
       "figure",
-      { class: "strip", "aria-label": look.title },
-      h("figcaption", {}, look.control ?? h("b", {}, look.title), this.unit, this.legend),
+      { class: "strip" },
+      h("figcaption", {}, look.control ?? this.title, this.unit, this.legend),
       this.holder,
     );
     this.holder.append(this.numbers);
@@ -67,6 +68,7 @@ export class Strip {
     this.range = zero ? [-1, 1] : limits(low, high);
     this.ticks = this.spacing();
     write(this.unit, content.unit);
+    write(this.title, content.title);
     const shape = content.curves.map((c) => `${c.label}|${c.role}|${!!c.before}`).join();
     if (shape !== this.shape || !this.plot) this.build(shape);
     else if (this.seen) this.plot.setData(this.data(), true);
@@ -203,7 +205,7 @@ export class Strip {
       const range = `from ${shown(low, 3)} to ${shown(high, 3)} ${this.content.unit}`;
       return `${curve.label} ${range}`.trim();
     });
-    set(this.root, { "aria-label": `${this.look.title}: ${said.join("; ")}` });
+    set(this.root, { "aria-label": `${this.content.title}: ${said.join("; ")}` });
   }
 
   private readonly press = (event: PointerEvent): void => {

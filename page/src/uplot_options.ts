@@ -11,6 +11,7 @@ export interface Curve {
 }
 
 export interface Content {
+  title: string;
   /** Values of x; the same array as long as nothing about it changed. */
   x: Float64Array;
   unit: string;
@@ -20,7 +21,6 @@ export interface Content {
 }
 
 export interface Look {
-  title: string;
   height: number;
   xAxis: boolean;
   xLabel?: string;

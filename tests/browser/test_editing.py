@@ -158,11 +158,13 @@ def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
     shown = [float(text) for text in row.get_by_role("cell").all_inner_texts()[:2]]
     rms, peak = np.sqrt(np.mean(np.abs(every) ** 2)), np.max(np.abs(every))
     assert shown == pytest.approx([rms, peak], rel=2e-3)
-    chart = live.page.get_by_role("figure", name=re.compile("^Drive torque: "))
+    chart = live.page.get_by_role("figure", name=re.compile("drive torque: ", re.IGNORECASE))
     together = sum(np.roll(torque, -samples) for samples in ahead)
     for whose, drawn in (("rows.", together), ("", torque)):
         live.page.get_by_role("combobox", name="Forces of").select_option(whose)
         said = (chart.get_attribute("aria-label") or "").replace("−", "-")
+        spectrum = live.page.get_by_role("combobox", name="Spectrum of").locator("option").first
+        expect(spectrum).to_contain_text("All rows" if whose else "One row")
         limits = [float(text) for text in NUMBER.findall(said)]
         assert limits == pytest.approx([drawn.min(), drawn.max()], rel=5e-3)
 

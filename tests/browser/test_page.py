@@ -63,7 +63,7 @@ def test_any_output_is_drawn_over_the_crank_angle(live: Live) -> None:
     chart = live.page.get_by_role("figure").filter(has=search)
     angle = np.degrees(eq.analyze(eq.load("yamashita-1"), 720).motion.transmission["C"])
     told = f"from {np.min(angle):.3g} to {np.max(angle):.3g} °"
-    expect(chart).to_have_attribute("aria-label", f"Output: {told}")
+    expect(chart).to_have_attribute("aria-label", f"Transmission angle at C: {told}")
     search.fill("no such output")
     search.press("Enter")
     expect(chart).to_have_attribute("aria-label", "Output: ")

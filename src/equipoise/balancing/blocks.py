@@ -17,7 +17,7 @@ from equipoise.mechanism.balance import Objective
 from equipoise.quantities import SI, Dimension, angle, in_unit, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven, rows_table
-from equipoise.results.naming import MEASURES, objective_named, output_named, unit_of_measure
+from equipoise.results.outputs import MEASURES, objective_named, output_named, unit_of_measure
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price

@@ -12,7 +12,7 @@ from equipoise.balancing.blocks import OF_UNIT
 from equipoise.i18n import say, to_say
 from equipoise.quantities import angle
 from equipoise.results.blocks import Block, Cell, Column, Facts, Table, Text, Value
-from equipoise.results.naming import output_named, unit_of_measure
+from equipoise.results.outputs import output_named, unit_of_measure
 
 if TYPE_CHECKING:
     from equipoise.balancing.least_norm import Added

@@ -71,7 +71,7 @@ def decay(
     confidence
         Of the intervals.
     """
-    from equipoise.figures import decay as pictures
+    from equipoise.figures import measured as pictures
     from equipoise.measured.decay import identify_decay
     from equipoise.schema.files import printable
     from equipoise.schema.records import read_record
@@ -91,7 +91,7 @@ def decay(
     with blaming(printable(csv)):
         found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
     title = printable(os.path.basename(csv))
-    outputs.draw(lambda: pictures.charts(found, title))
+    outputs.draw(lambda: pictures.decay_charts(found, title))
     outputs.print(title, found.to_dict, found.blocks)
 
 
@@ -210,13 +210,13 @@ def exposure(
 def _give(told: list[Told], outputs: Drawn) -> None:
     """Draw, then print."""
     from equipoise.exposure.blocks import told_blocks
-    from equipoise.figures import exposure as pictures
+    from equipoise.figures import measured as pictures
 
     day = _day(told)
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
 
-    outputs.draw(lambda: pictures.charts(measured, tools, day))
+    outputs.draw(lambda: pictures.exposure_charts(measured, tools, day))
     outputs.print(
         "",
         lambda: _values(measured, tools, day),

@@ -85,7 +85,7 @@ def quantities(option: str, text: str, dimension: str) -> list[float]:
 
 
 def _units(option: str, text: str) -> Units:
-    from equipoise.present.units import read_units
+    from equipoise.present.cells import read_units
 
     return read_units(text)
 

@@ -18,14 +18,14 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from threading import Lock
-from types import ModuleType, SimpleNamespace
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.figures import KINDS
 from equipoise.codegen.source import Source
 from equipoise.mechanism import kernels
-from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]
 Loop = Callable[[Array, Array, Array], None]
@@ -52,34 +52,38 @@ def engine() -> str:
     return "numpy"
 
 
-def loop_of(text: str) -> tuple[Loop | None, ModuleType]:
-    """The compiled loop of a source, None without Numba, and the module of the source."""
-    with _one_at_a_time:
-        return _loop_of(text)
+def processors() -> int:
+    """Number of processors that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 _one_at_a_time = Lock()
 
 
+def run_loop(source: Source, table: Array, grid: Array) -> Array:
+    """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
+    with _one_at_a_time:
+        loop, module = _loop_of(source.text)
+    out = np.empty((len(table), len(source.gathered.columns)))
+    if loop is None:
+        run_numpy(out, source, module.state, table, grid)
+    else:
+        loop(table, grid, out)
+    return out
+
+
 @cache
 def _loop_of(text: str) -> tuple[Loop | None, ModuleType]:
+    """The compiled loop of a source, None without Numba, and the module of the source."""
     path = _file_of(text)
     module = _imported(f"equipoise_{path.stem}", path)
     if engine() == "numpy":
-        vars(module).update(_kernels_of(kernels), **vars(NUMPY_FUNCTIONS))
+        vars(module).update(_kernels_of(kernels), **NUMPY_FUNCTIONS)
         return None, module
     vars(module).update(_compiled_kernels(), **compiled_functions())
     return _compile(module), module
-
-
-def run_loop(source: Source, table: Array, grid: Array) -> Array:
-    """What a loop gathers (P, R) of designs (P, T) over a grid (G, N)."""
-    loop, module = loop_of(source.text)
-    if loop is None:
-        return run_numpy(source, module.state, table, grid)
-    out = np.empty((len(table), source.width))
-    loop(table, grid, out)
-    return out
 
 
 def _compile(module: ModuleType) -> Loop:
@@ -253,63 +257,28 @@ def _instruction(name: str, count: int, fastmath: tuple[str, ...] = ()) -> Any:
     return intrinsic(of_one if count == 1 else of_two)
 
 
-def _rotation_of_array(angle: Array) -> Array:
-    turned: Array = np.exp(1j * angle)
-    return turned
+NUMPY_FUNCTIONS = {
+    "smallest": np.minimum,
+    "greatest": np.maximum,
+    "angle_of": np.angle,
+    "rotation": lambda angle: np.exp(1j * angle),
+}
 
 
-NUMPY_FUNCTIONS = SimpleNamespace(
-    smallest=np.minimum, greatest=np.maximum, angle_of=np.angle, rotation=_rotation_of_array
-)
-
-
-def run_numpy(source: Source, state: Callable[..., Any], table: Array, grid: Array) -> Array:
-    """What a loop would gather (P, R) of designs (P, T) over a grid (G, N)."""
-    out = np.empty((len(table), source.width))
+def run_numpy(
+    out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array
+) -> None:
+    """Fill what a loop would gather, some designs at a time."""
     step = max(1, AT_A_TIME // grid.shape[1])
     with np.errstate(all="ignore"):
         for begin in range(0, len(table), step):
             some = slice(begin, begin + step)
-            _fill(out[some], source, state, table[some], grid)
-    return out
-
-
-def _fill(out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array) -> None:
-    arguments = [*grid, *_columns(source, table)]
-    shape = (len(table), grid.shape[1])
-    values = [np.broadcast_to(value, shape) for value in state(*arguments)]
-    signals = dict(zip(source.gathered.signals, values, strict=False))
-    for k, (signal, kind) in enumerate(source.gathered.columns):
-        out[:, k] = _GATHER[kind](signals[signal])
-    numbers = values[len(signals) : len(signals) + len(source.watched)]
-    cosines = values[len(signals) + len(source.watched) :]
-    places = (source.weakest, np.min, numbers), (source.strongest, np.max, numbers)
-    for place, ways, found in (*places, (source.nearest, np.min, cosines)):
-        for column, number in zip(out[:, place].T, found, strict=True):
-            column[:] = ways(number, axis=1)
-
-
-def _columns(source: Source, table: Array) -> list[Array]:
-    """Columns (P, 1) of the table, two for a vector."""
-    found, place = [], 0
-    for slot in source.slots:
-        column = table[:, place, None]
-        found.append(column + 1j * table[:, place + 1, None] if slot.vector else column)
-        place += 1 + slot.vector
-    return found
-
-
-def _first_highest(x: Array) -> Array:
-    """Place (P,) of the highest of values (P, N), of equal ones the first."""
-    high: Array = x.max(axis=1, keepdims=True)
-    return np.asarray(np.argmax(high - x <= ROUNDING * np.abs(high), axis=1))
-
-
-_GATHER: dict[str, Callable[[Array], Array]] = {
-    "sum": lambda x: x.sum(axis=1),
-    "squares": lambda x: np.einsum("ij,ij->i", x, x),
-    "highest": lambda x: x.max(axis=1),
-    "lowest": lambda x: x.min(axis=1),
-    "highest_at": _first_highest,
-    "lowest_at": lambda x: _first_highest(-x),
-}
+            parts = table[some].T[:, :, None]
+            own = (
+                parts[one.column] + 1j * parts[one.column + 1] if one.vector else parts[one.column]
+                for one in source.slots
+            )
+            values = dict(zip(source.gathered.signals, state(*grid, *own), strict=True))
+            shape = (parts.shape[1], grid.shape[1])
+            for k, (signal, kind) in enumerate(source.gathered.columns):
+                out[some, k] = KINDS[kind].of(np.broadcast_to(values[signal], shape))

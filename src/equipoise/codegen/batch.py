@@ -1,25 +1,20 @@
-"""Figures of many designs of one machine: geometry, masses, speed, whatever its file tells."""
+"""Figures of many designs of one machine: geometry, masses, speed, whatever its file tells.
+
+Designs are a table, one row a design, that a loop runs over at crank angles of the batch's choice.
+"""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
 from itertools import pairwise
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.backends import run_loop
-from equipoise.codegen.designs import (
-    Designs,
-    all_angles,
-    angles_between,
-    designs_of,
-    grid_of,
-    has_steps,
-)
+from equipoise.codegen.backends import processors, run_loop
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import (
     CHANGE_POINT,
@@ -34,10 +29,14 @@ from equipoise.codegen.figures import (
     Figure,
     Gathered,
 )
+from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
 from equipoise.mechanism import cycle
-from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.family import linkage_of, with_columns, wrong
+from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.steps import size_of_bodies
 
 Array = np.ndarray[Any, Any]
 
@@ -62,6 +61,68 @@ FAR = -0.5
 """Cosine of the angle between a link and the base's, beyond which it may go the other way round."""
 ROUNDING = 1e-12
 """Of the size of a signal: what moves by less than this stands still."""
+
+
+def all_angles(count: int, turns: int) -> Array:
+    """`count` crank angles (rad) in each turn, equally spaced from 0."""
+    return np.arange(count * turns) * (2 * pi / count)
+
+
+def grid_of(source: Source, theta: Array) -> Array:
+    """Rows (G, N) of what the source wants to know of crank angles (N,), rad."""
+    return np.ascontiguousarray([row.values(theta) for row in source.rows], dtype=float)
+
+
+def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
+    """Size of each signal, in its own unit; a column (P, 1) where numbers of the machine are."""
+    size, speed = size_of_bodies(machine), np.abs(machine.drive.speed)
+    mass = sum(0.0 if link.mass is None else link.mass for link in machine.links.values())
+    force = mass * (size * speed**2 + np.hypot(*machine.gravity))
+    sizes = {
+        "length": size,
+        "speed": size * speed,
+        "acceleration": size * speed**2,
+        "angular speed": speed,
+        "angular acceleration": speed**2,
+        "force": force,
+        "torque": force * size,
+    }
+    known = {signal: declared(signal) for signal in signals}
+    return {signal: sizes[one[0].dimension] for signal, one in known.items() if one}
+
+
+@dataclass(frozen=True, eq=False)
+class Designs:
+    """Some designs (P) of a machine.
+
+    table : (P, T) numbers, as the source wants them.
+    refused : (P,) whether no machine can have them; those have the numbers of the base.
+    machine : the machine with their numbers as columns.
+    """
+
+    table: Array
+    refused: Array
+    machine: Machine
+
+    def sizes(self, signals: Iterable[str], some: Array) -> Mapping[str, Any]:
+        """Size of each signal of some of the designs, (K,) or one for all."""
+        found = sizes_of(self.machine, signals)
+        return {name: size[some, 0] if np.ndim(size) else size for name, size in found.items()}
+
+
+def designs_of(source: Source, base: Linkage, paths: Sequence[str], values: Array) -> Designs:
+    """Designs of a base by the numbers (P, d) that vary, SI units, and their paths."""
+    columns = {path: values[:, k, None] for k, path in enumerate(paths)}
+    machine = with_columns(base.machine, columns)
+    refused = np.zeros(len(values), dtype=bool) | wrong(machine, base, columns)
+    found = linkage_of(machine, base)
+    table = np.empty((len(values), source.width))
+    for slot in source.slots:
+        value, own = slot.read(found), slot.read(base)
+        for column, part in enumerate(("real", "imag")[: 1 + slot.vector], slot.column):
+            table[:, column] = np.ravel(np.real(getattr(value, part)))
+            table[refused, column] = getattr(own, part)
+    return Designs(table, refused, machine)
 
 
 class Batch:
@@ -97,11 +158,12 @@ class Batch:
         self.turns = self.base.cycle.turns if machine.gears else 1
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
-        self.threads = threads or _processors()
-        self.gathered = Gathered.of(self.wanted)
+        self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
-        self.least = STEP / tolerance if has_steps(machine) else FIRST
-        self.source = emit(self.base, self.gathered)
+        has_steps = any(load.start is not None for load in machine.loads)
+        self.least = STEP / tolerance if has_steps else FIRST
+        self.source = emit(self.base, Gathered.of(self.wanted))
+        self.gathered = self.source.gathered
         windings = self.base.cycle.windings if machine.gears else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         self.slope = SLOPE * max(1.0, fastest)
@@ -126,13 +188,15 @@ class Batch:
         reason = self._reasons(designs.table, found, count)
         if self.angles is not None:
             return figures, reason
+        signals = {figure.signal for figure in self.wanted}
         left = np.flatnonzero(reason == COMPUTED)
         found, calm = found[left], np.zeros(left.size, dtype=int)
         while left.size and 2 * count <= MOST_ANGLES:
-            found = self._doubled(designs.table[left], found, count)
+            between = all_angles(count, self.turns) + pi / count
+            found = self.gathered.joined(found, self._at(designs.table[left], between))
             count *= 2
             now = self._figures(found, count)
-            still = self._still(now, figures[left], found, count, designs.sizes(left))
+            still = self._still(now, figures[left], found, count, designs.sizes(signals, left))
             calm = np.where(still, calm + 1, 0)
             figures[left] = now
             reason[left] = self._reasons(designs.table[left], found, count)
@@ -160,18 +224,6 @@ class Batch:
                 lambda part: run_loop(self.source, part, grid), np.array_split(table, parts)
             )
         return np.concatenate(list(done))
-
-    def _doubled(self, table: Array, found: Array, count: int) -> Array:
-        """What is gathered at twice as many angles, of which only the new ones are computed."""
-        more = self._at(table, angles_between(count, self.turns))
-        both = self.gathered.joined(found, more)
-        for place, ways in (
-            (self.source.weakest, np.minimum),
-            (self.source.strongest, np.maximum),
-            (self.source.nearest, np.minimum),
-        ):
-            both[:, place] = ways(found[:, place], more[:, place])
-        return both
 
     def _figures(self, found: Array, count: int) -> Array:
         columns = [self.gathered.figure(found, f, count * self.turns) for f in self.wanted]
@@ -247,10 +299,3 @@ class Batch:
             best = min(best, float(values[k]))
             low, high = edges[max(k - 1, 0)], edges[min(k + 2, PARTS)]
         return best
-
-
-def _processors() -> int:
-    try:
-        return len(os.sched_getaffinity(0))
-    except AttributeError:  # not on every system
-        return os.cpu_count() or 1

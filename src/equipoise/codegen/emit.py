@@ -9,8 +9,7 @@ import re
 from collections.abc import Sequence
 
 from equipoise.codegen.figures import Figure, Gathered
-from equipoise.codegen.forces import write_demands, write_joints
-from equipoise.codegen.motion import Writer, write_motion
+from equipoise.codegen.lines import Writer, write_demands, write_joints, write_motion
 from equipoise.codegen.source import Source, source_of
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.checks import unknown
@@ -18,7 +17,7 @@ from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, declared
-from equipoise.mechanism.steps import Call, Reaction, Rotation, RunningAngle
+from equipoise.mechanism.steps import Call, Rotation, RunningAngle
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -35,11 +34,18 @@ def expression(writer: Writer, signal: str) -> str:
     UsageError : there is no such signal, or a loop cannot have it.
     """
     one, item = declared(signal) or (None, "")
-    whole = _whole(writer, one.loop, item) if one is not None and one.loop else None
-    if one is None or whole is None:
+    if one is None or not one.loop:
         raise UsageError(unknown(signal, _known(writer), "signal"))
+    try:
+        whole = _LOOKED_UP.sub(lambda value: _identified(writer, value, item), one.loop)
+    except _Missing:
+        raise UsageError(unknown(signal, _known(writer), "signal")) from None
     parts = {"": "{}", "size": "length({})", "x": "({}).real", "y": "({}).imag"}
     return parts[one.part].format(whole)
+
+
+class _Missing(LookupError):
+    """The linkage has no such member."""
 
 
 def _known(writer: Writer) -> Sequence[str]:
@@ -48,66 +54,57 @@ def _known(writer: Writer) -> Sequence[str]:
     return [*(one.name for one in DECLARED.values() if one.loop and not one.is_family), *joints]
 
 
-def _whole(writer: Writer, loop: str, item: str) -> str | None:
-    """The expression of an output with identifiers instead of names; None where one is missing."""
-    found = {
-        match[0]: _of_member(writer, match[1], item) if match[2] else _of_machine(writer, match[1])
-        for match in _LOOKED_UP.finditer(loop)
-    }
-    if None in found.values():
-        return None
-    return _LOOKED_UP.sub(lambda match: str(found[match[0]]), loop)
-
-
-def _of_machine(writer: Writer, value: str) -> str:
-    return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
-
-
-def _of_member(writer: Writer, value: str, item: str) -> str | None:
+def _identified(writer: Writer, looked_up: re.Match[str], item: str) -> str:
+    """The expression of a value of the machine, or of a member of a family."""
+    value, of_member = looked_up.groups()
+    if not of_member:
+        return writer.rate(value) if value in ("speed", "acceleration") else writer.name(value)
     if value in ORDERS:
-        return _point(writer, item, ORDERS[value])
-    if value in TURNING:
-        known = item in writer.machine.links
-        return _in_time(writer, writer.body(item)[3:], TURNING[value]) if known else None
+        return _in_time(writer, _point(writer, item), ORDERS[value])
+    if value not in TURNING:
+        return _reaction(writer, item, value)
+    if item not in writer.machine.links:
+        raise _Missing
+    return _in_time(writer, writer.body(item)[3:], TURNING[value])
+
+
+def _reaction(writer: Writer, item: str, value: str) -> str:
+    """A joint's force is told on the later of its bodies, a gear's on the driven one."""
     reaction = dict(writer.linkage.named_reactions).get(item)
     if reaction is None:
-        return None
-    sign = _sign(writer, reaction)
+        raise _Missing
+    order = writer.linkage.joints.bodies.index
+    told = reaction.kind == "gear" or order(reaction.on) > order(reaction.by)
+    sign = 1.0 if told else -1.0
     force = f"({sign} * {writer.name(reaction.force)})"
     if value == "joint force":
         return force
     if reaction.couple is None:
-        return None
+        raise _Missing
     slider = next(s for s in writer.machine.sliders if s.name == reaction.name)
     to, *_ = writer.point(slider.link, slider.point)
     at = writer.name(f"p({reaction.at})")
     return f"{sign} * {writer.name(reaction.couple)} + cross({at} - {to}, {force})"
 
 
-def _sign(writer: Writer, reaction: Reaction) -> float:
-    """A joint's force is told on the later of its bodies, a gear's on the driven one."""
-    order = writer.linkage.joints.bodies.index
-    return 1.0 if reaction.kind == "gear" or order(reaction.on) > order(reaction.by) else -1.0
-
-
-def _point(writer: Writer, name: str, times: int) -> str | None:
+def _point(writer: Writer, name: str) -> list[str]:
     if name in writer.points:
-        values = [writer.name(f"{key}({name})") for key in ("p", "p1", "p2")]
-    else:
-        links = [link for link, body in writer.machine.links.items() if name in body.points]
-        if not links:
-            return None
-        values = writer.point(links[0], name)
-    return _in_time(writer, values, times)
+        return [writer.name(f"{key}({name})") for key in ("p", "p1", "p2")]
+    for link, body in writer.machine.links.items():
+        if name in body.points:
+            return writer.point(link, name)
+    raise _Missing
 
 
 def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
     """A value, or its first or second derivative by time, from those by crank angle."""
     speed, acceleration = writer.rate("speed"), writer.rate("acceleration")
     value, first, second = values
-    if times < 2:
-        return (value, f"{first} * {speed}")[times]
-    return f"{second} * {speed} * {speed} + {first} * {acceleration}"
+    return (
+        value,
+        f"{first} * {speed}",
+        f"{second} * {speed} * {speed} + {first} * {acceleration}",
+    )[times]
 
 
 def can_emit(linkage: Linkage) -> bool:

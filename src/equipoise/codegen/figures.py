@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -42,6 +42,37 @@ MOST_ANGLES = 65_536
 
 Array = np.ndarray[Any, Any]
 
+
+def _first_highest(x: Array) -> Array:
+    """Place (P,) of the highest of values (P, N), of equal ones the first."""
+    high: Array = x.max(axis=1, keepdims=True)
+    return np.asarray(np.argmax(high - x <= ROUNDING * np.abs(high), axis=1))
+
+
+@dataclass(frozen=True)
+class Kind:
+    """Something that a loop gathers of a signal over the crank angles.
+
+    start : as source, before the first crank angle.
+    add : line that takes in another value {x} of the signal; for places see `codegen.source`.
+    of : the same of values (P, N) by NumPy, (P,).
+    joined : of two sets of crank angles, from that of each; None of places.
+    """
+
+    start: str
+    add: str
+    of: Callable[[Array], Array]
+    joined: Callable[[Array, Array], Array] | None = None
+
+
+KINDS = {
+    "sum": Kind("0.0", "{g} += {x}", lambda x: x.sum(axis=1), np.add),
+    "squares": Kind("0.0", "{g} += {x} * {x}", lambda x: np.einsum("ij,ij->i", x, x), np.add),
+    "highest": Kind("-1e300", "{g} = greatest({g}, {x})", lambda x: x.max(axis=1), np.maximum),
+    "highest_at": Kind("0.0", "", _first_highest),
+    "lowest": Kind("1e300", "{g} = smallest({g}, {x})", lambda x: x.min(axis=1), np.minimum),
+    "lowest_at": Kind("0.0", "", lambda x: _first_highest(-x)),
+}
 GATHERED = {
     "mean": ("sum",),
     "rms": (),
@@ -55,7 +86,6 @@ GATHERED = {
 }
 """Figure -> what it is made of beside the sum of squares, which tells how large a signal is."""
 PLACES = ("max_at", "min_at", "peak_at")
-KINDS = ("sum", "squares", "highest", "highest_at", "lowest", "lowest_at")
 
 
 @dataclass(frozen=True)
@@ -99,18 +129,15 @@ class Gathered:
         """What was gathered at two sets of crank angles, together."""
         result = np.empty_like(one)
         for k, (signal, kind) in enumerate(self.columns):
-            a, b = one[:, k], other[:, k]
-            if kind in ("sum", "squares"):
-                result[:, k] = a + b
-            elif kind in ("highest", "lowest"):
-                result[:, k] = np.maximum(a, b) if kind == "highest" else np.minimum(a, b)
-            else:
-                sign = 1 if kind == "highest_at" else -1
-                extreme = kind.removesuffix("_at")
-                first = sign * self.column(one, signal, extreme)
-                second = sign * self.column(other, signal, extreme)
-                equal = np.abs(second - first) <= ROUNDING * np.abs(first)
-                result[:, k] = np.where(equal, np.minimum(a, b), np.where(second > first, b, a))
+            if (join := KINDS[kind].joined) is not None:
+                result[:, k] = join(one[:, k], other[:, k])
+                continue
+            extreme = kind.removesuffix("_at")
+            sign = 1 if extreme == "highest" else -1
+            first, second = (sign * self.column(found, signal, extreme) for found in (one, other))
+            equal = np.abs(second - first) <= ROUNDING * np.abs(first)
+            later = np.where(second > first, other[:, k], one[:, k])
+            result[:, k] = np.where(equal, np.minimum(one[:, k], other[:, k]), later)
         return result
 
     def figure(self, found: Array, figure: Figure, count: int) -> Array:

@@ -8,21 +8,20 @@ nearly cancel, as the Gram matrix itself would.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from itertools import pairwise
-from typing import Any, NamedTuple
+from collections.abc import Sequence
+from itertools import chain, pairwise
+from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.figures import MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
+from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.family import massive_link, with_columns, wrong
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import Found, declared
+from equipoise.mechanism.outputs import Declared, Found, declared
 from equipoise.mechanism.parameters import (
     parameter_names,
     parameter_values,
@@ -62,42 +61,12 @@ def _can_have(machine: Machine, figure: Figure) -> bool:
     return linear and (figure.name == "rms" or (figure.name == "mean" and not one.is_vector))
 
 
-@dataclass(frozen=True, eq=False)
-class Square:
-    """A figure as the root of a sum of squares, or a mean: factors (R, V) and constants (R, 1)."""
-
-    factors: Array
-    constants: Array
-    mean: bool
-
-    def of(self, found: Array) -> Array:
-        """The figure (P,), from rows (R, P): factors times parameters, and constants."""
-        if self.mean:
-            mean: Array = found[0]
-            return mean
-        root: Array = np.sqrt(np.einsum("ij,ij->j", found, found))
-        return root
-
-
-class Room(NamedTuple):
-    """Where some designs (N) at a time are computed; to have it anew each time takes as long again.
-
-    columns : (d, N) their numbers.  parameters : (V + 1, N), ones below.  found : (R, N).
-    """
-
-    columns: Array
-    parameters: Array
-    found: Array
-
-    @classmethod
-    def of(cls, numbers: int, matrix: Array, count: int) -> Room:
-        """Room for so many designs of so many numbers; matrix : (R, V + 1)."""
-        rows, parameters = matrix.shape
-        return cls(*(np.ones((height, count)) for height in (numbers, parameters, rows)))
-
-
 class MassBatch:
-    """Designs of one machine that differ in masses; parameters as those of `Batch`."""
+    """Designs of one machine that differ in masses; parameters as those of `Batch`.
+
+    rows : (R, V + 1) of all figures: what a unit of each parameter gives, and what the rest does.
+    ends : where those of each figure begin and end.
+    """
 
     def __init__(
         self,
@@ -112,10 +81,10 @@ class MassBatch:
         self.base, self.paths, self.wanted = assemble(machine), tuple(paths), tuple(wanted)
         links = {massive_link(path) for path in paths}
         self.links = [link for link in machine.links if link in links]
+        self.outputs = [found for figure in wanted if (found := declared(figure.signal))]
         self.scale = np.append(_scales(machine, len(self.links)), 1.0)
         self.still = True
-        self.squares = self._squares(angles, tolerance)
-        rows = [np.column_stack([one.factors, one.constants]) for one in self.squares]
+        rows = [*map(self._factor, self._settled(angles, tolerance), self.wanted, self.outputs)]
         self.rows = np.concatenate(rows)
         self.ends = np.cumsum([0, *map(len, rows)])
         self.polar = any(path.endswith((".distance", ".direction")) for path in paths)
@@ -124,33 +93,33 @@ class MassBatch:
     def __call__(self, values: Array) -> tuple[Array, Array]:
         """Figures (P, m) and reasons (P,) of designs (P, d), SI units; NaN where one failed."""
         figures = np.empty((len(values), len(self.wanted)))
-        reason = np.zeros(len(values), dtype=np.uint8)
-        if not self.still:
-            reason[:] = NOT_STILL
-        room = Room.of(len(self.paths), self.rows, min(AT_ONCE, len(values)))
-        named = dict(zip(self.paths, room.columns[:, :, None], strict=True))
+        reason = np.full(len(values), COMPUTED if self.still else NOT_STILL, np.uint8)
+        # Room for some designs at a time; to have it anew each time takes as long again.
+        heights = len(self.paths), *reversed(self.rows.shape)
+        room = [np.ones((height, min(AT_ONCE, len(values)))) for height in heights]
+        columns, parameters, found = room
+        named = dict(zip(self.paths, columns[:, :, None], strict=True))
         for begin in range(0, len(values), AT_ONCE):
             some = slice(begin, begin + AT_ONCE)
-            room.columns[:, : len(values[some])] = values[some].T
+            count = len(values[some])
+            columns[:, :count] = values[some].T
             if begin == 0 or self.polar:
                 machine = with_columns(self.base.machine, named)
-            self._fill(figures[some], reason[some], machine, room)
-        figures[reason != 0] = np.nan
+            inertial = chain(*(parameters_of(machine.links[link]) for link in self.links))
+            with np.errstate(all="ignore"):
+                for row, value in zip(parameters[:-1], inertial, strict=True):
+                    row[:] = np.ravel(value)
+                np.matmul(self.rows, parameters, out=found)
+                for k, ends in enumerate(pairwise(self.ends)):
+                    part = found[slice(*ends), :count]
+                    if self.wanted[k].name == "mean":
+                        figures[some, k] = part[0]
+                    else:
+                        figures[some, k] = np.sqrt(np.einsum("ij,ij->j", part, part))
+            if not self._all_usual(columns[:, :count]):
+                reason[some][wrong(machine, self.base, named)[:count]] = NO_MACHINE
+        figures[reason != COMPUTED] = np.nan
         return figures, reason
-
-    def _fill(self, figures: Array, reason: Array, machine: Machine, room: Room) -> None:
-        count = len(reason)
-        columns, parameters, found = room
-        rows = (value for link in self.links for value in parameters_of(machine.links[link]))
-        with np.errstate(all="ignore"):
-            for row, value in zip(parameters[:-1], rows, strict=True):
-                row[:] = np.ravel(value)
-            np.matmul(self.rows, parameters, out=found)
-            for k, (square, ends) in enumerate(zip(self.squares, pairwise(self.ends), strict=True)):
-                figures[:, k] = square.of(found[slice(*ends), :count])
-        if not self._all_usual(columns[:, :count]):
-            named = dict(zip(self.paths, columns[:, :, None], strict=True))
-            reason[wrong(machine, self.base, named)[:count]] = NO_MACHINE
 
     def _all_usual(self, columns: Array) -> bool:
         """Whether a glance at numbers (d, P) tells that all of these designs are machines."""
@@ -161,55 +130,49 @@ class MassBatch:
 
     # -- made once ---------------------------------------------------------------------------------
 
-    def _squares(self, angles: int | None, tolerance: float) -> list[Square]:
-        """Every figure, with as many crank angles as its Gram matrix asks for."""
-        count = angles or FIRST
-        found = self._signals(count)
-        if angles is None:
-            enough = max(EXACT, tolerance**2)
-            while True:
-                before, count = found, 2 * count
-                if count > MOST_ANGLES:
-                    self.still = False
-                    break
-                found = self._signals(count)
-                if all(
-                    _alike(old * self.scale, new * self.scale, enough)
-                    for old, new in zip(before, found, strict=True)
-                ):
-                    break
-        return [self._square(a, f) for a, f in zip(found, self.wanted, strict=True)]
+    def _settled(self, angles: int | None, tolerance: float) -> list[Array]:
+        """Samples for every figure, at as many crank angles as its Gram matrix asks for."""
+        if angles is not None:
+            return self._samples(angles)
+        enough, count = max(EXACT, tolerance**2), FIRST
+        found = self._samples(count)
+        while 2 * count <= MOST_ANGLES:
+            count *= 2
+            before, found = found, self._samples(count)
+            both = zip(before, found, strict=True)
+            if all(_alike(old * self.scale, new * self.scale, enough) for old, new in both):
+                return found
+        self.still = False
+        return found
 
-    def _signals(self, count: int) -> list[Array]:
-        """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest."""
-        motion = move(self.base.machine, count)
-        unit, whole = regressor(motion), forces(motion)
-        both = Found(motion, unit), Found(motion, whole)
-        return [np.column_stack([*self._parts(f.signal, *both)]) for f in self.wanted]
+    def _samples(self, count: int) -> list[Array]:
+        """For each figure the samples (N', V + 1) of a unit of each parameter, and of the rest.
 
-    def _parts(self, signal: str, unit: Found, whole: Found) -> Iterator[Array]:
-        """Columns of a signal over the cycle, one below the other where it has two components."""
-        rows = np.stack([*_components(signal, unit)])
-        own = np.stack([*_components(signal, whole)])
+        Those of two components stand one below the other.
+        """
         machine = self.base.machine
+        motion = move(machine, count)
+        unit, whole = Found(motion, regressor(motion)), Found(motion, forces(motion))
         varied = [k for k, (link, _) in enumerate(parameter_names(machine)) if link in self.links]
-        for k in varied:
-            yield rows[:, k].ravel()
-        yield (
-            own - np.tensordot(rows[:, varied], parameter_values(machine)[varied], (1, 0))
-        ).ravel()
+        own = parameter_values(machine)[varied]
+        found = []
+        for output in self.outputs:
+            rows = _components(*output, unit)[:, varied]
+            rest = _components(*output, whole) - np.tensordot(rows, own, (1, 0))
+            columns = [*np.moveaxis(rows, 1, 0), rest]
+            found.append(np.column_stack([column.ravel() for column in columns]))
+        return found
 
-    def _square(self, samples: Array, figure: Figure) -> Square:
-        count = len(samples)
+    def _factor(self, samples: Array, figure: Figure, output: tuple[Declared, str]) -> Array:
+        """Rows (R, V + 1) whose products with parameters and 1 are a mean, or have its squares."""
         if figure.name == "mean":
-            row = np.mean(samples, axis=0)[None]
-            return Square(row[:, :-1], row[:, -1:], True)
-        if _is_vector(figure.signal):
-            count //= 2
+            mean: Array = np.mean(samples, axis=0, keepdims=True)
+            return mean
+        count = len(samples) // (2 if output[0].is_vector else 1)
         _, singular, rows = np.linalg.svd(samples * self.scale, full_matrices=False)
         kept = singular > RANK * singular[0]
-        factor = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
-        return Square(factor[:, :-1], factor[:, -1:], False)
+        factor: Array = (singular[:, None] * rows)[kept] / (self.scale * np.sqrt(count))
+        return factor
 
 
 def _scales(machine: Machine, links: int) -> Array:
@@ -219,21 +182,12 @@ def _scales(machine: Machine, links: int) -> Array:
     return np.tile([mass, mass * size, mass * size, mass * size**2], links)
 
 
-def _is_vector(signal: str) -> bool:
-    """Whether a signal is the length of a vector."""
-    found = declared(signal)
-    return found is not None and found[0].is_vector
-
-
-def _components(signal: str, found: Found) -> Iterator[Array]:
-    """One or two components of a signal, (..., N)."""
-    one, item = declared(signal) or (None, "")
-    if one is None or item not in one.items_of(found):
-        raise UsageError(f"got {signal!r}; the machine has no such signal")
+def _components(one: Declared, item: str, found: Found) -> Array:
+    """The one or two components of an output, (1 or 2, ..., N)."""
+    if item not in one.items_of(found):
+        raise UsageError(f"got {one.named(item)!r}; the machine has no such signal")
     whole = one.component(one.vector(found, item))
-    yield whole.real
-    if one.is_vector:
-        yield whole.imag
+    return np.stack([whole.real, whole.imag] if one.is_vector else [whole.real])
 
 
 def _alike(one: Array, other: Array, tolerance: float) -> bool:

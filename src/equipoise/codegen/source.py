@@ -10,33 +10,20 @@ from __future__ import annotations
 import inspect
 import keyword
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate, chain, pairwise
 from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.figures import Gathered
+from equipoise.codegen.figures import KINDS, Gathered
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage
 from equipoise.signals import ROUNDING
 
 Array = np.ndarray[Any, Any]
 Read = Callable[[Linkage], Any]
-START = {
-    "sum": "0.0",
-    "squares": "0.0",
-    "highest": "-1e300",
-    "lowest": "1e300",
-    "highest_at": "0.0",
-    "lowest_at": "0.0",
-}
-ADD = {
-    "sum": ("{g} += {x}",),
-    "squares": ("{g} += {x} * {x}",),
-    "highest": ("{g} = greatest({g}, {x})",),
-    "lowest": ("{g} = smallest({g}, {x})",),
-}
 PLACE = {"highest": "{x} - {g} >", "lowest": "{g} - {x} >"}
 """An extreme has a new place where it grows by more than rounding, so that of equal ones the first
 is told; this takes a branch, which costs the loop its speed."""
@@ -47,11 +34,16 @@ RESERVED |= {"abs", "state", "loop", "table", "grid", "out", "i", "k"}
 
 @dataclass(frozen=True)
 class Slot:
-    """A number or vector that each design has of its own, and where in its linkage it stands."""
+    """A number or vector that each design has of its own.
+
+    read : finds it in the design's linkage.
+    column : of the table; a vector takes this and the next.
+    """
 
     name: str
     vector: bool
     read: Read
+    column: int
 
 
 @dataclass(frozen=True)
@@ -66,40 +58,25 @@ class Row:
 class Source:
     """A loop as source, with what has to be handed to it.
 
-    slots : columns of its table, in order; a vector takes two.
-    rows : rows of its grid; those of vectors take two.
+    slots : what stands in the columns of its table, of which there are `width`.
+    rows : of its grid.
     watched : dyads that numbers tell of; the first time it is the dyad's own number.
     running : links whose angle is taken from that of the base.
+    gathered : columns of what it fills: those that are wanted, then the others below.
+    weakest, strongest : columns of the smallest and the largest value of each watched number.
+    nearest : columns of how near the running links stay to the base's: smallest cosine between.
     """
 
     text: str
     slots: tuple[Slot, ...]
+    width: int
     rows: tuple[Row, ...]
     watched: tuple[int, ...]
     running: tuple[str, ...]
     gathered: Gathered
-
-    @property
-    def width(self) -> int:
-        """Columns of what it fills: what is gathered, and those below."""
-        return len(self.gathered.columns) + 2 * len(self.watched) + len(self.running)
-
-    @property
-    def weakest(self) -> slice:
-        """Columns of the smallest value of each number that is watched."""
-        first = len(self.gathered.columns)
-        return slice(first, first + len(self.watched))
-
-    @property
-    def strongest(self) -> slice:
-        """Columns of the largest value of each of them."""
-        first = len(self.gathered.columns) + len(self.watched)
-        return slice(first, first + len(self.watched))
-
-    @property
-    def nearest(self) -> slice:
-        """Columns of how near the running links stay to the base's: smallest cosine between."""
-        return slice(len(self.gathered.columns) + 2 * len(self.watched), self.width)
+    weakest: slice
+    strongest: slice
+    nearest: slice
 
 
 class Sheet:
@@ -108,6 +85,7 @@ class Sheet:
     def __init__(self) -> None:
         self.lines: list[str] = []
         self.slots: dict[str, Slot] = {}
+        self.width = 0
         self.rows: dict[str, Row] = {}
         self.running: dict[str, str] = {}
         self._names: dict[str, str] = {}
@@ -124,10 +102,12 @@ class Sheet:
             self._names[value] = found
         return self._names[value]
 
-    def slot(self, name: str, read: Read, vector: bool) -> str:
-        """A number that each design has of its own."""
+    def slot(self, name: str, read: Read, vector: bool = False) -> str:
+        """A number or vector that each design has of its own."""
         found = self.name(name)
-        self.slots.setdefault(found, Slot(found, vector, read))
+        if found not in self.slots:
+            self.slots[found] = Slot(found, vector, read, self.width)
+            self.width += 1 + vector
         return found
 
     def row(self, name: str, values: Callable[[Array], Array]) -> str:
@@ -150,85 +130,80 @@ class Sheet:
 
 
 def source_of(
-    sheet: Sheet, signals: Sequence[str], numbers: Mapping[str, int], gathered: Gathered
+    sheet: Sheet, signals: Sequence[str], numbers: Mapping[str, int], wanted: Gathered
 ) -> Source:
     """Put ``state`` and ``loop`` around the lines.
 
-    signals : identifiers of the signals, in the order of `gathered`; numbers : of the dyads' own
-        numbers and what else is watched, each with the dyad that it tells of.
+    signals : identifiers of the signals, in the order of `wanted`.
+    numbers : identifiers of those that are watched, each with the dyad that it tells of.
     """
-    arguments = [*sheet.rows, *sheet.slots]
-    results = [*signals, *numbers, *sheet.running.values()]
-    text = "\n".join(
-        [
-            '"""Written out by equipoise.codegen from the steps of a linkage."""',
-            "",
-            "",
-            f"def state({', '.join(arguments)}):",
-            *(f"    {line}" for line in sheet.lines),
-            f"    return {', '.join(results)},",
-            "",
-            "",
-            *_loop(sheet, gathered, len(numbers), arguments),
-            "",
-        ]
-    )
+    watched = [f"number {k}" for k in range(len(numbers))]
+    cosines = [f"cosine {k}" for k in range(len(sheet.running))]
+    columns = [
+        wanted.columns,
+        [(number, "lowest") for number in watched],
+        [(number, "highest") for number in watched],
+        [(cosine, "lowest") for cosine in cosines],
+    ]
+    gathered = Gathered(tuple(chain(*columns)))
+    ends = pairwise(accumulate(map(len, columns), initial=0))
+    _, weakest, strongest, nearest = (slice(*both) for both in ends)
+    arguments = ", ".join([*sheet.rows, *sheet.slots])
+    lines = [
+        '"""Written out by equipoise.codegen from the steps of a linkage."""',
+        "",
+        "",
+        f"def state({arguments}):",
+        *(f"    {line}" for line in sheet.lines),
+        f"    return {', '.join([*signals, *numbers, *sheet.running.values()])},",
+        "",
+        "",
+        *_loop(sheet, gathered, arguments),
+        "",
+    ]
     return Source(
-        text,
+        "\n".join(lines),
         tuple(sheet.slots.values()),
+        sheet.width,
         tuple(sheet.rows.values()),
         tuple(numbers.values()),
         tuple(sheet.running),
         gathered,
+        weakest,
+        strongest,
+        nearest,
     )
 
 
-def _loop(sheet: Sheet, gathered: Gathered, dyads: int, arguments: list[str]) -> list[str]:
+def _loop(sheet: Sheet, gathered: Gathered, arguments: str) -> list[str]:
     signals = {signal: f"x{k}" for k, signal in enumerate(gathered.signals)}
-    names = [f"g{k}" for k in range(len(gathered.columns))]
-    numbers = [f"n{k}" for k in range(dyads)]
-    cosines = [f"c{k}" for k in range(len(sheet.running))]
-    extremes = [f"{kind}_{number}" for kind in ("weakest", "strongest") for number in numbers]
-    extremes += [f"nearest_{cosine}" for cosine in cosines]
+    columns = {column: f"g{k}" for k, column in enumerate(gathered.columns)}
     return [
         "def loop(table, grid, out):",
         "    for i in range(table.shape[0]):",
-        *(f"        {line}" for line in _unpacked(sheet)),
-        *(
-            f"        {name} = {START[kind]}"
-            for name, (_, kind) in zip(names, gathered.columns, strict=True)
-        ),
-        *(f"        {name} = {'-1e300' if name[0] == 's' else '1e300'}" for name in extremes),
+        *(f"        {slot.name} = {_read(slot)}" for slot in sheet.slots.values()),
+        *(f"        {name} = {KINDS[kind].start}" for (_, kind), name in columns.items()),
         "        for k in range(grid.shape[1]):",
         *(f"            {name} = grid[{k}, k]" for k, name in enumerate(sheet.rows)),
-        f"            {', '.join([*signals.values(), *numbers, *cosines])}, = state("
-        f"{', '.join(arguments)})",
-        *(f"            {line}" for line in _gathering(gathered, signals, names)),
-        *(f"            weakest_{n} = smallest(weakest_{n}, {n})" for n in numbers),
-        *(f"            strongest_{n} = greatest(strongest_{n}, {n})" for n in numbers),
-        *(f"            nearest_{c} = smallest(nearest_{c}, {c})" for c in cosines),
-        *(f"        out[i, {k}] = {name}" for k, name in enumerate(names)),
-        *(f"        out[i, {len(names) + k}] = {name}" for k, name in enumerate(extremes)),
+        f"            {', '.join(signals.values())}, = state({arguments})",
+        *(f"            {line}" for line in _gathering(columns, signals)),
+        *(f"        out[i, {k}] = {name}" for k, name in enumerate(columns.values())),
     ]
 
 
-def _unpacked(sheet: Sheet) -> Iterable[str]:
-    """Lines that read a design's numbers from its row of the table."""
-    place = 0
-    for slot in sheet.slots.values():
-        if slot.vector:
-            yield f"{slot.name} = complex(table[i, {place}], table[i, {place + 1}])"
-        else:
-            yield f"{slot.name} = table[i, {place}]"
-        place += 1 + slot.vector
+def _read(slot: Slot) -> str:
+    """A design's number or vector out of its row of the table."""
+    first = f"table[i, {slot.column}]"
+    return f"complex({first}, table[i, {slot.column + 1}])" if slot.vector else first
 
 
-def _gathering(gathered: Gathered, signals: dict[str, str], names: list[str]) -> Iterable[str]:
-    columns = dict(zip(gathered.columns, names, strict=True))
+def _gathering(columns: Mapping[tuple[str, str], str], signals: Mapping[str, str]) -> Iterator[str]:
+    """Lines that take in the signals' values."""
     for (signal, kind), name in columns.items():
         x = signals[signal]
         place = columns.get((signal, f"{kind}_at"))
         if place is not None:
             yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
             yield f"    {place} = k"
-        yield from (line.format(g=name, x=x) for line in ADD.get(kind, ()))
+        if line := KINDS[kind].add:
+            yield line.format(g=name, x=x)

@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from typing import Any, Literal
 
 import numpy as np
@@ -43,6 +44,16 @@ GROUPS = {
     "gauges": "gauges",
 }
 """Groups of outputs and their headings, in the order in which they are offered."""
+
+
+@lru_cache(maxsize=4096)  # asked for again with every analysis
+def _named(name: str, item: str) -> str:
+    return name.replace("{}", item)
+
+
+@lru_cache(maxsize=4096)
+def _path(name: str, item: str) -> tuple[str, ...]:
+    return tuple(item if key == "{}" and item else key for key in name.split("."))
 
 
 def _only_one(_: Any) -> Iterable[str]:
@@ -93,7 +104,7 @@ class Declared:
         """SI unit."""
         return SI[self.dimension]
 
-    @property
+    @cached_property
     def group(self) -> str:
         """One of `GROUPS`."""
         first = self.name.partition(".")[0]
@@ -119,12 +130,11 @@ class Declared:
 
     def named(self, item: str) -> str:
         """The name of a member."""
-        return self.name.replace("{}", item)
+        return _named(self.name, item)
 
     def path(self, item: str = "") -> tuple[str, ...]:
         """Keys that lead to a member in nested values; members may have dots in their names."""
-        keys = self.name.split(".")
-        return tuple(item if key == "{}" else key for key in keys) if item else tuple(keys)
+        return _path(self.name, item)
 
     def item_of(self, name: str) -> str | None:
         """The member that goes by a name; None where none can."""

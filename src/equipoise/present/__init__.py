@@ -45,6 +45,6 @@ def show_blocks(
 
 def html_of(result: Result) -> str:
     """What a result shows as a part of a page; a notebook asks for it."""
-    from equipoise.present.html import html_of as rendered
+    from equipoise.present.pages import html_of as rendered
 
     return rendered(result)

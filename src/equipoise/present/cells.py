@@ -7,14 +7,26 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from math import isnan
 
+from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, spoken
-from equipoise.quantities import Dimension, Display, change, display, in_unit, number, typeset
+from equipoise.quantities import (
+    KINDS,
+    Dimension,
+    Display,
+    change,
+    display,
+    in_unit,
+    number,
+    typeset,
+)
 from equipoise.results.blocks import Cell, Change, Column, Many, Span, Table, Value
 
 Units = Mapping[Dimension, str]
 """Units that a reader has chosen, by dimension."""
 Kind = tuple[Dimension | None, str | None]
 
+UNCHANGED = change(1.0, 1.0)
+"""What `change` tells of two equal figures."""
 MORE_DIGITS = {"rad": 2, "turn": 3}
 """Of angles, beyond those behind the point in degrees."""
 
@@ -152,7 +164,8 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     if cell is None or isinstance(cell, str):
         return Text(cell or "")
     if isinstance(cell, Change):
-        return Text(change(cell.before, cell.after), number=True, strong=cell.worse)
+        share = change(cell.before, cell.after)
+        return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
     if isinstance(cell, Many):
         told = [_text(value, column, shown) for value in cell.values]
         words = [f"{one.text} ({one.at})" if one.at else one.text for one in told]
@@ -240,3 +253,43 @@ def plain(text: str) -> str:
     for sign, letters in _PLAIN.items():
         text = text.replace(sign, letters)
     return text
+
+
+PRINTED: tuple[Dimension, ...] = (
+    "length",
+    "angle",
+    "speed",
+    "acceleration",
+    "time",
+    "frequency",
+    "angular speed",
+    "force",
+    "torque",
+)
+"""Dimensions whose units can be chosen."""
+
+
+def read_units(text: str) -> dict[Dimension, str]:
+    """Chosen units by dimension, from a list such as ``"mm, km/h"``.
+
+    Raises
+    ------
+    UsageError : there is no such unit, or there are two of a dimension.
+    """
+    given: dict[Dimension, str] = {}
+    for unit in filter(None, (part.strip() for part in text.split(","))):
+        dimension = _dimension(unit)
+        if given.setdefault(dimension, unit) != unit:
+            raise UsageError(
+                f"--units: got {given[dimension]!r} and {unit!r}, both units of {dimension}; "
+                "give one"
+            )
+    return given
+
+
+def _dimension(unit: str) -> Dimension:
+    for dimension in PRINTED:
+        if unit in KINDS[dimension].units:
+            return dimension
+    known = (unit for dimension in PRINTED for unit in KINDS[dimension].units)
+    raise UsageError(f"--units: got {unit!r}; choose among {', '.join(known)}")

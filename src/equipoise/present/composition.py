@@ -12,9 +12,9 @@ from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, say, speaking, to_say
 from equipoise.planting.blocks import planting_blocks
-from equipoise.present.document import Document
-from equipoise.present.drawing import drawings
 from equipoise.present.findings import Findings, ToolFindings, find
+from equipoise.present.pages import Document
+from equipoise.present.pictures import drawings
 from equipoise.present.remedies import nothing_told
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import tool_answers, tool_tiles
@@ -265,7 +265,7 @@ def report_page(found: Findings | ToolFindings, language: str = "en", command: s
     ------
     MobilityError, MotionError, UsageError : the linkage cannot be moved.
     """
-    from equipoise.present.html import page
+    from equipoise.present.pages import page
 
     return page(build(found, language, command))
 
@@ -275,7 +275,7 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
     if language not in LANGUAGES:
         raise UsageError(f"language: got {language!r}; give one of {', '.join(LANGUAGES)}")
     if "pdf" in {kind_of(out) for out in outs}:
-        from equipoise.present.pdf import check_pdf
+        from equipoise.present.pages import check_pdf
 
         check_pdf(language)
 
@@ -284,11 +284,11 @@ def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -
     """Write a document as each of these files."""
     for out in outs:
         if kind_of(out) == "pdf":
-            from equipoise.present.pdf import pdf
+            from equipoise.present.pages import pdf
 
             _write(out, pdf(document))
         else:
-            from equipoise.present.html import page
+            from equipoise.present.pages import page
 
             _write(out, page(document).encode())
 

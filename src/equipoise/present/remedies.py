@@ -10,7 +10,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.present.findings import Findings
 from equipoise.quantities import brief, change, percent
-from equipoise.results.naming import objective_named, output_named, scaled, unit_of_measure
+from equipoise.results.outputs import objective_named, output_named, scaled, unit_of_measure
 
 WORSE, MOST_WORSE = 0.1, 3
 NOTHING = 1e-9

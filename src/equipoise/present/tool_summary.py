@@ -15,8 +15,8 @@ from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken
-from equipoise.present.document import Answer, Tile
 from equipoise.present.findings import ToolFindings
+from equipoise.present.pages import Answer, Tile
 from equipoise.present.remedies import capital
 from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
 

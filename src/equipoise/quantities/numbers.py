@@ -164,11 +164,13 @@ def display(
 
 
 def display_rules() -> Mapping[str, Any]:
-    """The same as data, for the live page: units by dimension, and where one makes way."""
-    shown = {dimension: _SHOWN.get(dimension, (si,) * 3) for dimension, si in SI.items()}
-    units = {
-        dimension: [[one.name, one.factor] for one in map(in_unit, names)]
-        for dimension, names in shown.items()
-    }
-    limits = {"least": LEAST, "most": MOST, "small": SMALL, "large": LARGE, "rounding": ROUNDING}
-    return {"units": units, **limits}
+    """What the live page needs to write numbers as they are written here.
+
+    least, most : sizes between which there is no power of ten.
+    length : unit of a drawing, and how many of it are one SI unit.
+    units : what may follow a number in a sentence, and stays in its line; longer ones first.
+    """
+    units = sorted({*FACTORS, *_MORE, "%"}, key=lambda unit: (-len(unit), unit))
+    length = display("length")
+    drawing = {"unit": length.name, "factor": length.factor}
+    return {"least": LEAST, "most": MOST, "length": drawing, "units": units}

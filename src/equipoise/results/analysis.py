@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -12,9 +12,10 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
+from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
-from equipoise.mechanism.motion import Motion, Named, move
+from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
@@ -172,10 +173,11 @@ def to_dict(analysis: Analysis, split: bool = False) -> Values:
             result[family] = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
         result["about"] = {"x": found.about.real, "y": found.about.imag}
     for one in analysis.outputs.arrays:
+        *keys, last = one.path
         values = result
-        for key in one.path[:-1]:
+        for key in keys:
             values = values.setdefault(key, {})
-        values[one.path[-1]] = one.values
+        values[last] = one.values
     if found is not None and split:
         result.update(_split(found))
     result["summary"] = _summary(analysis)
@@ -241,7 +243,7 @@ def _summary(analysis: Analysis) -> Values:
         for name, figure in analysis.summary.items()
     }
     if analysis.four_bar is not None:
-        summary["four_bar"] = asdict(analysis.four_bar)
+        summary["four_bar"] = dict(vars(analysis.four_bar))
     return summary
 
 

@@ -1,4 +1,4 @@
-"""The outputs of an analysis, in the order in which `mechanism.outputs` declares them."""
+"""The outputs of an analysis, as `mechanism.outputs` declares them, and what they are called."""
 
 from __future__ import annotations
 
@@ -6,11 +6,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
+from math import pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say, to_say
+from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import Dimension
@@ -90,13 +93,13 @@ class Outputs:
         had = [one for one in DECLARED.values() if one.read and _can_be_had(one, analysis)]
         members: dict[Any, dict[str, None]] = {}  # those of several declarations are the same
         self._found: dict[str, Output] = {}
-        for _, group in groupby(had, key=lambda one: (one.group, one.is_family)):
-            ones = list(group)
-            for one in ones:
+        for _, group in groupby(had, key=lambda one: one.group):
+            own = []
+            for one in group:
                 who = one.items or one.members
                 if who not in members:
                     members[who] = dict.fromkeys(one.items_of(analysis))
-            own = [(one, members[one.items or one.members]) for one in ones]
+                own.append((one, members[who]))
             for item in dict.fromkeys(item for _, items in own for item in items):
                 for one, items in own:
                     if item in items:
@@ -180,3 +183,59 @@ def _documented(one: Declared) -> str:
     stands = ", ".join(place for place, stands in places.items() if stands)
     what = str(one.note("NAME"))
     return f"| `{one.named('NAME')}` | {one.unit} | {what} | {one.needs} | {stands} |\n"
+
+
+RPM = 30 / pi
+MEASURES = {
+    "rms": to_say("RMS"),
+    "ripple": to_say("RMS about the mean"),
+    "peak": to_say("peak"),
+    "peak_to_peak": to_say("peak to peak"),
+    "area": to_say("area in a turn"),
+}
+CAUSES = {
+    "translation": to_say("inertia of the centres of mass"),
+    "rotation": to_say("inertia of rotation"),
+    "weight": to_say("weight"),
+    "load": to_say("loads"),
+    "spring": to_say("springs"),
+}
+SCALES = {"m": (1e3, "mm"), "rad": (1e3, "mrad"), "kg": (1e3, "g")}
+"""SI unit -> factor and unit that is shown."""
+
+
+def output_named(name: str, rows: int = 1) -> str:
+    """An output, such as ``joints.A``, in words.
+
+    rows : of the machine; where there are several, outputs are of one row if they do not say so.
+    """
+    first, _, rest = name.partition(".")
+    found = declared(name)
+    if found is not None:
+        return found[0].say(found[1], rows > 1)
+    return say("all rows: {what}", what=output_named(rest)) if first == "rows" else name
+
+
+def objective_named(one: Objective, rows: int = 1) -> str:
+    """What is to become small, in words."""
+    of_joint = one.output.startswith(("joints.", "gauges."))
+    output = one.output if rows < 2 or of_joint else f"rows.{one.output}"
+    words = [output_named(output), say(MEASURES[one.measure])]
+    if one.about:
+        words.append(say("about {point}", point=one.about))
+    if one.orders:
+        words.append(say("order {orders}", orders=", ".join(f"{order:g}" for order in one.orders)))
+    if one.speeds:
+        speeds = ", ".join(f"{speed * RPM:.4g}" for speed in one.speeds)
+        words.append(say("at {speeds} rpm", speeds=speeds))
+    return say(", ").join(words)
+
+
+def unit_of_measure(output: str, measure: str) -> str:
+    """SI unit of a figure that is told before and after."""
+    return "J" if measure == "area" else unit_of(output)
+
+
+def scaled(unit: str) -> tuple[float, str]:
+    """Factor and shown unit of an SI unit."""
+    return SCALES.get(unit, (1.0, unit))

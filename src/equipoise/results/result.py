@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from importlib import import_module
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from numbers import Number
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
 
 import numpy as np
-
-from equipoise.results.data import dataset_of, frame_of
 
 if TYPE_CHECKING:
     import pandas
@@ -92,3 +91,174 @@ class Result:
 def _room(name: str) -> Any:
     """A room above this one, by name and only when it is wanted: results know no renderer."""
     return import_module(f"equipoise.{name}")
+
+
+Along = tuple[tuple[str, ...], Array]
+"""Names of the axes of an array, and the array."""
+
+ABSCISSAE = {
+    "time": "s",
+    "crank_angle": "rad",
+    "speed": "rad/s",
+    "places": "m",
+    "orders": "",
+    "values": "",
+}
+"""What arrays are told along, and its SI unit; the first of them that an array has beside it, or
+beside what it stands in."""
+
+
+class Tabular(Protocol):
+    """What a result has to have for tables of it; see `equipoise.results.result.Result`."""
+
+    @property
+    def records(self) -> str: ...
+
+    def to_dict(self) -> dict[str, Any]: ...
+
+    def columns(self) -> Sequence[tuple[str, str, Any]]: ...
+
+
+def dataset_of(result: Tabular) -> xarray.Dataset:
+    """Arrays by dotted path along their abscissae; everything else as attributes."""
+    import xarray
+
+    arrays, attributes = _split(result)
+    columns = result.columns()
+    units = ABSCISSAE | {name: unit for name, unit, _ in columns}
+    if columns and columns[0][0] not in arrays and not result.records:
+        arrays |= {name: ((columns[0][0],), values) for name, _, values in columns}
+    found = {
+        path: (axes, values, {"units": units[path]} if units.get(path) else {})
+        for path, (axes, values) in arrays.items()
+    }
+    ticks = {path: found.pop(path) for path, (axes, _) in arrays.items() if axes == (path,)}
+    return xarray.Dataset(found, ticks, attrs=attributes)
+
+
+def frame_of(result: Tabular) -> pandas.DataFrame:
+    """The columns of its CSV file where it has one, over the first of them.
+
+    Else a row for each of its records, or for each place along what all is told along, with columns
+    by dotted path, those of a table (N, K) by its path and a number.  What is told along nothing
+    gives one row.
+    """
+    import pandas
+
+    columns = result.columns()
+    if columns and not result.records:
+        (first, _, index), *rest = columns
+        frame = {name: values for name, _, values in rest}
+        return pandas.DataFrame(frame, pandas.Index(index, name=first))
+    arrays, attributes = _split(result)
+    along = result.records or next((name for name in ABSCISSAE if name in arrays), "")
+    flat = {
+        name: values
+        for path, (axes, table) in arrays.items()
+        if along in axes and path != along
+        for name, values in _flat(path, np.moveaxis(table, axes.index(along), 0))
+    }
+    if along in arrays:
+        return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=along))
+    if flat:
+        return pandas.DataFrame(flat)
+    row = {path: value for path, value in attributes.items() if not isinstance(value, list)}
+    return pandas.DataFrame([row])
+
+
+def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:
+    """Columns (N,) of an array (N, ...), the last of whose axes may be several."""
+    if values.ndim == 1:
+        yield path, values
+    else:
+        for k, column in enumerate(values.reshape(len(values), -1).T):
+            yield f"{path}.{k}", column
+
+
+# -- paths -----------------------------------------------------------------------------------------
+
+
+def _split(result: Tabular) -> tuple[dict[str, Along], dict[str, Any]]:
+    """Arrays with their axes, and what is no array, by dotted path."""
+    arrays: dict[str, Array] = {}
+    attributes: dict[str, Any] = {}
+    records: dict[str, str] = {}  # path -> records to which it belongs
+    for path, value in _leaves(result.to_dict()):
+        if isinstance(value, list) and value and isinstance(value[0], Mapping):
+            told = [dict(_leaves(one)) for one in value]
+            for key in dict.fromkeys(key for one in told for key in one):
+                arrays[f"{path}.{key}"] = _array([one.get(key) for one in told])
+                records[f"{path}.{key}"] = path
+        elif isinstance(value, np.ndarray):
+            arrays[path] = value
+        elif isinstance(value, list) and value and _is_numeric(value):
+            arrays[path] = _array(value)
+        elif value is not None:
+            attributes[path] = value
+    single = {path: one for path, one in arrays.items() if one.ndim == 1 and path not in records}
+    found = {
+        path: (_axes(path, values, single, records.get(path)), values)
+        for path, values in arrays.items()
+    }
+    return found, attributes
+
+
+def _leaves(values: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in values.items():
+        name = f"{path}.{key}" if path else str(key)
+        if isinstance(value, Mapping):
+            yield from _leaves(value, name)
+        else:
+            yield name, list(value) if isinstance(value, tuple) else value
+
+
+def _is_numeric(values: Sequence[Any]) -> bool:
+    """Whether these are numbers, none in the place of some, or lists of such."""
+    return all(
+        _is_numeric(one)
+        if isinstance(one, list | tuple)
+        else one is None or isinstance(one, Number)
+        for one in values
+    )
+
+
+def _array(values: Sequence[Any]) -> Array:
+    """Values (N, ...), filled up with NaN where there are none; other than numbers as objects."""
+    if _is_numeric(values):
+        if not any(isinstance(one, list | tuple) for one in values):
+            return np.array([np.nan if one is None else one for one in values])
+        parts = {k: _array(one) for k, one in enumerate(values) if isinstance(one, list | tuple)}
+        shape = np.max([part.shape for part in parts.values()], axis=0)
+        filled = np.full((len(values), *shape), np.nan)
+        for k, part in parts.items():
+            filled[k][tuple(map(slice, part.shape))] = part
+        return filled
+    found = np.empty(len(values), dtype=object)
+    found[:] = values
+    return found
+
+
+def _axes(
+    path: str, values: Array, single: Mapping[str, Array], record: str | None
+) -> tuple[str, ...]:
+    """Names of the axes of an array; what stands nearest of an abscissa goes before others."""
+    axes: list[str] = [] if record is None else [record]
+    for k in range(len(axes), values.ndim):
+        beside = (
+            f"{scope}{name}"
+            for name in ABSCISSAE
+            for scope in _scopes(path)
+            if f"{scope}{name}" not in axes
+        )
+        own = f"{path}.index_{k}"
+        size = values.shape[k]
+        fitting = (one for one in beside if one in single and len(single[one]) == size)
+        axes.append(next(fitting, own))
+    return tuple(axes)
+
+
+def _scopes(path: str) -> Iterator[str]:
+    """What stands before a name beside the last of a path, and beside what that stands in."""
+    parts = path.split(".")[:-1]
+    for k in range(len(parts), -1, -1):
+        yield "".join(f"{part}." for part in parts[:k])

@@ -13,7 +13,7 @@ import numpy as np
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.naming import objective_named
+from equipoise.results.outputs import objective_named
 from equipoise.studies.design_space import Choices, Normal, Range
 from equipoise.studies.selection import far_apart
 

@@ -18,7 +18,7 @@ from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
 from equipoise.quantities import number
-from equipoise.results.naming import (
+from equipoise.results.outputs import (
     MEASURES,
     objective_named,
     output_named,
@@ -27,7 +27,7 @@ from equipoise.results.naming import (
 )
 from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
-from equipoise.web.state import figures_of
+from equipoise.web.figures import compared, figures_of, signals_of
 
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
@@ -174,7 +174,8 @@ def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
     """Figures before and after as the page shows them, by name; SI units."""
     if base.analysis.machine.drive.acceleration:  # which balancing leaves out
         return {}
-    figures = figures_of(after.analysis, base.analysis)
+    machine = after.analysis.machine
+    figures = figures_of(signals_of(after.analysis), signals_of(base.analysis), machine)
     pairs = {one["name"]: (one.get("before"), one["value"]) for one in figures}
     return {name: (a, b) for name, (a, b) in pairs.items() if a is not None and b is not None}
 
@@ -188,7 +189,7 @@ def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, flo
         name = f"{one.output}.{one.measure}"
         pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
     before, after = (factor * value for value in pair)
-    return {"label": objective_named(one, rows), "unit": unit, "before": before, "after": after}
+    return {"label": objective_named(one, rows), "unit": unit, **compared(before, after)}
 
 
 def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
@@ -206,7 +207,7 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
             factor, unit = scaled(si_unit(Objective(output), found.original))
         else:
             factor, unit = scaled(unit_of_measure(output, measure))
-    values = {"before": factor * before, "after": factor * after}
+    values = compared(factor * before, factor * after)
     return {"label": label, "unit": unit, "main": main, **values}
 
 

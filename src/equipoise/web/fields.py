@@ -11,7 +11,7 @@ from typing import Any
 from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.model import Machine, Vector, size_of
 from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
-from equipoise.quantities import format_exact, rounded
+from equipoise.quantities import Display, format_exact, in_unit, rounded, typeset
 from equipoise.quantities.units import KINDS, Dimension
 from equipoise.web.design import Design, pin_of
 
@@ -20,8 +20,8 @@ FINE = 1000
 """Steps of a slider over its range."""
 FREE = 0.5
 """How far from where it was a coordinate's slider reaches, over the size of the machine."""
-DIGITS, HANDY = 7, 8
-"""Digits that are shown, and signs of a number that nobody would write in another unit."""
+DIGITS, SHOWN, HANDY = 7, 5, 8
+"""Digits of a number in use and of others, and signs of one that is told in no other unit."""
 CENTER: Vector = (0.0, 0.0)
 
 
@@ -74,14 +74,16 @@ class Scale:
     def told(self, field: Field) -> dict[str, Any]:
         """A number as the page is sent it."""
         low, high = self.ends(field)
-        unit = _unit(self.values.get(field.path, field.value), field.dimension)
+        unit = in_unit(_unit(self.values.get(field.path, field.value), field.dimension))
         return {
             "path": field.path,
             "group": field.group,
             "label": field.label,
             "value": field.value,
-            "text": _text(field.value, unit),
-            "unit": unit,
+            "text": _text(field.value, unit.unit),
+            "shown": _shown(field.value, unit),
+            "unit": unit.unit,
+            "factor": unit.factor,
             "min": low,
             "max": high,
             "step": (high - low) / FINE,
@@ -100,6 +102,11 @@ def _unit(start: float, dimension: Dimension) -> str:
 def _text(value: float, unit: str) -> str:
     """Digits are looked for in decimal arithmetic, and most numbers are those of a moment ago."""
     return rounded(value, unit, DIGITS)
+
+
+def _shown(value: float, unit: Display) -> str:
+    digits = typeset(f"{unit.factor * value:.{SHOWN}g}")
+    return digits + (unit.name if unit.name == "°" else f" {unit.name}")
 
 
 def fields_of(design: Design) -> dict[str, Field]:

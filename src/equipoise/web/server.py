@@ -1,4 +1,10 @@
-"""The local server of the live page: its HTML, script and style, and a WebSocket a page."""
+"""The local server of the live page: its HTML, script and style, and a WebSocket a page.
+
+Only the page whose address was printed may talk to it, from this machine.  A page of another site
+can send requests to 127.0.0.1, and a name of another site can be made to point there.  So every
+request has to carry the token, a Host that is this server, and, where the browser tells it, an
+Origin that is this server too.
+"""
 
 from __future__ import annotations
 
@@ -8,13 +14,12 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
 from concurrent.futures import ThreadPoolExecutor as Threads
 from contextlib import contextmanager, suppress
-from secrets import token_urlsafe
+from importlib.resources import files
+from secrets import compare_digest, token_urlsafe
 from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
 from equipoise.schema.files import reason
-from equipoise.web.assets import TYPES, assets
-from equipoise.web.guard import Guard
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
 from equipoise.web.session import Session
@@ -22,8 +27,105 @@ from equipoise.web.session import Session
 if TYPE_CHECKING:
     import uvicorn
     from starlette.requests import Request
-    from starlette.types import ASGIApp
+    from starlette.types import ASGIApp, Message, Receive, Scope, Send
     from starlette.websockets import WebSocket
+
+HOSTS = ("127.0.0.1", "localhost")
+TOKEN = "this address has no valid token; open the one that `equipoise serve` has printed"
+ORIGIN = "requests from pages of other sites are refused; open the address that was printed"
+HOST = "this server answers by the names 127.0.0.1 and localhost only"
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; "
+    "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+)
+HEADERS = {
+    "content-security-policy": POLICY,
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-opener-policy": "same-origin",
+    "cross-origin-resource-policy": "same-origin",
+    "cache-control": "no-store",
+}
+"""Of every response.  Nothing is loaded from elsewhere, and the token is told to nobody."""
+_ENCODED = [(name.encode(), value.encode()) for name, value in HEADERS.items()]
+
+
+class Guard:
+    """Refuses what does not come from the server's own page, and adds the headers.
+
+    port : of the server.  token : that its page carries.
+    """
+
+    def __init__(self, app: ASGIApp, port: int, token: str) -> None:
+        self.app, self.query = app, b"token=" + token.encode()
+        self.hosts = {f"{name}:{port}" for name in HOSTS} | (set(HOSTS) if port == 80 else set())
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Let a request through, or refuse it with a sentence."""
+        if scope["type"] == "lifespan":
+            await self.app(scope, receive, send)
+            return
+
+        async def with_headers(message: Message) -> None:
+            if message["type"].endswith("response.start"):
+                message["headers"] = [*message.get("headers", []), *_ENCODED]
+            await send(message)
+
+        problem = self.problem(scope)
+        if problem:
+            await refuse(problem, scope, with_headers)
+        else:
+            await self.app(scope, receive, with_headers)
+
+    def problem(self, scope: Scope) -> str:
+        """Why a request is refused; empty where it is not."""
+        headers: dict[bytes, list[str]] = {}
+        for name, value in scope["headers"]:
+            headers.setdefault(name.lower(), []).append(value.decode("latin-1").lower())
+        hosts, origins = headers.get(b"host", []), headers.get(b"origin", [])
+        if len(hosts) != 1 or hosts[0] not in self.hosts:
+            return HOST
+        own = {f"http://{host}" for host in self.hosts}
+        # A WebSocket is opened by pages only, which tell where they are from.
+        if not set(origins) <= own or (scope["type"] == "websocket" and len(origins) != 1):
+            return ORIGIN
+        return "" if compare_digest(scope["query_string"], self.query) else TOKEN
+
+
+async def refuse(problem: str, scope: Scope, send: Send) -> None:
+    """Answer with one sentence, also where a WebSocket was asked for."""
+    body, begin, headers = f"equipoise: {problem}\n".encode(), "websocket.http.response", []
+    if scope["type"] == "http":  # else the server itself tells these two
+        begin = "http.response"
+        headers = [
+            (b"content-type", b"text/plain; charset=utf-8"),
+            (b"content-length", str(len(body)).encode()),
+        ]
+    await send({"type": f"{begin}.start", "status": 403, "headers": headers})
+    await send({"type": f"{begin}.body", "body": body})
+
+
+TYPES = {"equipoise.js": "text/javascript", "equipoise.css": "text/css"}
+"""Everything that there is, with its type."""
+MAKE = (
+    "the page has not been built; run `make page`, or `pip install -e .` where Node or a network "
+    "is at hand"
+)
+
+
+def assets() -> dict[str, bytes]:
+    """Script and style of the page, by name.
+
+    Raises
+    ------
+    UsageError : they have not been built.
+    """
+    folder = files("equipoise.web") / "static"
+    try:
+        return {name: (folder / name).read_bytes() for name in TYPES}
+    except OSError:
+        raise UsageError(MAKE) from None
+
 
 ADDRESS = "127.0.0.1"
 MOST_PAGES = 20

@@ -18,6 +18,7 @@ from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.edits import Solved
+from equipoise.web.figures import text_of
 from equipoise.web.state import Block
 
 Values = dict[str, Any]
@@ -63,16 +64,18 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
     block.add("sweep.speed", curves.speed)
     of = []
     for name, curve in curves.gauges.items():
-        unit = "rad" if curve.rotation else "m"
-        label = f"{name}, peak to peak"
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
-        of.append({"name": name, "label": label, "unit": unit, "array": array})
+        told = _gauge(name, f"{name}, peak to peak", curve.rotation)
+        of.append(told | {"array": array})
     resonances = [{"speed": one.speed, "order": one.order} for one in curves.resonances]
+    rpm = in_unit("rpm")
     content["sweep"] = {
         "speeds": "sweep.speed",
         "of": of,
         "own": found.speed,
+        "unit": rpm.name,
+        "factor": rpm.factor,
         "resonances": resonances,
     }
     content["arrays"] = block.told
@@ -87,15 +90,15 @@ def _told(found: Response, block: Block) -> Values:
     for name, gauge in found.gauges.items():
         values = gauge.displacement.samples(count)
         block.add(f"response.{name}", values)
-        gauges.append(
-            {
-                "name": name,
-                "label": name,
-                "unit": "rad" if gauge.rotation else "m",
-                "peak_to_peak": float(np.ptp(values)),
-            }
-        )
+        told = _gauge(name, name, gauge.rotation)
+        gauges.append(told | {"peak_to_peak": float(np.ptp(values))})
     return {"gauges": gauges, "arrays": block.told, "notes": list(map(str, found.notes))}
+
+
+def _gauge(name: str, label: str, rotation: bool) -> Values:
+    """What a gauge is called, and the unit in which the page shows it."""
+    shown = in_unit("mrad" if rotation else "mm")
+    return {"name": name, "label": label, "unit": shown.name, "factor": shown.factor}
 
 
 class OutdatedError(Exception):
@@ -136,7 +139,8 @@ def _shown(name: str, value: float) -> Values:
     told = cell(value, name)
     assert told is not None
     unit = display(told.dimension, [value]) if told.unit is None else in_unit(told.unit)
-    return {"unit": unit.name, "value": unit.factor * value if isfinite(value) else None}
+    there = unit.factor * value if isfinite(value) else None
+    return {"unit": unit.name, "value": there, "text": text_of(there)}
 
 
 def _planted(machine: Machine) -> Values:

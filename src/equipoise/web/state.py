@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
-from math import isfinite
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
 import numpy as np
 
 from equipoise.mechanism.dynamics import massless
-from equipoise.mechanism.model import Machine
-from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared
+from equipoise.mechanism.outputs import GROUPS
 from equipoise.mechanism.tip import surface_of
 from equipoise.quantities import display
 from equipoise.results.analysis import Analysis
 from equipoise.signals import Periodic
+from equipoise.symbols.looks import LOOKS
+from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
-from equipoise.web.edits import Solved, extent_of, movable
-from equipoise.web.stage import stage_of
+from equipoise.symbols.shapes import Shape
+from equipoise.web.edits import Solved, movable
+from equipoise.web.figures import figures_of, signals_of
 
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
@@ -94,7 +95,7 @@ def state_of(
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
         "scene": stage_of(scene, movable(machine)),
-        "figures": [*_figures(signals, old, _size_of(machine))],
+        "figures": figures_of(signals, old, machine),
         "outputs": [
             {
                 "name": one.name,
@@ -113,27 +114,6 @@ def state_of(
     }
     content["arrays"] = block.told
     return content, block.data
-
-
-def signals_of(analysis: Analysis) -> dict[str, Array]:
-    """Signals over the crank angle (N,), complex for vectors; none where masses are missing."""
-    found = analysis.solved
-    if found is None:
-        return {}
-    signals = {
-        "shaking_force": found.shaking_force.value,
-        "shaking_moment": found.shaking_moment,
-        "drive_torque": found.drive_torque,
-    }
-    signals |= {f"joint.{name}": joint.size for name, joint in found.joints.items()}
-    return signals | _together(analysis)
-
-
-def _together(analysis: Analysis) -> dict[str, Array]:
-    """The same of all rows together, where there are several and they turn."""
-    if analysis.motion.speed == 0:
-        return {}
-    return {f"rows.{name}": values for name, values in analysis.together.items()}
 
 
 def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix: str = "") -> None:
@@ -182,100 +162,6 @@ def _orders(analysis: Analysis) -> list[float]:
     return [number / turns for number in range(MOST_ORDER * turns + 1)]
 
 
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(np.abs(values) ** 2)))
-
-
-def _peak(values: Array) -> float:
-    return float(np.max(np.abs(values)))
-
-
-MEASURES = {"rms": ("RMS", _rms), "peak": ("peak", _peak)}
-
-
-NOTHING = 1e-12
-"""Of the largest force in the machine, and of its moment over the machine, below which a figure is
-what rounding leaves of forces that cancel."""
-
-
-def figures_of(analysis: Analysis, before: Analysis | None = None) -> list[Values]:
-    """RMS and peak of each signal, with what they were before; 0 where that is rounding."""
-    old = None if before is None else signals_of(before)
-    return [*_figures(signals_of(analysis), old, _size_of(analysis.machine))]
-
-
-def _size_of(machine: Machine) -> float:
-    """Size of a machine with all its rows, m."""
-    rows = [abs(length) for row in machine.rows for length in (row.lateral, *row.offset)]
-    return max(extent_of(machine), *rows, 0.0)
-
-
-def _figures(
-    signals: dict[str, Array], old: dict[str, Array] | None, size: float
-) -> Iterator[Values]:
-    """The same of signals, for a machine of a size (m)."""
-    parts = _with_parts(signals)
-    olds, several = {} if old is None else _with_parts(old), "rows.shaking_force" in signals
-    loudest = max(
-        (_peak(values) for one in (parts, olds) for name, values in one.items() if _is_force(name)),
-        default=0.0,
-    )
-    for name, one in told_signals().items():
-        if name not in parts:
-            continue
-        values, was = parts[name], olds.get(name)
-        least = NOTHING * loudest * (1.0 if _is_force(name) else size)
-        label = one.say("", several)
-        for measure, (shown, of) in MEASURES.items():
-            entry = {
-                "name": f"{name}.{measure}",
-                "signal": label,
-                "measure": measure,
-                "label": f"{label}, {shown}",
-                "unit": one.unit,
-                "value": _plain(of(values), least),
-            }
-            yield entry if was is None else entry | {"before": _plain(of(was), least)}
-
-
-def told_signals() -> dict[str, Declared]:
-    """Outputs of which figures are told: those of frame and drive, and of all rows together.
-
-    The size of a vector stands before its components.
-    """
-    found = {
-        name: one
-        for name, one in DECLARED.items()
-        if (one.group == "forces" and one.compared) or (one.group == "rows" and one.summed)
-    }
-    whole = {
-        name: name.removesuffix(f".{one.part}") if one.part in ("x", "y") else name
-        for name, one in found.items()
-    }
-    order = list(dict.fromkeys(whole.values()))
-    first = sorted(found, key=lambda name: (order.index(whole[name]), name != whole[name]))
-    return {name: found[name] for name in first}
-
-
-def _is_force(name: str) -> bool:
-    return name.startswith(("shaking_force", "rows.shaking_force", "joint."))
-
-
-def _with_parts(signals: dict[str, Array]) -> dict[str, Array]:
-    """Signals with the components of the shaking force beside it."""
-    force = signals.get("shaking_force")
-    if force is None:
-        return signals
-    return {**signals, "shaking_force.x": force.real, "shaking_force.y": force.imag}
-
-
-def _plain(value: float, least: float) -> float | None:
-    """A number that JSON can hold; 0 below what counts."""
-    if not isfinite(value):
-        return None
-    return value if value > least else 0.0
-
-
 def _ground(found: Solved, scene: Scene, block: Block) -> Values:
     """Path of a planting tip over ground, and the soil that it goes into."""
     machine = found.analysis.machine
@@ -285,3 +171,59 @@ def _ground(found: Solved, scene: Scene, block: Block) -> Values:
     way = planting.forward(speed) / speed * scene.crank_angle
     block.add(f"ground.{planting.tip}", scene.places[planting.tip] + way)
     return {"planting": {"tip": planting.tip, "surface": surface_of(machine)}}
+
+
+# -- the drawing -----------------------------------------------------------------------------------
+
+UNIT = 1.25
+"""Pixels: size of a unit of signs on a page."""
+
+
+def stage_of(scene: Scene, handles: Sequence[str]) -> Values:
+    """Names and the drawing of a scene.
+
+    signs : from the back to the front, each with its ``layer``, the ``link`` that it is, what it
+        moves with (`symbols.pieces.Hold`, with the ``length`` of which it is stretched), and its
+        shapes: role, whether it is closed, radius (m), and that in pixels, then x and y (m) and
+        offsets from there (pixels) of each corner.
+    looks : role -> style.
+    """
+    low, high = scene.box
+    drawn = pieces(scene)
+    roles = sorted({shape.role for piece in drawn for shape in piece.shapes})
+    return {
+        "frame": list(scene.frame),
+        "standing": list(scene.standing),
+        "bodies": [{"name": body.name, "points": list(body.points)} for body in scene.bodies],
+        "guides": [{"name": guide.name, "point": guide.point} for guide in scene.guides],
+        "mass_centers": list(scene.mass_centers),
+        "box": [low.real, low.imag, high.real, high.imag],
+        "movable": list(handles),
+        "traced": traced(scene),
+        "signs": [_sign(piece) for piece in drawn],
+        "looks": {role: LOOKS[role].css(UNIT) for role in roles},
+    }
+
+
+def _sign(piece: Piece) -> Values:
+    hold = None if piece.hold is None else {k: v for k, v in asdict(piece.hold).items() if v}
+    if hold is not None and "to" in hold:
+        hold["length"] = float(np.max(piece.shapes[0].places.real))
+    shapes = [_shape(shape) for shape in piece.shapes]
+    return {"layer": piece.layer, "link": piece.link, "hold": hold, "shapes": shapes}
+
+
+def _shape(shape: Shape) -> list[Any]:
+    offsets = UNIT * shape.offsets
+    corners = np.column_stack([
+        shape.places.real.round(7), shape.places.imag.round(7),
+        offsets.real.round(2), offsets.imag.round(2),
+    ])  # fmt: skip
+    sizes = shape.radius, round(UNIT * shape.grown, 2)
+    return [shape.role, shape.closed, *sizes, corners.ravel().tolist()]
+
+
+def traced(scene: Scene) -> list[str]:
+    """Points whose paths are shown first: those of links alone, else all that move on a curve."""
+    moving = [name for name in scene.places if name not in scene.frame]
+    return [name for name in moving if name not in scene.pins] or moving

@@ -19,8 +19,7 @@ import pytest
 import equipoise as eq
 from equipoise.codegen import backends
 from equipoise.codegen.backends import NOTICE, engine, run_loop
-from equipoise.codegen.batch import Batch
-from equipoise.codegen.designs import all_angles, designs_of, grid_of
+from equipoise.codegen.batch import Batch, all_angles, designs_of, grid_of
 from equipoise.codegen.emit import emit
 from equipoise.codegen.figures import Gathered
 from equipoise.codegen.source import Source

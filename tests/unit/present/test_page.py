@@ -10,11 +10,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, UsageError
-from equipoise.present import pdf as pdf_module
+from equipoise.present import pages as pdf_module
 from equipoise.present.composition import build
 from equipoise.present.findings import ToolFindings, find
-from equipoise.present.html import page
-from equipoise.present.pdf import pdf
+from equipoise.present.pages import page, pdf
 from equipoise.present.pictures import pictures
 
 

@@ -26,9 +26,7 @@ from equipoise.mechanism.balance import Objective
 from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
-from equipoise.present.document import Document
-from equipoise.present.html import printed_grid
-from equipoise.present.pdf import pdf
+from equipoise.present.pages import Document, pdf, printed_grid
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Change, Column, Section, Span, Table, Value
 from equipoise.schema.models import load_tool

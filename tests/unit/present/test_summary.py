@@ -13,8 +13,7 @@ from equipoise.present.cells import grid, noted, printed
 from equipoise.present.composition import balance_blocks
 from equipoise.present.findings import find
 from equipoise.present.pictures import pictures
-from equipoise.present.shaking import Shaking
-from equipoise.present.summary import answers, tiles
+from equipoise.present.summary import Shaking, answers, tiles
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table

@@ -20,9 +20,8 @@ from equipoise.mechanism.model import Machine
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
-from equipoise.web.guard import HOST, ORIGIN, POLICY, TOKEN
 from equipoise.web.page import MOST_WAITING
-from equipoise.web.server import FULL, MOST_PAGES, served
+from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
 from equipoise.web.session import Session, opened_example
 from unit.web.pages import Content, unpacked
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.quantities import change, display_rules, number, typeset
 from unit.web.pages import ask, edit, opened
 
 
@@ -85,3 +86,24 @@ def test_a_machine_without_masses_moves() -> None:
     assert shown["missing"] == ["crank", "coupler", "rocker"]
     assert "shaking_force" not in shown["arrays"]
     assert not [one for one in shown["fields"] if one["path"].startswith("counterweights")]
+
+
+def test_numbers_are_written_as_everywhere() -> None:
+    """Texts and units come from the product's one formatter, whatever the page shows."""
+    session, _ = opened("yamashita-1")
+    session.before = session.found
+    shown = edit(session, {"set": "drive.speed", "text": "150 rpm"})
+    for one in shown.content["figures"]:
+        assert one["text"] == typeset(number(one["value"]))
+        faster = typeset(change(one["before"], one["value"]))
+        assert one["was"] == f"{typeset(number(one['before']))} · {faster}"
+    slower = shown.figure("shaking_force.rms")["was"]
+    assert slower.endswith("\N{MINUS SIGN}39.6 %")  # (150 / 193)^2
+    speed, inertia = shown.field("drive.speed"), shown.field("links.coupler.inertia")
+    assert (speed["shown"], speed["text"]) == ("150 rpm", "150 rpm")
+    assert inertia["shown"].endswith(" kg mm²") and inertia["text"].endswith(" kg mm^2")
+    assert speed["factor"] * speed["value"] == pytest.approx(150)
+    units = {one["name"]: one["unit"] for one in shown.content["outputs"]}
+    assert units["drive_torque"] == "N m" and units["joints.C"] == "N"
+    (hello, *_) = ask(session, "ready")
+    assert hello.content["numbers"] == display_rules()

@@ -1,0 +1,331 @@
+"""Lines for the steps of a linkage, in order: its motion, what each link demands of its joints, and
+the pass over the joints.
+
+What each design has of its own is a slot, with a function that finds it in the design's linkage.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from equipoise.codegen.source import Read, Sheet
+from equipoise.errors import MassError
+from equipoise.mechanism import kernels
+from equipoise.mechanism.dynamics import inertia_about, massless
+from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.model import FRAME, Load, Spring
+from equipoise.mechanism.reactions import load_at
+from equipoise.mechanism.steps import (
+    Call,
+    Rotation,
+    RunningAngle,
+    Step,
+    demand_names,
+    p,
+    planar,
+    size_of_bodies,
+    u,
+)
+
+Held = tuple[str, str, str]
+"""Link, and identifiers of force and moment that hold something against it."""
+
+
+class Writer:
+    """What has been written of a linkage so far.
+
+    counted : whether angles of links are counted on from crank angle to crank angle, because a
+        gear follows a link that a dyad moves.
+    orders : link -> turns in a turn of the crank, of links that turn in proportion to it.
+    points : those that are known.
+    apart : number of a dyad with a block -> identifier of how far, over the size of the machine and
+        squared, the block is from its guide's pivot.  Near there the number drops too fast to tell
+        between the crank angles.
+    """
+
+    def __init__(self, linkage: Linkage) -> None:
+        self.linkage, self.machine, self.sheet = linkage, linkage.machine, Sheet()
+        self.counted = any(isinstance(step, RunningAngle) for step in linkage.motion)
+        self.orders: dict[str, float] = {FRAME: 0.0, self.machine.drive.link: 1.0}
+        self.points = set(self.machine.frame)
+        self.apart: dict[str, str] = {}
+
+    def name(self, value: str) -> str:
+        return self.sheet.name(value)
+
+    def body(self, link: str) -> list[str]:
+        """Identifiers of a link's anchor and rotation, with their derivatives."""
+        return [self.name(name) for name in (*p(self.linkage.anchors[link]), *u(link))]
+
+    def point(self, link: str, point: str) -> list[str]:
+        """Identifiers of a point of a link and its derivatives."""
+        if point not in self.points:
+            self.points.add(point)
+            anchor = self.linkage.anchors[link]
+
+            def arm(found: Linkage) -> Any:
+                points = found.machine.points_of(link)
+                return planar(points[point]) - planar(points[anchor])
+
+            slot = self.sheet.slot(f"arm({link}/{point})", arm, vector=True)
+            self.sheet.call("point", [*self.body(link), slot], p(point))
+        return [self.name(name) for name in p(point)]
+
+    def turned(self, order: float) -> str:
+        """exp(i order theta), which no design changes."""
+        cos = self.sheet.row(f"cos({order!r})", lambda theta: np.cos(order * theta))
+        sin = self.sheet.row(f"sin({order!r})", lambda theta: np.sin(order * theta))
+        return f"({cos} + 1j * {sin})"
+
+    def rate(self, key: str) -> str:
+        """Identifier of the crank's ``speed`` or ``acceleration``."""
+        return self.sheet.slot(key, lambda found: getattr(found.machine.drive, key))
+
+    def numbers(self) -> dict[str, int]:
+        """Identifiers of the dyads' own numbers, and of what else is to be watched; each with the
+        dyad that it tells of, by its place in the order in which they are solved.
+        """
+        own = [g.margin for g in self.linkage.groups if g.margin is not None]
+        found = {self.name(number): k for k, number in enumerate(own)}
+        return found | {self.apart[n]: k for k, n in enumerate(own) if n in self.apart}
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def write_motion(writer: Writer) -> None:
+    """Write the steps from the crank angle to every link."""
+    sheet, drive = writer.sheet, writer.machine.drive.link
+    for name in writer.machine.frame:
+        sheet.slot(f"p({name})", _frame_point(name), vector=True)
+        sheet.put(f"p1({name})", "0j")
+        sheet.put(f"p2({name})", "0j")
+    for link, rotation, rate in ((FRAME, "1 + 0j", "0.0"), (drive, writer.turned(1.0), "1.0")):
+        for name, value in zip(u(link), (rotation, rate, "0.0"), strict=True):
+            sheet.put(name, value)
+    if writer.counted:
+        sheet.put(f"phi({FRAME})", "0.0")
+        sheet.put(f"phi({drive})", sheet.row("theta", lambda theta: theta))
+    for number, step in enumerate(writer.linkage.motion):
+        _write_step(writer, step, "motion", number)
+
+
+def _frame_point(name: str) -> Read:
+    return lambda found: planar(found.machine.frame[name])
+
+
+def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
+    """Write a step, the one of this number of a linkage's ``motion`` or ``forces``."""
+    sheet = writer.sheet
+    if isinstance(step, RunningAngle):
+        _write_running_angle(writer, step.link)
+    elif isinstance(step, Rotation):
+        if writer.counted:
+            sheet.put(f"u({step.link})", f"rotation({writer.name(f'phi({step.link})')})")
+    elif isinstance(step, Call):
+        if step.kernel is kernels.gear and not writer.counted:
+            _write_uniform_gear(writer, step)
+        else:
+            _write_call(writer, step, steps, number)
+
+
+def _write_running_angle(writer: Writer, link: str) -> None:
+    """The angle of a link that a dyad moves: that of the base, and what lies between them.
+
+    Nothing is counted on from crank angle to crank angle, which would keep the loop from handling
+    several at once.
+    """
+    sheet, cycle = writer.sheet, writer.linkage.cycle
+    base = sheet.row(f"angle({link} of base)", lambda theta: cycle.reference(link, theta))
+    cos = sheet.row(f"cos({link} of base)", lambda theta: np.cos(cycle.reference(link, theta)))
+    sin = sheet.row(f"sin({link} of base)", lambda theta: np.sin(cycle.reference(link, theta)))
+    between = sheet.put(f"between({link})", f"{writer.name(f'u({link})')} * ({cos} - 1j * {sin})")
+    sheet.put(f"phi({link})", f"{base} + angle_of({between})")
+    sheet.running[link] = sheet.put(f"cosine({link})", f"{between}.real")
+
+
+def _write_call(writer: Writer, step: Call, steps: str, number: int) -> None:
+    sheet = writer.sheet
+    arguments = [writer.name(name) for name in step.inputs]
+    known = list(inspect.signature(step.kernel).parameters)[len(arguments) :]
+    for place, (parameter, value) in enumerate(zip(known, step.parameters, strict=True)):
+        what = f"{parameter} of {step.outputs[-1]}"
+        vector = isinstance(value, complex | np.complexfloating)
+        arguments.append(sheet.slot(what, _parameter(steps, number, place), vector))
+    sheet.call(step.kernel.__name__, arguments, step.outputs)
+    if step.kernel is kernels.rpr:
+        size = sheet.slot("size", lambda found: size_of_bodies(found.machine))
+        way = f"({arguments[0]} - {arguments[3]}) * (1 / {size})"
+        margin = step.outputs[-1]
+        writer.apart[margin] = sheet.put(f"apart {margin}", f"dot({way}, {way})")
+    writer.points.update(name[2:-1] for name in step.outputs if name.startswith("p("))
+
+
+def _parameter(steps: str, number: int, place: int) -> Read:
+    return lambda found: getattr(found, steps)[number].parameters[place]
+
+
+def _write_uniform_gear(writer: Writer, step: Call) -> None:
+    """A gear whose driver and carrier turn in proportion to the crank does so too.
+
+    Its rotation is a cosine and sine of a multiple of the crank angle, known for all designs.
+    """
+    sheet = writer.sheet
+    driver, carrier, link = _gear_links(step)
+    order = _follows(step, writer.orders[driver], writer.orders[carrier], 0.0)
+    writer.orders[link] = order
+    start = sheet.slot(f"start({link})", lambda found: np.exp(1j * _start(found, link)), True)
+    sheet.put(f"u({link})", f"{writer.turned(order)} * {start}")
+    sheet.put(f"w({link})", repr(order))
+    sheet.put(f"a({link})", "0.0")
+
+
+def _gear_links(step: Call) -> list[str]:
+    """Driver, carrier and driven link of a gear's step."""
+    angles = step.inputs[0], step.inputs[3], step.outputs[0]
+    return [name.removeprefix("phi(")[:-1] for name in angles]
+
+
+def _follows(step: Call, driver: Any, carrier: Any, offset: Any) -> Any:
+    """What the step makes of driver's and carrier's angle (or order, without an offset)."""
+    ratio = step.parameters[0]
+    angle, *_ = step.kernel(driver, 0.0, 0.0, carrier, 0.0, 0.0, ratio, offset)
+    return angle
+
+
+def _start(found: Linkage, link: str) -> Any:
+    """Angle of a link at crank angle 0, of links that turn in proportion to the crank."""
+    for step in found.motion:
+        if isinstance(step, Call) and step.kernel is kernels.gear:
+            driver, carrier, driven = _gear_links(step)
+            if driven == link:
+                offset = step.parameters[1]
+                return _follows(step, _start(found, driver), _start(found, carrier), offset)
+    return 0.0
+
+
+# -- forces ----------------------------------------------------------------------------------------
+
+
+def write_demands(writer: Writer) -> None:
+    """Write what moves every link and what holds its weight, loads and springs.
+
+    Then what the frame and the drive get, while the demands are still those of the links alone:
+    ``shaking force``, ``shaking moment``, ``frame force``, ``frame moment`` and ``drive torque``.
+
+    Raises
+    ------
+    MassError : a link has no mass given.
+    """
+    if missing := massless(writer.machine):
+        raise MassError(missing)
+    _write_inertia(writer)
+    links, machine = list(writer.machine.links), writer.machine
+    moving = [(link, *_names(writer, "I", link)) for link in links]
+    weights = [(link, *_names(writer, "W", link)) for link in links]
+    loads = [_write_load(writer, k, load) for k, load in enumerate(machine.loads, 1)]
+    springs = [_write_spring(writer, k, spring) for k, spring in enumerate(machine.springs)]
+    _write_frame(writer, "shaking", moving)
+    _write_frame(writer, "frame", [*moving, *weights, *loads])
+    for link in links:
+        parts = [held for held in (*moving, *weights, *loads, *springs) if held[0] == link]
+        force, moment = demand_names(link)
+        writer.sheet.put(force, " + ".join(force for _, force, _ in parts))
+        writer.sheet.put(moment, " + ".join(moment for _, _, moment in parts))
+    writer.sheet.put("drive torque", " + ".join(_drive_torques(writer)))
+
+
+def _names(writer: Writer, cause: str, link: str) -> tuple[str, str]:
+    return writer.name(f"F{cause}({link})"), writer.name(f"M{cause}({link})")
+
+
+def _write_inertia(writer: Writer) -> None:
+    sheet = writer.sheet
+    speed, acceleration = writer.rate("speed"), writer.rate("acceleration")
+    gravity = sheet.slot("gravity", lambda found: planar(found.machine.gravity), vector=True)
+    speed2 = sheet.put("speed2", f"{speed} * {speed}")
+    for link in writer.machine.links:
+        _, p1, p2, turn, w, a = writer.body(link)
+        inertial = [
+            sheet.slot(f"{key}({link})", _inertia(writer, link, place), vector=place == 1)
+            for place, key in enumerate(("mass", "moment", "inertia"))
+        ]
+        arguments = [p1, p2, turn, w, a, speed2, acceleration, *inertial]
+        sheet.call("inertia_demand", arguments, (f"FI({link})", f"MI({link})"))
+        arguments = [turn, *inertial[:2], gravity]
+        sheet.call("weight_demand", arguments, (f"FW({link})", f"MW({link})"))
+
+
+def _inertia(writer: Writer, link: str, place: int) -> Read:
+    anchor = writer.linkage.anchors[link]
+    return lambda found: inertia_about(found.machine.links[link], anchor)[place]
+
+
+def _write_load(writer: Writer, number: int, load: Load) -> Held:
+    values: dict[str, Callable[[Any], Any]] = {
+        "x": lambda theta: load_at(load, theta)[0].real,
+        "y": lambda theta: load_at(load, theta)[0].imag,
+        "torque": lambda theta: load_at(load, theta)[1],
+    }
+    x, y, torque = (writer.sheet.row(f"load {number} {key}", of) for key, of in values.items())
+    force = f"({x} + 1j * {y})"
+    return _write_held(writer, load.link, load.point, force, torque, f"L{number}")
+
+
+def _write_spring(writer: Writer, number: int, spring: Spring) -> Held:
+    sheet, cause = writer.sheet, number + 1
+    place, *_ = writer.point(spring.link, spring.point)
+    stiffness = sheet.slot(
+        f"stiffness({cause})", lambda found: found.machine.springs[number].stiffness
+    )
+    free = sheet.slot(
+        f"free_length({cause})", lambda found: found.machine.springs[number].free_length
+    )
+    to = writer.name(f"p({spring.to})")
+    pull = sheet.put(f"pull({cause})", f"spring({place}, {to}, {stiffness}, {free})")
+    return _write_held(writer, spring.link, spring.point, pull, "0.0", f"S{cause}")
+
+
+def _write_held(
+    writer: Writer, link: str, point: str | None, force: str, torque: str, cause: str
+) -> Held:
+    """Write what holds a force at a point of a link, and a torque on it."""
+    anchor = writer.body(link)[0]
+    at = anchor if point is None else writer.point(link, point)[0]
+    outputs = (f"F{cause}({link})", f"M{cause}({link})")
+    writer.sheet.call("load_demand", [anchor, at, force, torque], outputs)
+    return link, *_names(writer, cause, link)
+
+
+def _write_frame(writer: Writer, what: str, demands: list[Held]) -> None:
+    """Write force and moment, about the drive's pivot, that these demands exert on the frame."""
+    pivot = writer.name(f"p({writer.linkage.pivot})")
+    forces = " + ".join(force for _, force, _ in demands)
+    moments = " + ".join(
+        f"{moment} + cross({writer.body(link)[0]} - {pivot}, {force})"
+        for link, force, moment in demands
+    )
+    writer.sheet.put(f"{what} force", f"-({forces})")
+    writer.sheet.put(f"{what} moment", f"-({moments})")
+
+
+def _drive_torques(writer: Writer) -> Iterator[str]:
+    """What each link takes of the drive torque."""
+    for link in writer.machine.links:
+        _, p1, _, _, w, _ = writer.body(link)
+        force, moment = (writer.name(name) for name in demand_names(link))
+        yield f"drive_torque({p1}, {w}, {force}, {moment})"
+
+
+def write_joints(writer: Writer) -> None:
+    """Write the pass from demands to the force in every joint."""
+    drive = writer.machine.drive.link
+    for name, nothing in zip(demand_names(FRAME), ("0j", "0.0"), strict=True):
+        writer.sheet.put(name, nothing)
+    for number, step in enumerate(writer.linkage.forces):
+        _write_step(writer, step, "forces", number)
+    writer.sheet.put(f"R({writer.linkage.pivot}/{drive})", writer.name(f"F({drive})"))

@@ -1,0 +1,285 @@
+"""A report as plain values, as a page of HTML that needs no other file, no script and no network,
+and as PDF set by Typst.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from html import escape
+from importlib import resources
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+import jinja2
+from markupsafe import Markup
+
+import equipoise
+from equipoise.errors import EquipoiseError, UsageError
+from equipoise.figures.style import GRID, STUBBLE
+from equipoise.i18n import LANGUAGES, say, speaking, spoken
+from equipoise.present.cells import Grid, Text, grid, noted, printed, sign_of
+from equipoise.results.blocks import Block, Section, Table
+from equipoise.results.result import Result
+from equipoise.symbols.looks import DARK, LIGHT
+
+if TYPE_CHECKING:
+    import typst
+
+
+@dataclass(frozen=True)
+class Tile:
+    """One figure that is seen at once; `note` stands below it."""
+
+    label: str
+    value: str
+    unit: str
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """A part of the summary: what it answers, and the answer in sentences."""
+
+    question: str
+    sentences: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Document:
+    """A whole report.
+
+    language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
+    """
+
+    language: str
+    title: str
+    subtitle: str
+    description: str
+    tiles: tuple[Tile, ...]
+    summary: tuple[Answer, ...]
+    animation: str
+    sections: tuple[Section, ...]
+
+
+NAMES = {color: name for name, color in LIGHT.items()} | {GRID: "grid", STUBBLE: "stubble"}
+"""Colour of a picture -> name of the page's property that takes its place."""
+DARK_ONLY = {"grid": "#2b3138", "soil": "#332c20", "stubble": "#57492f", "earth": "#c9a774"}
+
+_COLOR = re.compile("#[0-9a-f]{6}(?=[;\"' ])")
+_USED = re.compile(r'(?:url\(#|href="#)([^)"]+)')
+_NAME = re.compile(r' id="([^"]*)"')
+_SPACE = re.compile(r"\n\s*")
+_FAMILY = re.compile('font-family: [^;"]*; ?')
+
+
+def inlined(svg: str, name: str, title: str) -> str:
+    """A picture as a part of a page.
+
+    name : no other picture of the page has it.  title : what it shows, for those who cannot see.
+    """
+    head, body = svg[svg.index("<svg") :].split(">", 1)
+    body = re.sub(r"<metadata>.*?</metadata>", "", body, count=1, flags=re.DOTALL)
+    body = re.sub(r"<defs>\s*<style.*?</style>\s*</defs>", "", body, count=1, flags=re.DOTALL)
+    body = body.replace("xlink:href", "href")
+    body = _FAMILY.sub("", body)
+    used = set(_USED.findall(body))
+    body = _NAME.sub(lambda found: _named(found[1], name) if found[1] in used else "", body)
+    body = body.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
+    body = _COLOR.sub(lambda found: _colored(found[0]), body)
+    width, height = re.findall(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', head)[0]
+    opening = (
+        f'<svg xmlns="http://www.w3.org/2000/svg" role="img" aria-label="{escape(title)}" '
+        f'viewBox="0 0 {width} {height}" style="--wide:{float(width):.0f}pt">'
+    )
+    return _SPACE.sub(" ", f"{opening}{body}").strip()
+
+
+def _named(own: str, name: str) -> str:
+    return f' id="{name}-{own}"'
+
+
+def _colored(color: str) -> str:
+    return f"var(--linkage-{NAMES[color]},{color})" if color in NAMES else color
+
+
+def colors(dark: bool) -> str:
+    """The properties of a page, as a style sheet has them."""
+    chosen = {**DARK, **DARK_ONLY} if dark else {**LIGHT, **{v: k for k, v in NAMES.items()}}
+    return ";".join(f"--linkage-{name}:{color}" for name, color in chosen.items())
+
+
+def html_of(result: Result) -> str:
+    """What a result shows as a part of a page; a notebook asks for it."""
+    return (
+        _environment()
+        .get_template("notebook.html.j2")
+        .render(language=spoken(), title=result.title, blocks=tuple(result.blocks()))
+    )
+
+
+def page(document: Document) -> str:
+    """A document as HTML."""
+    with speaking(document.language):
+        labels = {
+            "contents": say("Contents"),
+            "summary": say("Summary"),
+            "still": say("Stop the motion"),
+            "made": say("Made by Equipoise {version}", version=equipoise.__version__),
+        }
+    return (
+        _environment()
+        .get_template("report.html.j2")
+        .render(
+            document=document,
+            labels=labels,
+            style=Markup(text_of("report.css")),  # a file of this package
+            light=Markup(colors(dark=False)),
+            dark=Markup(colors(dark=True)),
+            animation=Markup(document.animation),  # drawn by `animation`, with names escaped
+        )
+    )
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FunctionLoader(text_of), autoescape=True, trim_blocks=True, lstrip_blocks=True
+    )
+    environment.filters["inlined"] = _inlined
+    environment.filters["runs"] = runs
+    environment.filters["grid"] = printed_grid
+    environment.filters["printed"] = printed
+    environment.filters["noted"] = noted
+    environment.filters["classes"] = _classes
+    return environment
+
+
+def printed_grid(table: Table) -> Grid:
+    """A table as texts that are ready for print."""
+    told = grid(table)
+    heads = tuple(
+        replace(one, label=printed(one.label), unit=sign_of(one.unit), at=sign_of(one.at))
+        for one in told.heads
+    )
+    rows = tuple(
+        tuple(replace(one, text=printed(one.text), at=printed(one.at)) for one in row)
+        for row in told.rows
+    )
+    return Grid(printed(told.title), heads, rows)
+
+
+def _classes(cell: Text) -> Markup:
+    names = [*(["strong"] if cell.strong else []), *([] if cell.number else ["word"])]
+    return Markup(f' class="{" ".join(names)}"' if names else "")  # names of this package
+
+
+def _inlined(svg: str, name: str, caption: str) -> Markup:
+    return Markup(inlined(svg, name, caption))  # Matplotlib escapes its texts
+
+
+def runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block | Section]]]:
+    """Neighbours of the same kind together."""
+    for kind, members in groupby(blocks, key=lambda block: block.kind):
+        yield kind, list(members)
+
+
+def text_of(name: str) -> str:
+    """A file beside this one."""
+    return (resources.files("equipoise.present") / name).read_text(encoding="utf-8")
+
+
+LATIN = ("Noto Sans", "Liberation Sans", "Arial", "Helvetica Neue", "DejaVu Sans")
+"""Fonts of Western letters, the first that is there; the last comes with Matplotlib."""
+EASTERN = {
+    "ja": ("Noto Sans CJK JP", "Noto Sans JP", "Hiragino Sans", "Yu Gothic", "Source Han Sans"),
+    "ko": ("Noto Sans CJK KR", "Noto Sans KR", "Apple SD Gothic Neo", "Malgun Gothic"),
+}
+MORE_EASTERN = {
+    "ja": ("Meiryo", "MS Gothic", "IPAexGothic", "IPAGothic", "TakaoGothic", "VL Gothic"),
+    "ko": ("NanumGothic", "Nanum Gothic", "UnDotum", "Baekmuk Dotum", "Source Han Sans K"),
+}
+SHRUNK, PAGE, HALF = 0.8, 504.0, 338.0
+"""Width of a picture over how it is drawn; points between the margins; height that fits twice."""
+LEAST = 0.7
+"""Scale below which its letters would be too small to read."""
+NO_TYPST = 'a PDF needs Typst; install it by: pip install "equipoise[report]"'
+
+
+def check_pdf(language: str) -> None:
+    """Tell what is missing before anything is computed."""
+    _families(language)
+
+
+def pdf(document: Document) -> bytes:
+    """A document as PDF."""
+    import typst
+
+    families = _families(document.language)
+    with speaking(document.language):
+        labels = {
+            "summary": say("Summary"),
+            "made": say("Made by Equipoise {version}", version=equipoise.__version__),
+        }
+    source = _template().render(document=document, labels=labels, families=families)
+    try:
+        made = typst.compile(source.encode(), font_paths=_fonts(), format="pdf", timestamp=0)
+    except typst.TypstError as error:
+        raise EquipoiseError(f"the PDF could not be set ({error})") from error
+    assert isinstance(made, bytes)
+    return made
+
+
+@cache
+def _fonts() -> typst.Fonts:
+    """All that this computer has, and those of Matplotlib."""
+    try:
+        import typst
+    except ImportError as error:
+        raise EquipoiseError(NO_TYPST) from error
+    from equipoise.figures.paint import font_folder
+
+    return typst.Fonts(font_paths=[font_folder()])
+
+
+def _families(language: str) -> list[str]:
+    """Fonts that are there for a language, the best first."""
+    there = set(_fonts().families())
+    wanted = {code: (*EASTERN[code], *MORE_EASTERN[code]) for code in EASTERN}
+    eastern = {code: [name for name in names if name in there] for code, names in wanted.items()}
+    if language in eastern and not eastern[language]:
+        raise UsageError(
+            f"this computer has no font with {LANGUAGES[language]} letters, so that a PDF would "
+            f"show boxes; install one, such as {EASTERN[language][0]} (fonts-noto-cjk), or write "
+            "the report as .html"
+        )
+    order = sorted(eastern, key=lambda code: code != language)
+    latin = next(name for name in LATIN if name in there)
+    return [latin, *(name for code in order for name in eastern[code]), "DejaVu Sans"]
+
+
+@cache
+def _template() -> jinja2.Template:
+    environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
+    environment.filters["text"] = _text
+    environment.filters["grid"] = printed_grid
+    environment.filters["printed"] = printed
+    environment.filters["noted"] = noted
+    environment.filters["width"] = _width
+    return environment.from_string(text_of("report.typ.j2"))
+
+
+def _width(svg: str) -> str:
+    """Width of a picture on paper, where it is a little smaller than drawn."""
+    size = re.search(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', svg)
+    if size is None:
+        return "100%"
+    width, height = map(float, size.groups())
+    return f"{min(width * min(SHRUNK, max(HALF / height, LEAST)), PAGE):.1f}pt"
+
+
+def _text(value: str) -> str:
+    """A text as Typst has it between quotation marks, so that no sign of it is a command."""
+    return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
