@@ -15,11 +15,11 @@ import numpy as np
 
 from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
-from equipoise.mechanism.instants import roots
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
+from equipoise.mechanism.tip import roots
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]

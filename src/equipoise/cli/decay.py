@@ -81,9 +81,9 @@ def decay(
         show_blocks(printable(os.path.basename(csv)), found.blocks())
 
     def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures import decay as pictures
+        from equipoise.figures import measured as pictures
 
-        return pictures.charts(found, printable(os.path.basename(csv)))
+        return pictures.decay_charts(found, printable(os.path.basename(csv)))
 
     outputs.give(drawings, found.to_dict, show)
 

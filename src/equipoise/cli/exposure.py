@@ -113,9 +113,9 @@ def _give(told: list[Told], outputs: Drawn) -> None:
     tools = [(each.name, each.a_hv) for each in told]
 
     def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures import exposure as pictures
+        from equipoise.figures import measured as pictures
 
-        return pictures.charts(measured, tools, day)
+        return pictures.exposure_charts(measured, tools, day)
 
     def show() -> None:
         from equipoise.exposure.blocks import told_blocks

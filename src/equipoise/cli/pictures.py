@@ -113,7 +113,7 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     """Outputs over crank angle, in one picture."""
     from functools import partial
 
-    from equipoise.figures.outputs import outputs_chart
+    from equipoise.figures.points import outputs_chart
     from equipoise.present.findings import ToolFindings
     from equipoise.present.pictures import Picture
 

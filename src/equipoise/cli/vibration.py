@@ -171,7 +171,7 @@ def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
     """The response by every model that costs little, for comparison; None where there is none."""
     from equipoise.vibration.forced import models_of
     from equipoise.vibration.forced import respond as solve
-    from equipoise.vibration.mode_shapes import swings_in_a_turn
+    from equipoise.vibration.response import swings_in_a_turn
 
     swings = swings_in_a_turn(found.modes, found.speed)
     others: dict[str, Response | None] = {}

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
 from equipoise.figures.analysis import rounding, settled
-from equipoise.figures.crank import (
+from equipoise.figures.forces import Read, last_order, order_panel
+from equipoise.figures.shared import (
     closed,
     compared,
     continued,
@@ -21,14 +22,13 @@ from equipoise.figures.crank import (
     told_angles,
     told_speed,
 )
-from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
-from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.results.outputs import objective_named
 from equipoise.signals import Periodic
 
@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from equipoise.balancing.phase_search import Phasing
     from equipoise.mechanism.model import Drive, Machine
 
-Array = np.ndarray[Any, Any]
 Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
 

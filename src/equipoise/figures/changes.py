@@ -2,30 +2,46 @@
 
 from __future__ import annotations
 
+from cmath import rect
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.additions import MM, Addition, Posed, additions, posed_well
-from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
+from equipoise.figures.linkage import clear_angle, drawn, joint_names, plane_axes, told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.motion import move
-from equipoise.results.charts import Arrow, Chart, Curve, Mark, Outline, Panel
+from equipoise.mechanism.motion import Motion, move
+from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, shown
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import coils, zigzag
+from equipoise.symbols.shapes import Shape, coils, zigzag
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
+    from equipoise.balancing.design_variables import Change
+    from equipoise.mechanism.balance import Balance
+    from equipoise.mechanism.model import Machine
 
-Array = np.ndarray[Any, Any]
-
-FAR = 2.0
-"""Over the size of the machine: rooms that are larger do not set the scale."""
-NEAR = 0.02
-"""Over the size of the machine: dots that are nearer to each other look like one."""
+MM = 1000.0
+SHORT = 16
+"""Signs that a link's name may have beside other words."""
+ANGLES = 720
+"""In each turn."""
+AROUND = np.exp(2j * np.pi * np.arange(73) / 72)
+ARC = 0.05
+"""rad, about: length of the pieces of an arc."""
+FINEST = 3
+"""Digits of mm that a free length has: what is less is the solver's rounding."""
+NO_LENGTH = 1e-6
+"""mm."""
+FULL = 1e-6
+"""rad: a sector that lacks less than this is a ring."""
+FAR, NEAR = 2.0, 0.02
+"""Over the size of the machine: rooms that are larger do not set the scale; dots that are nearer to
+each other look like one."""
 NAMES = {
     "mass": to_say("added mass"),
     "move": to_say("centre of mass, from old to new"),
@@ -35,20 +51,72 @@ NAMES = {
 }
 
 
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A machine at one of so many crank angles of its cycle, counted from 0."""
+
+    machine: Machine
+    number: int
+
+    @cached_property
+    def motion(self) -> Motion:
+        """Every link known."""
+        return move(self.machine, ANGLES)
+
+    def angle(self, link: str) -> float:
+        """The direction of a link's x axis, rad."""
+        return float(self.motion.links[link].angle[self.number])
+
+    def at(self, link: str, place: tuple[float, float]) -> complex:
+        """Where a place in a link's axes (m) is in the frame, mm."""
+        name, own = next(iter(self.machine.links[link].points.items()))
+        anchor = complex(self.motion.points[name].place[self.number])
+        turn = complex(np.exp(1j * self.angle(link)))
+        return MM * (anchor + turn * (complex(*place) - complex(*own)))
+
+
+@dataclass(frozen=True, eq=False)
+class Addition:
+    """Something to draw, complex places in mm as a workshop has them.
+
+    kind : key of `NAMES`.
+    outline : of what has an area, a line, or one place.  holes : inner edges.
+    at, text : where its label stands, and what it says.  away : where to from there.
+    """
+
+    kind: str
+    outline: Array
+    at: complex = 0j
+    text: str = ""
+    away: complex = 1j
+    holes: tuple[Array, ...] = ()
+
+    def in_meters(self) -> Addition:
+        """The same as a chart has it."""
+        holes = tuple(hole / MM for hole in self.holes)
+        return replace(self, outline=self.outline / MM, at=self.at / MM, holes=holes)
+
+
 def changes(found: Balanced) -> Chart:
-    """The new machine, as far as can be with nothing on top of each other, and its changes."""
-    posed = posed_well(found.original, found.machine)
-    new = additions(posed, found.changes, found.plan)
-    scene = _without_new(posed.scene, Scene.of(move(found.original, [0.0])))
-    drive = short(found.machine.drive.link)
+    """The new machine, as far as can be with nothing on top of each other, and its changes.
+
+    It is drawn at the crank angle at which joints and links of the original keep apart; where there
+    are new springs, at that at which links keep apart from them, too.
+    """
+    machine, original = found.machine, found.original
+    clearest = machine if len(machine.springs) > len(original.springs) else original
+    posed = Posed(machine, clear_angle(Scene.of(move(clearest, ANGLES))))
+    new = [one.in_meters() for one in additions(posed, found.changes, found.plan)]
+    scene = _without_new(Scene.of(posed.motion), Scene.of(move(original, [0.0])))
     changed = any(one.kind != "room" for one in new)
     what = say("What to change, to scale") if changed else say("Nothing to change, to scale")
-    told = told_angle(posed.crank_angle)
+    told = told_angle(float(posed.motion.crank_angle[posed.number]))
+    drive = short(machine.drive.link)
     what += "; " + say("angle of {link} in the frame: {angle}", link=drive, angle=told)
-    panel = _panel(posed, scene, new)
+    panel = _panel(scene, posed.number, new)
     keys = [("added", say(NAMES["spring"]))] if any(one.kind == "spring" for one in new) else []
     keys += [("wheel", say("pitch circles of gears"))] if scene.wheels else []
-    return Chart("changes", found.original.title, what, (panel,), keys=tuple(keys))
+    return Chart("changes", original.title, what, (panel,), keys=tuple(keys))
 
 
 def _without_new(scene: Scene, old: Scene) -> Scene:
@@ -57,40 +125,161 @@ def _without_new(scene: Scene, old: Scene) -> Scene:
     return replace(scene, springs=springs, wheels=wheels, planned=(), mass_centers={})
 
 
-def _panel(posed: Posed, scene: Scene, new: list[Addition]) -> Panel:
-    k, shapes = posed.number, drawn(scene, posed.number)
-    springs = [one for one in new if one.kind == "spring"]
-    zigzags = tuple(_zigzag(one.outline / MM, scene.unit) for one in springs)
-    machine = scene.corners_at(k)
-    size = _size(machine)
-    outlines = [one.outline / MM for one in new]
-    held = [
-        outline
-        for one, outline in zip(new, outlines, strict=True)
-        if one.kind != "room" or _size(outline) <= FAR * size
-    ]
-    every = np.concatenate([machine, *held])
-    ends = complex(every.real.min(), every.imag.min()), complex(every.real.max(), every.imag.max())
-    x, y = (
-        replace(axis, low=low, high=high)
-        for axis, low, high in zip(
-            plane_axes(scene),
-            (ends[0].real, ends[0].imag),
-            (ends[1].real, ends[1].imag),
-            strict=True,
-        )
+# -- what is new -----------------------------------------------------------------------------------
+
+
+def additions(posed: Posed, changes: tuple[Change, ...], plan: Balance) -> Iterator[Addition]:
+    """Everything that is drawn over the machine."""
+    yield from _rooms(posed, plan)
+    for change in changes:
+        if change.kind == "added mass":
+            yield from _pieces(posed, change)
+        elif change.kind == "center of mass":
+            yield _moved(posed, change)
+        elif change.kind == "spring" and change.values["stiffness"]:
+            yield _spring(posed, change)
+        elif change.kind == "gears":
+            yield from _gears(posed, change)
+
+
+def circle(middle: complex, radius: float) -> Array:
+    """A closed circle."""
+    return np.asarray(middle + radius * AROUND)
+
+
+def _way(vector: complex) -> complex:
+    """Its direction; up to the right where it has none."""
+    size = abs(vector)
+    return vector / size if size > NO_LENGTH else rect(1.0, np.pi / 4)
+
+
+def _pieces(posed: Posed, change: Change) -> Iterator[Addition]:
+    center = posed.at(change.link, change.values["center"])
+    for piece in change.values["pieces"]:
+        place = posed.at(change.link, piece["place"])
+        link = short(change.link, SHORT)
+        text = say("{mass} on {link}", mass=grams(piece["mass"]), link=link)
+        outline, holes, edge = _shape(posed.angle(change.link), piece, center, place)
+        yield Addition("mass", outline, edge, text, _way(place - center), holes)
+
+
+def _shape(
+    angle: float, piece: dict[str, Any], center: complex, place: complex
+) -> tuple[Array, tuple[Array, ...], complex]:
+    """Outline and holes of a piece, and the place of its label; angle : of its link, rad."""
+    if piece["shape"] == "point":
+        return np.array([place]), (), place
+    if piece["shape"] == "disc":
+        radius = MM * piece["radius"]
+        return circle(place, radius), (), place + radius * _way(place - center)
+    inner, outer = MM * piece["inner_radius"], MM * piece["outer_radius"]
+    if piece["shape"] == "ring" or piece["angle"] >= 2 * np.pi - FULL:
+        holes = (circle(center, inner),) if inner else ()
+        return circle(center, outer), holes, complex(center + rect(outer, 0.25 * np.pi))
+    middle = piece["direction"] + angle
+    outline = sector(center, inner, outer, middle, piece["angle"])
+    return outline, (), complex(center + rect(outer, middle))
+
+
+def sector(center: complex, inner: float, outer: float, middle: float, width: float) -> Array:
+    """Closed outline of a part of a ring, about a direction (rad) and so many rad wide."""
+    count = max(3, int(width / ARC))
+    angles = middle + width * np.linspace(-0.5, 0.5, count)
+    edge = outer * np.exp(1j * angles)
+    back = inner * np.exp(1j * angles[::-1]) if inner else np.zeros(1)
+    return np.asarray(center + np.concatenate([edge, back, edge[:1]]))
+
+
+def _moved(posed: Posed, change: Change) -> Addition:
+    """From the old centre of mass to the new one."""
+    old, new = (posed.at(change.link, change.values[k]) for k in ("from", "to"))
+    text = f"{short(change.link, SHORT)}, {grams(change.values['mass'])}"
+    return Addition("move", np.array([old, new]), new, text, _way(new - old))
+
+
+def _spring(posed: Posed, change: Change) -> Addition:
+    values = change.values
+    one = posed.at(change.link, posed.machine.links[change.link].points[values["point"]])
+    other = MM * complex(*posed.machine.frame[values["to"]])
+    stiffness, free = values["stiffness"], round(MM * values["free_length"], FINEST)
+    told = {"stiffness": shown(stiffness), "length": shown(free)}
+    text = say("{stiffness} N/m, {length} mm free", **told)
+    return Addition(
+        "spring", np.array([one, other]), (one + other) / 2, text, 1j * _way(other - one)
     )
+
+
+def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
+    """Pitch circles: that on the driver, then that on the shaft."""
+    values, frame = change.values, posed.machine.frame
+    axis = MM * complex(*values["axis"])
+    points = posed.machine.links[values["driver"]].points
+    at = MM * complex(*frame[next(name for name in points if name in frame)])
+    aside = 1j * _way(axis - at)
+    for middle, radius in zip((at, axis), (MM * one for one in values["pitch_radii"]), strict=True):
+        text = say("gear, {radius} mm", radius=shown(radius))
+        yield Addition("gear", circle(middle, radius), middle + radius * aside, text, aside)
+
+
+def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
+    """The rooms that masses and centres of mass have."""
+    links = posed.machine.links
+    held = [(one.link, links[one.link].points[one.at], one.weight.radius) for one in plan.masses]
+    held += [(one.name, (0.0, 0.0), one.weight.radius) for one in plan.geared]
+    for one in plan.shafts:
+        held += [(f"{one.name}-{k}", (0.0, 0.0), one.weight.radius) for k in (1, 2)]
+    for moved in plan.moves:
+        if moved.center is not None and moved.radius is not None:
+            held.append((moved.link, moved.center, moved.radius))
+    for link, center, radius in held:
+        if isfinite(radius):
+            yield Addition("room", circle(posed.at(link, center), MM * radius))
+    for moved in plan.moves:
+        if moved.x is not None and moved.y is not None:
+            box = [(moved.x[i], moved.y[j]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1), (0, 0))]
+            yield Addition("room", np.array([posed.at(moved.link, corner) for corner in box]))
+
+
+def grams(mass: float) -> str:
+    """A mass (kg) as a workshop would tell it."""
+    return f"{shown(mass)} kg" if mass >= 10 else f"{shown(MM * mass)} g"
+
+
+# -- the drawing -----------------------------------------------------------------------------------
+
+
+def _panel(scene: Scene, k: int, new: list[Addition]) -> Panel:
+    shapes, machine = drawn(scene, k), scene.corners_at(k)
+    size = _size(machine)
+    held = [one.outline for one in new if one.kind != "room" or _size(one.outline) <= FAR * size]
+    every = np.concatenate([machine, *held])
+    x, y = (
+        replace(axis, low=float(np.min(part)), high=float(np.max(part)))
+        for axis, part in zip(plane_axes(scene), (every.real, every.imag), strict=True)
+    )
+    moves = [one.outline for one in new if one.kind == "move"]
     return Panel(
         x,
         y,
-        tuple(_curves(new)),
+        tuple(
+            Curve.of(one.outline, say(NAMES[one.kind]), one.kind)
+            for one in new
+            if one.kind in ("room", "gear")
+        ),
         (*_dots(new), *_texts(new, NEAR * size), *joint_names(scene, k, optional=True)),
-        arrows=tuple(_arrows(new)),
-        outlines=tuple(_masses(new)),
+        arrows=tuple(Arrow(complex(old), complex(at), "move") for old, at in moves if old != at),
+        outlines=tuple(
+            Outline(one.outline, "added mass", say(NAMES["mass"]), one.holes)
+            for one in new
+            if one.kind == "mass" and len(one.outline) > 1
+        ),
         equal=True,
         zero=False,
         ground=shapes["ground"],
-        signs=(*shapes["signs"], *zigzags),
+        signs=(
+            *shapes["signs"],
+            *(_zigzag(one.outline, scene.unit) for one in new if one.kind == "spring"),
+        ),
     )
 
 
@@ -98,43 +287,19 @@ def _size(places: Array) -> float:
     return float(max(np.ptp(places.real), np.ptp(places.imag)))
 
 
-def _zigzag(ends: Array, unit: float) -> Any:
+def _zigzag(ends: Array, unit: float) -> Shape:
     start, end = (complex(z) for z in ends)
     return zigzag(start, end, coils(abs(end - start), unit), "added")
-
-
-def _curves(new: list[Addition]) -> Iterator[Curve]:
-    """Rooms, and pitch circles of new gears."""
-    for one in new:
-        if one.kind in ("room", "gear"):
-            line = one.outline / MM
-            yield Curve(line.real, line.imag, say(NAMES[one.kind]), one.kind)
-
-
-def _masses(new: list[Addition]) -> Iterator[Outline]:
-    for one in new:
-        if one.kind == "mass" and len(one.outline) > 1:
-            holes = tuple(hole / MM for hole in one.holes)
-            yield Outline(one.outline / MM, "added mass", say(NAMES["mass"]), holes)
-
-
-def _arrows(new: list[Addition]) -> Iterator[Arrow]:
-    for one in new:
-        if one.kind == "move" and one.outline[0] != one.outline[1]:
-            yield Arrow(complex(one.outline[0]) / MM, complex(one.outline[1]) / MM, "move")
 
 
 def _dots(new: list[Addition]) -> Iterator[Mark]:
     """Added masses that are points; old and new centres of mass."""
     for one in new:
         if one.kind == "mass" and len(one.outline) == 1:
-            z = complex(one.outline[0]) / MM
-            yield Mark(z.real, z.imag, "", "point mass", label=say(NAMES["mass"]))
+            yield Mark.of(one.outline[0], "", "point mass", label=say(NAMES["mass"]))
         elif one.kind == "move":
-            for role, place in zip(("old center", "move"), one.outline, strict=True):
-                z = complex(place) / MM
-                label = say(NAMES["move"]) if role == "move" else ""
-                yield Mark(z.real, z.imag, "", role, label=label)
+            yield Mark.of(one.outline[0], "", "old center")
+            yield Mark.of(one.outline[1], "", "move", label=say(NAMES["move"]))
 
 
 def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
@@ -142,11 +307,9 @@ def _texts(new: list[Addition], near: float) -> Iterator[Mark]:
     left = [one for one in new if one.text]
     while left:
         first = left[0]
-        alike = [
-            one for one in left if one.text == first.text and abs(one.at - first.at) < near * MM
-        ]
+        alike = [one for one in left if one.text == first.text and abs(one.at - first.at) < near]
         left = [one for one in left if one not in alike]
         text = first.text if len(alike) == 1 else f"{len(alike)} × {first.text}"
         wish = float(np.degrees(np.angle(first.away)))
         role = {"mass": "added mass", "spring": "move"}.get(first.kind, first.kind)
-        yield Mark(first.at.real / MM, first.at.imag / MM, text, role, wish, sign=False)
+        yield Mark.of(first.at, text, role, wish, sign=False)

@@ -18,7 +18,7 @@ from equipoise.figures.analysis import (
     row_keys,
     title,
 )
-from equipoise.figures.crank import (
+from equipoise.figures.shared import (
     ROOM,
     compared,
     degrees_told,
@@ -31,14 +31,13 @@ from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
 from equipoise.results.analysis import LEAST_ANGLES
-from equipoise.results.charts import Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
+from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
-Array = np.ndarray[Any, Any]
 
 ALIKE = 1e-6
 """Over the peak: a force whose size varies by less has none."""

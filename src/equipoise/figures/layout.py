@@ -12,16 +12,11 @@ from typing import Any
 import numpy as np
 
 from equipoise.figures.legend import APART, KEY, Key, draw_legend, keys_of, kind_of, rows_of
-from equipoise.figures.metrics import lines_of, set_in, width_of
-from equipoise.figures.panel import draw, frame
-from equipoise.figures.scales import Scale, ends_of, ticks_of
-from equipoise.figures.sheet import Sheet, Words
+from equipoise.figures.panel import LEAD, draw, flag_height, frame
+from equipoise.figures.sheet import Sheet, Words, lines_of, set_in, width_of
 from equipoise.figures.style import INK, LARGE, LINES, NORMAL, SMALL
-from equipoise.figures.view import View
-from equipoise.figures.words import LEAD, flag_height
+from equipoise.figures.view import Scale, View, ends_of, ticks_of
 from equipoise.results.charts import Chart, Panel
-
-Array = np.ndarray[Any, Any]
 
 WIDE = 518.4
 """Points: width of every picture."""

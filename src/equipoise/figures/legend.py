@@ -6,11 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from equipoise.figures.machine import draw_shapes, sample_of
-from equipoise.figures.metrics import set_in, width_of
-from equipoise.figures.sheet import Sheet, Signs, Stroke, Words
+from equipoise.figures.curves import draw_shapes, sample_of
+from equipoise.figures.sheet import MIDDLE, Sheet, Signs, Stroke, Words, set_in, width_of
 from equipoise.figures.style import INK, NORMAL, Look, look_of
-from equipoise.figures.view import MIDDLE
 from equipoise.results.charts import Panel
 from equipoise.symbols.looks import LOOKS
 

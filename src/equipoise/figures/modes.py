@@ -3,36 +3,63 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from equipoise.figures.mode_shape import AXIS_SEEN, ModeShape, View, along, seen
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.motion import move
 from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
-from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols import shapes
+from equipoise.symbols.scene import Scene, hull
 from equipoise.symbols.shapes import Shape
+from equipoise.vibration.linkages import rows_of
 
 if TYPE_CHECKING:
+    from equipoise.mechanism.support import Support
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.mode_shapes import Mode
+    from equipoise.vibration.response import Mode
 
-Array = np.ndarray[Any, Any]
+View = Literal["side", "rear", "top"]
 
-VIEWS: dict[View, str] = {
-    "side": to_say("from the side"),
-    "rear": to_say("from the rear"),
-    "top": to_say("from above"),
+
+@dataclass(frozen=True)
+class Sight:
+    """A view in words; which of x, y, z run to the right and upward, and the sense of the second.
+
+    axis : that it looks along.  names : of its own axes.
+    """
+
+    told: str
+    right: int
+    up: int
+    sense: int
+    axis: str
+    names: tuple[str, str]
+
+
+FORWARD, UP, RIGHT = to_say("x (forward)"), to_say("y (up)"), to_say("z (to the right)")
+VIEWS: dict[View, Sight] = {
+    "side": Sight(to_say("from the side"), 0, 1, 1, "pitch", (FORWARD, UP)),
+    "rear": Sight(to_say("from the rear"), 2, 1, 1, "roll", (RIGHT, UP)),
+    "top": Sight(to_say("from above"), 0, 2, -1, "yaw", (FORWARD, RIGHT)),
 }
-AXIS_NAMES: dict[View, tuple[str, str]] = {
-    "side": (to_say("x (forward)"), to_say("y (up)")),
-    "rear": (to_say("z (to the right)"), to_say("y (up)")),
-    "top": (to_say("x (forward)"), to_say("z (to the right)")),
-}
+"""From above, what lies to the right of who looks forward is below."""
+SHOWN_SIZE = 0.13
+"""Largest displacement drawn, over the size of the support."""
+ROUND, DIRECTIONS = 0.035, 24
+"""Radius of the outline's corners over the size of the support; points of a circle."""
+ANGLES = 72
+"""In a turn, from which the size of a linkage is told."""
+PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
+
+
 UNDAMPED = 1e-9
 """Damping ratio that is rounding."""
 NOTHING = 1e-4
@@ -43,6 +70,93 @@ SMALLER = 0.8
 """Size of signs in one of three views."""
 TOGETHER = 0.02
 """Over the size of the support: what is nearer to each other shares a name."""
+
+
+@dataclass(frozen=True, eq=False)
+class ModeShape:
+    """A mode as it is drawn, displacements far larger than true."""
+
+    free: FreeVibration
+    mode: Mode
+
+    @property
+    def support(self) -> Support:
+        """The support of the model."""
+        return self.free.linear.body.support
+
+    @property
+    def reference(self) -> Array:
+        """The point about which it turns, (3,), m."""
+        return self.free.linear.body.reference
+
+    @property
+    def items(self) -> list[tuple[str, Mount | Gauge]]:
+        """Gauges, then mounts, with their names."""
+        return [*self.support.gauges.items(), *self.support.mounts.items()]
+
+    @cached_property
+    def linkages(self) -> Array:
+        """Points of the frame in every row, (N, 3), m."""
+        places = [
+            (x + row.offset[0], y + row.offset[1], row.lateral)
+            for row in rows_of(self.free.machine)
+            for x, y in self.free.machine.frame.values()
+        ]
+        return np.array(places)
+
+    @cached_property
+    def corners(self) -> Array:
+        """All points by which the support is drawn, (N, 3), m."""
+        held = [item.point for _, item in self.items if item.point is not None]
+        return np.array([*self.linkages, self.reference, self.support.center_of_mass, *held])
+
+    @cached_property
+    def size(self) -> float:
+        """Of the support or, where that is a point, of what moves on it; m."""
+        if size := float(np.linalg.norm(np.ptp(self.corners, axis=0))):
+            return size
+        low, high = Scene.of(move(self.free.machine, ANGLES)).box
+        return abs(high - low) or 1e-3
+
+    @cached_property
+    def motion(self) -> Array:
+        """Six coordinates, complex, so large that the picture shows them."""
+        whole = np.zeros(6, complex)
+        whole[self.free.linear.body.free] = self.mode.shape
+        largest = float(np.max(np.abs(self._moved(whole, self.corners))))
+        return whole * (SHOWN_SIZE * self.size / largest) if largest else whole
+
+    def _moved(self, motion: Array, points: Array) -> Array:
+        """Displacement of points (N, 3) under six coordinates."""
+        return np.asarray(motion[:3] + np.cross(motion[3:], points - self.reference))
+
+    def displaced(self, points: Array, phase: complex) -> Array:
+        """Points (N, 3) at an instant of the mode, m."""
+        return np.asarray(points + self._moved(self.motion * phase, points).real)
+
+    def path(self, point: Array, view: View) -> Array:
+        """Where a point (3,) goes in a cycle, complex, m."""
+        moved = self._moved(self.motion, point[None])[0]
+        return seen(point + np.outer(PHASES, moved).real, view)
+
+    def outline(self, view: View, phase: complex = 0.0) -> Array:
+        """Closed outline in a view, complex, m: a line drawn tightly around discs at corners."""
+        corners = hull(seen(self.displaced(self.corners, phase), view))
+        disc = ROUND * self.size * np.exp(2j * np.pi * np.arange(DIRECTIONS) / DIRECTIONS)
+        around = hull((corners[:, None] + disc).ravel())
+        return np.append(around, around[0])
+
+    def extent(self, view: View) -> tuple[complex, complex]:
+        """Lower left and upper right corner of all that moves in a view, m."""
+        every = np.concatenate([self.outline(view, phase) for phase in (0, *PHASES[::6])])
+        low = complex(np.min(every.real), np.min(every.imag))
+        return low, complex(np.max(every.real), np.max(every.imag))
+
+
+def seen(points: Any, view: View) -> Array:
+    """Points (..., 3) or directions in a view, complex, m."""
+    sight, points = VIEWS[view], np.asarray(points)
+    return np.asarray(points[..., sight.right] + 1j * sight.sense * points[..., sight.up])
 
 
 def mode_chart(free: FreeVibration, number: int) -> Chart:
@@ -113,20 +227,18 @@ def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:
         every = [shape.extent(one) for one in VIEWS]
         half = max(max((e[1] - e[0]).real, (e[1] - e[0]).imag) for e in every) / 2
         low, high = ((low + high) / 2 + sign * half * (1 + 1j) for sign in (-1, 1))
+    ticks = (None, _downward(low, high) if view == "top" else None)
     x, y = (
-        Axis.of(say(name), "length", [shape.size], room=0.0, ticks=ticks)
-        for name, ticks in zip(
-            AXIS_NAMES[view], (None, _downward(low, high) if view == "top" else None), strict=True
-        )
+        Axis.of(say(name), "length", [shape.size], room=0.0, ticks=one)
+        for name, one in zip(VIEWS[view].names, ticks, strict=True)
     )
-    items: dict[str, Mount | Gauge] = {**shape.support.gauges, **shape.support.mounts}
-    named = [(name, item) for name, item in items.items() if alone or view_of(item) == view]
+    named = [(n, item) for n, item in dict(shape.items).items() if alone or view_of(item) == view]
     return Panel(
         x,
         y,
         tuple(_curves(shape, view)),
         tuple(_names(shape, view, named[:MOST_NAMES])),
-        title="" if alone else say(VIEWS[view]),
+        title="" if alone else say(VIEWS[view].told),
         equal=True,
         zero=False,
         held=(low, high),
@@ -150,25 +262,19 @@ def _downward(low: complex, high: complex) -> tuple[tuple[float, str], ...]:
 
 def _curves(shape: ModeShape, view: View) -> Iterator[Curve]:
     """Both ends of the swing, one whole and one dashed; and the way of gauges."""
-    for phase, role, label in (
-        (1, "swing", say("one end of the swing")),
-        (-1, "other swing", say("the other")),
-    ):
-        line = shape.outline(view, phase)
-        yield Curve(line.real, line.imag, label, role)
+    yield Curve.of(shape.outline(view, 1), say("one end of the swing"), "swing")
+    yield Curve.of(shape.outline(view, -1), say("the other"), "other swing")
     for gauge in shape.support.gauges.values():
         if gauge.point is not None:
             path = shape.path(np.array(gauge.point), view)
-            yield Curve(path.real, path.imag, say("gauge and its way"), "gauge way")
+            yield Curve.of(path, say("gauge and its way"), "gauge way")
 
 
 def view_of(item: Mount | Gauge) -> View:
     """The view in which a mount or gauge is best told from others."""
     if item.axis is not None:
-        return next(view for view, axis in AXIS_SEEN.items() if axis == item.axis)
-    parts = np.abs(unit_vector(item.direction))
-    views: tuple[View, ...] = ("side", "rear", "top")
-    return views[int(np.argmax(parts))]
+        return next(view for view, sight in VIEWS.items() if sight.axis == item.axis)
+    return [*VIEWS][int(np.argmax(np.abs(unit_vector(item.direction))))]
 
 
 def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
@@ -181,20 +287,20 @@ def _signs(shape: ModeShape, view: View) -> Iterator[Shape]:
         yield from shapes.pivot(reference)
         yield shapes.circle("pin", reference, grown=shapes.PIN)
     center, ring = complex(np.mean(shape.outline(view))), 0
-    items: list[Mount | Gauge] = [*support.gauges.values(), *support.mounts.values()]
-    for item in items:
+    for _, item in shape.items:
         gauge = isinstance(item, Gauge)
         if item.point is None:
-            if item.axis == AXIS_SEEN[view]:
+            if item.axis == VIEWS[view].axis:
                 yield from shapes.turning(reference, ring, gauge)
                 ring += 1
             continue
-        place, way = complex(seen(np.array(item.point), view)), along(item.direction, view)
+        place = complex(seen(item.point, view))
+        way = complex(seen(unit_vector(item.direction), view))
         if isinstance(item, Gauge):
             yield from shapes.gauge(place, way)
         else:
             yield from shapes.mount(place, way, center, bool(item.stiffness), item.one_sided)
-    yield from shapes.mass(complex(seen(np.array(support.center_of_mass), view)))
+    yield from shapes.mass(complex(seen(support.center_of_mass, view)))
 
 
 def _names(shape: ModeShape, view: View, items: list[tuple[str, Mount | Gauge]]) -> Iterator[Mark]:
@@ -202,21 +308,19 @@ def _names(shape: ModeShape, view: View, items: list[tuple[str, Mount | Gauge]])
     met: list[tuple[complex, float, list[str]]] = []
     for name, item in items:
         if item.point is not None:
-            place, wish = complex(seen(np.array(item.point), view)), 20.0
+            place = complex(seen(item.point, view))
             wish = 20.0 if isinstance(item, Gauge) else -20.0
-        elif item.axis == AXIS_SEEN[view]:
+        elif item.axis == VIEWS[view].axis:
             place, wish = complex(seen(shape.reference, view)), 45.0
         else:
             continue
         near = (names for at, _, names in met if abs(at - place) < TOGETHER * shape.size)
         together = next(near, None)
         if together is None:
-            met.append((place, wish, [short(name, 20)]))
-        else:
-            together.append(short(name, 20))
+            met.append((place, wish, together := []))
+        together.append(short(name, 20))
     for place, wish, names in met:
-        text = "\n".join(names)
-        yield Mark(place.real, place.imag, text, "ink", wish, False, near=14.0)
+        yield Mark.of(place, "\n".join(names), "ink", wish, False, near=14.0)
 
 
 def _keys(shape: ModeShape) -> Iterator[tuple[str, str]]:

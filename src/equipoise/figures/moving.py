@@ -13,9 +13,7 @@ from equipoise.figures.stage import Arrow, Label, Moves, Stage, captions, ruler_
 from equipoise.mechanism.model import unknown
 from equipoise.symbols.pieces import Piece, Track, pieces
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import Shape, arrow
-
-Array = np.ndarray[Any, Any]
+from equipoise.symbols.shapes import Array, Shape, arrow
 
 HEAD = 13.0
 """Length of the head of an arrow, units."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from equipoise.balancing.problem import Problem
-from equipoise.figures.additions import grams
-from equipoise.figures.crank import told_speed
+from equipoise.figures.changes import grams
+from equipoise.figures.shared import told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension, Display, display, in_unit, typeset
-from equipoise.results.charts import Axis, Chart, Curve, Mark, Panel, Surface, shown
+from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, Surface, shown
 from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
@@ -91,8 +91,6 @@ def landscape(found: Landscape) -> Chart:
 def _is_inside(found: Landscape, pair: tuple[float, float]) -> bool:
     return all(v[0] <= one <= v[-1] for v, one in zip((found.x, found.y), pair, strict=True))
 
-
-Array = np.ndarray[Any, Any]
 
 SENSIBLE, MARGIN = 3.0, 0.12
 """Times the size of a trade-off: how far off the machine as it is may be to be in the picture;

@@ -20,8 +20,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
 
-from equipoise.figures.metrics import box_of
-from equipoise.figures.sheet import Item, Sheet, Signs, Stroke, Words
+from equipoise.figures.sheet import Item, Sheet, Signs, Stroke, Words, box_of
 from equipoise.figures.style import PAPER
 from equipoise.figures.vector import BACK, SHAPES
 

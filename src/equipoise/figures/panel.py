@@ -1,4 +1,4 @@
-"""What stands in one pair of axes: grid, shades, lines, and all that is drawn over them."""
+"""What stands in and around one pair of axes: grid, shades, lines, what is drawn, and words."""
 
 from __future__ import annotations
 
@@ -6,13 +6,19 @@ from math import ceil, floor, log10
 
 import numpy as np
 
-from equipoise.figures.curves import draw_area, draw_arrow, draw_bars, draw_curve, draw_surface
-from equipoise.figures.machine import draw_machine
-from equipoise.figures.scales import Scale
-from equipoise.figures.sheet import Stroke
-from equipoise.figures.style import GRID, LINES, PALE, Look, look_of
-from equipoise.figures.view import View, corners_of
-from equipoise.figures.words import write_words
+from equipoise.figures.curves import (
+    draw_area,
+    draw_arrow,
+    draw_bars,
+    draw_curve,
+    draw_machine,
+    draw_surface,
+    signs_at,
+)
+from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
+from equipoise.figures.style import GRID, INK, LINES, NORMAL, PALE, SMALL, Look, look_of
+from equipoise.figures.view import Scale, View, corners_of
+from equipoise.results.charts import Mark, Panel
 
 RINGS = 4
 """Circles of a polar diagram at most, out to its farthest corner."""
@@ -132,3 +138,190 @@ def frame(view: View, numbers: bool) -> None:
             view.write(right + 5, y, text)
     if lines:
         view.sheet.add(Stroke(tuple(lines), LINES, 0.7), 5.0)
+
+
+ALIKE = (0.01, 0.004)
+"""Shares of the axes nearer than which two marks are one."""
+VISIBLE = 0.004
+"""Over the longest bar: shorter ones cannot be seen, and get no number."""
+MOST_DECIMALS = 4
+"""Of numbers at bars; longer ones are left out."""
+LEAD, ROW, STAND = 8.0, 9.6, 10.0
+"""Points: line from the axes to words above or beside them; a row of these; an upright name."""
+FARTHEST = 36.0
+"""Points that words above the axes may be from their places before they are set upright."""
+
+
+def write_words(view: View) -> None:
+    """Numbers of bars, marks with their texts, and words around the axes."""
+    panel = view.panel
+    for line in panel.lines:
+        if line.axis == "x" and view.x.low <= line.at * view.x.axis.unit.factor <= view.x.high:
+            x = float(view.x.at(line.at))
+            view.labels.avoid(np.array([(x, view.y.start), (x, view.y.end)]), 0.5)
+        elif line.axis == "y":
+            y = float(view.y.at(line.at))
+            view.labels.avoid(np.array([(view.x.start, y), (view.x.end, y)]), 0.5)
+    _bar_numbers(view)
+    _marks(view)
+    if panel.message:
+        left, top, right, bottom = view.box
+        view.write(
+            (left + right) / 2,
+            top + 0.4 * (bottom - top),
+            panel.message,
+            "middle",
+            size=NORMAL,
+            backed=True,
+        )
+    _flags(view)
+    _asides(view)
+
+
+def _marks(view: View) -> None:
+    apart: list[tuple[Mark, Array]] = []
+    size = np.array([view.x.length, view.y.length])
+    for mark in view.panel.marks:
+        (place,) = view.places(mark.x, mark.y)
+        near = (
+            bool(np.all(np.abs(place - other) < ALIKE * size)) and one.text for one, other in apart
+        )
+        if mark.text and any(near):
+            continue
+        apart.append((mark, place))
+        look = look_of(mark.role)
+        if mark.sign:
+            signs = look if look.sign and not look.spaced else Look(look.color, sign="o", size=4.0)
+            view.sheet.add(signs_at(place[None], signs), max(look.order, 4.0))
+            view.labels.reserve(float(place[0]), float(place[1]), max(signs.size / 2, 2.0))
+    for mark, (x, y) in apart:
+        if mark.text:
+            text = Text(
+                mark.text, look_of(mark.role).ink, mark.wish, mark.near, mark.optional, mark.bold
+            )
+            view.labels.put(float(x), float(y), text)
+
+
+def _bar_numbers(view: View) -> None:
+    """Sizes of bars that can be seen, at their ends, with as many digits as all have room for."""
+    told = [bars for bars in view.panel.bars if bars.told]
+    if not told:
+        return
+    scale = view.y if told[0].across == "x" else view.x
+    factor = scale.axis.unit.factor
+    largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in told)
+    if not largest:
+        return
+    seen = []
+    for bars in told:
+        color = look_of(bars.role).ink
+        for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True):
+            if size > VISIBLE * largest:
+                seen.append((size, at, color))
+    if scale is view.x:
+        for size, at, _ in seen:
+            view.write(
+                float(scale.of(size)) + 4,
+                float(view.y.at(at)),
+                f"{size:.1f} {scale.axis.unit_name}",
+                color=INK,
+            )
+        return
+    decimals = max(0, 2 - floor(log10(largest)))
+    if decimals > MOST_DECIMALS:
+        return
+    for fewer in range(decimals, -1, -1):
+        texts = [
+            (f"{size:.{fewer}f}", float(view.x.at(at)), float(scale.of(size)), color)
+            for size, at, color in seen
+            if round(size, fewer)
+        ]
+        clear = _clear(texts)
+        if len(clear) == len(texts) or not fewer or largest * 10 ** (fewer - 1) < 10:
+            break
+    for text, x, y, color in clear:
+        view.write(x, y - 5.5, text, "middle", color=color)
+
+
+def _clear(texts: list[tuple[str, float, float, str]]) -> list[tuple[str, float, float, str]]:
+    """Those that lie on no number of a higher bar."""
+    clear: list[tuple[str, float, float, str]] = []
+    for text in sorted(texts, key=lambda one: one[2]):
+        half = width_of(text[0], SMALL) / 2
+        if all(
+            abs(text[1] - other[1]) > half + width_of(other[0], SMALL) / 2 + 2
+            or abs(text[2] - other[2]) > SMALL + 1
+            for other in clear
+        ):
+            clear.append(text)
+    return clear
+
+
+def flag_height(panel: Panel, width: float) -> float:
+    """Points that words above the axes take."""
+    if not panel.flags:
+        return 0.0
+    if upright(panel, width):
+        return LEAD + 4 + max(width_of(flag.texts[0], SMALL) for flag in panel.flags)
+    return LEAD + 2 + ROW * max(len(flag.texts) for flag in panel.flags)
+
+
+def upright(panel: Panel, width: float) -> bool:
+    """Whether words above the axes, of one row each, are so many that they stand upright."""
+    if not panel.flags or panel.flag_words or any(len(flag.texts) > 1 for flag in panel.flags):
+        return False
+    wide = [width_of(flag.texts[0], SMALL) + 7 for flag in panel.flags]
+    ends = (panel.x.low or 0.0, panel.x.high or 1.0)
+    places = [(flag.at - ends[0]) / (ends[1] - ends[0]) * width for flag in panel.flags]
+    moved = spread(places, wide, -40.0, width + 6.0)
+    return sum(wide) > width + 46 or bool(np.max(np.abs(moved - places)) > FARTHEST)
+
+
+def _flags(view: View) -> None:
+    """Words above the axes, each with a line down to its place."""
+    panel = view.panel
+    flags = [
+        f
+        for f in panel.flags
+        if view.x.low - 1e-9 <= f.at * view.x.axis.unit.factor <= view.x.high * (1 + 1e-9)
+    ]
+    turned = upright(panel, view.x.length)
+    wide = [STAND if turned else max(width_of(text, SMALL) for text in f.texts) + 6 for f in flags]
+    while flags and sum(wide) > view.x.length + 12:
+        gone = min(range(len(flags)), key=lambda k: flags[k].weight)
+        del flags[gone], wide[gone]
+    if not flags:
+        return
+    top = view.y.end
+    places = [float(view.x.at(flag.at)) for flag in flags]
+    moved = spread(places, wide, view.x.start - (4 if panel.flag_words else 20), view.x.end + 8)
+    count = max(len(flag.texts) for flag in flags)
+    for flag, place, x in zip(flags, places, moved.tolist(), strict=True):
+        view.line(np.array([(place, top), (x, top - LEAD)]), look_of("zero"), 2.0)
+        for row, text in enumerate(flag.texts):
+            if turned:
+                words = Words(x + MIDDLE * SMALL, top - LEAD - 2, text, SMALL, INK, turned=True)
+                view.sheet.add(words, 7.0)
+            else:
+                view.write(x, top - LEAD - 1 - ROW * (count - row - 0.5), text, "middle")
+    for row, text in enumerate(panel.flag_words):
+        view.write(
+            view.x.start - 8, top - LEAD - 1 - ROW * (count - row - 0.5), text, "end", color=LINES
+        )
+
+
+def _asides(view: View) -> None:
+    """Words at the right of the axes, each with a line to its place; and beside both ends."""
+    panel = view.panel
+    left, top, right, bottom = view.box
+    if panel.asides:
+        places = [float(view.y.at(aside.at)) for aside in panel.asides]
+        moved = spread(places, [ROW] * len(places), top - 4, bottom + 4)
+        for aside, place, y in zip(panel.asides, places, moved.tolist(), strict=True):
+            view.line(np.array([(right, place), (right + LEAD, y)]), look_of("zero"), 2.0)
+            view.write(right + LEAD + 2, y, aside.text, color=look_of(aside.role).ink)
+    for lines, x, anchor in ((panel.left, left - 8, "end"), (panel.right, right + 8, "start")):
+        middle = (top + bottom) / 2
+        for row, text in enumerate(lines):
+            y = middle + 11.5 * (row - (len(lines) - 1) / 2)
+            view.write(x, y, text, anchor, size=NORMAL)  # type: ignore[arg-type]

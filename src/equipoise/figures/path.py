@@ -1,25 +1,33 @@
-"""The picture of both paths of the tip: relative to the machine, and over ground."""
+"""Both paths of a planting tip, to one scale: relative to the machine, and over ground."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import floor, pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.figures.crank import angle_step
 from equipoise.figures.linkage import drawn
-from equipoise.figures.paths import Instant, Paths
+from equipoise.figures.shared import angle_step
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.tip import TipCurve
+from equipoise.planting.ground import GroundPath
+from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import soil
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
-CM = 100.0
+IN_TURN, SKETCHED = 720, 180
+"""In a turn: places of the path that are drawn; crank angles by which ways of blocks are found."""
+AHEAD = 2.5
+"""Largest width of what is shown over ground, over its height."""
 MOST_UNITS = 12
 SMALLER = 0.85
 """Size of the machine's signs, over that in a picture of their own."""
@@ -37,6 +45,134 @@ INSTANTS = {
 """Instant of a planting stroke -> in words."""
 
 
+# -- places ----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Instant:
+    """An instant on a path: its name, place (m, complex) and direction away from the path, deg."""
+
+    name: str
+    place: complex
+    away: float
+
+
+class Paths:
+    """Both paths of a machine in the sense of time, as places in m.
+
+    ``way`` is the crank angle that the drive has turned, rad.
+    """
+
+    def __init__(self, figures: PlantingFigures) -> None:
+        self.figures = figures
+        self.curve: TipCurve = figures.curve
+        self.ground = GroundPath(self.curve)
+        self.sense = self.ground.sense
+        self.level = figures["surface"]
+        self.tray = np.array([complex(*end) for end in figures.planting.tray or ()], complex)
+
+    @property
+    def drives(self) -> bool:
+        """Whether there is a path over ground."""
+        return self.figures["forward_speed"] != 0
+
+    @cached_property
+    def scene(self) -> Scene:
+        """The machine over its cycle and, last of all, at the lowest point of the tip."""
+        cycle = np.linspace(0, self.curve.period, SKETCHED * self.curve.turns, endpoint=False)
+        return Scene.of(move(self.figures.machine, [*cycle, self.figures["lowest.crank_angle"]]))
+
+    def way_of(self, name: str, after: float = 0.0) -> float:
+        """When an instant comes for the first time at or after another way."""
+        way = self.sense * self.figures[f"{name}.crank_angle"]
+        return after + float(np.mod(way - after, self.curve.period))
+
+    @cached_property
+    def start(self) -> float:
+        """When the drawing of the path over ground begins: high up before a hill."""
+        lowest = self.way_of("lowest")
+        if self.curve.turns > 1:
+            return lowest - pi
+        return lowest - float(np.mod(lowest - self.way_of("highest"), self.curve.period))
+
+    @cached_property
+    def travel(self) -> float:
+        """Crank angle over which the path over ground is drawn: two hills, or one long cycle."""
+        return 2 * pi * max(2, min(self.curve.turns, 4))
+
+    @cached_property
+    def ways(self) -> Array:
+        """Over which the path over ground is drawn."""
+        return self.start + np.linspace(0, self.travel, round(IN_TURN * self.travel / (2 * pi)) + 1)
+
+    @cached_property
+    def cycle(self) -> Array:
+        """Over which the path relative to the machine is drawn: closed."""
+        return np.linspace(0, self.curve.period, IN_TURN * self.curve.turns + 1)
+
+    def on_machine(self, ways: Array) -> Array:
+        """Places relative to the machine."""
+        places: Array = self.curve.at(self.sense * ways[None]).place[0]
+        return places
+
+    def over_ground(self, ways: Array) -> Array:
+        """Places over ground, counted from the first hill."""
+        hill = self.way_of("release", self.way_of("entry", self.start))
+        origin = float(self.ground.place(np.array([[hill]])).real[0, 0])
+        places: Array = self.ground.place(ways[None])[0] - origin
+        return places
+
+    def instants(self, over_ground: bool) -> Iterator[Instant]:
+        """Instants of the first hill that is drawn, on either path; over ground no pick-up."""
+        lowest = self.way_of("lowest", self.start)
+        for name in [*INSTANTS][1:] if over_ground else INSTANTS:
+            key = name.replace("-", "_")
+            released = key != "release" or self.figures.planting.release is not None
+            if f"{key}.crank_angle" in self.figures.figures and released:
+                before = key in ("entry", "pick_up")
+                way = self.way_of(key, lowest - self.curve.period if before else lowest)
+                yield Instant(name, *self.place_and_away(way, over_ground))
+
+    def place_and_away(self, way: float, over_ground: bool) -> tuple[complex, float]:
+        """Where the tip is, and the direction (deg) that points out of its path."""
+        near = np.array([way, way + 1e-3])
+        here, then = (self.over_ground if over_ground else self.on_machine)(near)
+        away = (then - here) * 1j * (1 if over_ground else self._turning)
+        return complex(here), float(np.degrees(np.angle(away)))
+
+    @cached_property
+    def _turning(self) -> float:
+        """1 where the left of the path relative to the machine is outside, else -1."""
+        places = self.on_machine(self.cycle)
+        area = float(np.sum(np.imag(np.conj(places[:-1]) * places[1:])))
+        return -1.0 if area > 0 else 1.0
+
+    def crossings(self) -> Iterator[complex]:
+        """Places over ground at which loops cross themselves, as far as they are drawn."""
+        period = self.curve.period
+        for loop in self.figures.loops:
+            first = self.sense * loop.first
+            first += period * -floor((first - self.start) / period)
+            while first + loop.way < self.start + self.travel:
+                yield complex(self.over_ground(np.array([first]))[0])
+                first += period
+
+    def span_over_ground(self, high: float) -> tuple[float, float]:
+        """From where to where that path is shown, m: less than two hills of a long way.
+
+        high : of the panel, m.
+        """
+        x, most = self.over_ground(self.ways).real, AHEAD * high
+        start, stop = float(np.min(x)), float(np.max(x))
+        if stop - start <= most:
+            return start, stop
+        shares = (0.3, 0.7) if self.figures["forward_speed"] > 0 else (0.7, 0.3)
+        return -most * shares[0], most * shares[1]
+
+
+# -- the picture -----------------------------------------------------------------------------------
+
+
 def path(figures: PlantingFigures) -> Chart:
     """The path relative to the machine with the linkage, and the path over ground."""
     paths = Paths(figures)
@@ -48,11 +184,9 @@ def path(figures: PlantingFigures) -> Chart:
     )
     if paths.drives and figures.planting.units_per_turn > 1:
         what += "; " + say("dashed: other units")
-    held = _held(paths)
-    panels = [_machine_panel(paths, held[0])]
-    if paths.drives:
-        panels.append(_ground_panel(paths, held[1]))
-    return Chart("path", figures.machine.title, what, tuple(panels), stacked=False)
+    draw = (_machine_panel, _ground_panel)
+    panels = tuple(one(paths, held) for one, held in zip(draw, _held(paths), strict=False))
+    return Chart("path", figures.machine.title, what, panels, stacked=False)
 
 
 def _held(paths: Paths) -> list[tuple[complex, complex]]:
@@ -75,27 +209,27 @@ def _axis(label: str) -> Axis:
 
 
 def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
-    instants = list(paths.instants(tuple(INSTANTS), over_ground=False))
-    ticks = list(_ticks(paths))
+    instants, ticks = list(paths.instants(over_ground=False)), list(_ticks(paths))
     across = [np.array([one.place + out, one.place - out, np.nan]) for one, out in ticks]
-    line = np.concatenate(across)
-    marks = [*_signs(instants)]
+    marks = [Mark.of(one.place, "", f"instant {one.name}") for one in instants]
     marks += [
-        Mark(z.real, z.imag, short(name), "ink", 45.0, False, near=5.0, bold=True)
-        for name, z in ((name, complex(p[-1])) for name, p in paths.scene.places.items())
+        Mark.of(complex(place[-1]), short(name), "ink", 45.0, False, near=5.0, bold=True)
+        for name, place in paths.scene.places.items()
     ]
-    marks += _texts(instants, 0.006 * (held[1] - held[0]).imag)
+    # a little lower than they are, so that a point at the same place keeps its own name
+    marks += _names(instants, 0.006 * (held[1] - held[0]).imag)
     if paths.tray.size:
-        z = complex(np.mean(paths.tray))
-        marks.append(Mark(z.real, z.imag, say("tray"), "ink", 0.0, False))
+        marks.append(Mark.of(complex(np.mean(paths.tray)), say("tray"), "ink", 0.0, False))
     marks += [
-        Mark(one.place.real, one.place.imag, one.name, "lines", one.away, False, True, near=5.0)
-        for one, _ in ticks
+        Mark.of(one.place, one.name, "lines", one.away, False, True, near=5.0) for one, _ in ticks
     ]
     return Panel(
         _axis(say("x in the frame")),
         _axis(say("height y in the frame")),
-        (*_path(paths, paths.on_machine(paths.cycle)), Curve(line.real, line.imag, "", "tick")),
+        (
+            *_path(paths, paths.on_machine(paths.cycle)),
+            Curve.of(np.concatenate(across), "", "tick"),
+        ),
         tuple(marks),
         arrows=tuple(_senses(paths, over_ground=False)),
         equal=True,
@@ -108,12 +242,13 @@ def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
 
 def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     places = paths.over_ground(paths.ways)
-    instants = list(paths.instants(tuple(INSTANTS)[1:], over_ground=True))
+    instants = list(paths.instants(over_ground=True))
     ahead = paths.figures["forward_speed"] > 0
-    marks = [*_signs(instants), *_texts(_beside(instants, ahead))]
+    marks = [Mark.of(one.place, "", f"instant {one.name}") for one in instants]
+    marks += _names(_outside(instants, ahead))
     for number, place in enumerate(paths.crossings()):
         text = say("crossing of the loop") if number == 0 else ""
-        marks.append(Mark(place.real, place.imag, text, "crossing", 0.0, near=9.0))
+        marks.append(Mark.of(place, text, "crossing", 0.0, near=9.0))
     spacing, arrows, lines = _hill_spacing(paths, held)
     way = say("machine drives")
     over = held[1].real - held[0].real
@@ -122,7 +257,7 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     return Panel(
         _axis(say("distance over ground")),
         _axis(say("height y in the frame")),
-        (*_others(paths), *_path(paths, places), *lines),
+        (*_other_units(paths, places), *_path(paths, places), *lines),
         (*marks, spacing),
         arrows=(*_senses(paths, over_ground=True), *arrows),
         title=f"{way} →" if ahead else f"← {way}",
@@ -133,7 +268,7 @@ def _ground_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
     )
 
 
-def _beside(instants: list[Instant], ahead: bool) -> list[Instant]:
+def _outside(instants: list[Instant], ahead: bool) -> list[Instant]:
     """Instants over ground with their names outside, and clear of the dimension."""
     places = {one.name: one.place for one in instants}
     wishes = {"lowest": -135.0 if ahead else -45.0}
@@ -142,29 +277,22 @@ def _beside(instants: list[Instant], ahead: bool) -> list[Instant]:
     return [replace(one, away=wishes.get(one.name, one.away)) for one in instants]
 
 
-def _signs(instants: Sequence[Instant]) -> Iterator[Mark]:
-    """Instants, each with a marker of its own."""
+def _names(instants: Sequence[Instant], lower: float = 0.0) -> Iterator[Mark]:
+    """What the instants are; lower : how far below their places, m."""
     for one in instants:
-        yield Mark(one.place.real, one.place.imag, "", f"instant {one.name}")
+        yield Mark.of(one.place - 1j * lower, say(INSTANTS[one.name]), "ink", one.away, sign=False)
 
 
-def _texts(instants: Sequence[Instant], lower: float = 0.0) -> Iterator[Mark]:
-    """lower : so much, m, that a point at the same place keeps its own name."""
-    for one in instants:
-        z, text = one.place - 1j * lower, say(INSTANTS[one.name])
-        yield Mark(z.real, z.imag, text, "ink", one.away, sign=False)
-
-
-def _path(paths: Paths, places: np.ndarray) -> Iterator[Curve]:
+def _path(paths: Paths, places: Array) -> Iterator[Curve]:
     """A path, bolder where it is in the soil."""
-    yield Curve(places.real, places.imag, "", "main")
-    below = paths.in_soil(places)
-    yield Curve(below.real, below.imag, "", "path in soil")
+    yield Curve.of(places)
+    below = np.where(places.imag <= paths.level, places, complex(np.nan, np.nan))
+    yield Curve.of(below, "", "path in soil")
 
 
-def _others(paths: Paths) -> Iterator[Curve]:
+def _other_units(paths: Paths, places: Array) -> Iterator[Curve]:
     """Paths of other planting units of the same drive, which plant the hills between."""
-    places, sense = paths.over_ground(paths.ways), np.sign(paths.figures["forward_speed"])
+    sense = np.sign(paths.figures["forward_speed"])
     for number in range(1, min(paths.figures.planting.units_per_turn, MOST_UNITS)):
         x = places.real + sense * number * paths.figures["hill_spacing"]
         yield Curve(x, places.imag, "", "other unit")
@@ -205,7 +333,7 @@ def _hill_spacing(
     deep = float(np.min(paths.over_ground(paths.ways).imag))
     room = deep - held[0].imag
     y, top = deep - 0.5 * room, deep - 0.15 * room
-    text = say("hill spacing {spacing} cm", spacing=shown(CM * abs(spacing)))
+    text = say("hill spacing {spacing} cm", spacing=shown(100 * abs(spacing)))
     whole = held[0].real < spacing < held[1].real and paths.curve.turns == 1
     x = spacing / 2 if whole else (held[0].real + held[1].real) / 2
     mark = Mark(x, y, text, "ink", -90.0, sign=False, near=3.0)

@@ -64,7 +64,8 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
 
     at : crank angles (rad) at which the linkage is drawn; where they are not given, a clear one.
     """
-    from equipoise.figures import forces, joints, points
+    from equipoise.figures import forces, points
+    from equipoise.figures.analysis import joint_polars, joints
     from equipoise.figures.linkage import linkage
 
     found: Pictures = {"linkage": linkage(analysis, at)}
@@ -78,7 +79,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         found[chart.__name__] = chart(analysis)
     if forces.has_orders(analysis):
         found["spectrum"] = forces.spectrum(analysis)
-    of_joints = (*joints.joints(analysis), *joints.joint_polars(analysis))
+    of_joints = (*joints(analysis), *joint_polars(analysis))
     return found | {chart.name: chart for chart in of_joints}
 
 

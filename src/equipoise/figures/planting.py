@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.crank import (
+from equipoise.figures.analysis import named
+from equipoise.figures.shared import (
     ROOM,
     closed,
     crank_axis,
@@ -15,18 +16,16 @@ from equipoise.figures.crank import (
     extremes,
     sampled_extremes,
 )
-from equipoise.figures.joints import named
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.instants import largest, smallest
+from equipoise.mechanism.tip import largest, smallest
 from equipoise.quantities import Dimension
-from equipoise.results.charts import Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
+from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
 
 if TYPE_CHECKING:
     from equipoise.mechanism.dynamics import Forces, JointForce
     from equipoise.planting.summary import PlantingFigures
 
-Array = np.ndarray[Any, Any]
 Extremes = Sequence[tuple[float, float]]
 
 SHADED = to_say("shaded: tip in the soil")

@@ -15,9 +15,7 @@ from equipoise.i18n import say
 from equipoise.results.charts import shown
 from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
-from equipoise.symbols.shapes import FOOT
-
-Array = np.ndarray[Any, Any]
+from equipoise.symbols.shapes import FOOT, Array
 
 SIDE, STRIP = 30.0, 30.0
 """Pixels around the machine, and of the strip below it, of a picture 640 pixels wide."""

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.crank import continued, groups
+from equipoise.figures.shared import continued, groups
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Display
-from equipoise.results.charts import Axis, Bars, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import Array, Axis, Bars, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.schema.study_units import Unit
@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from equipoise.studies.tolerances import Cause, Tolerances
     from equipoise.studies.variance import Scatter
 
-Array = np.ndarray[Any, Any]
 Units = Mapping[str, "Unit"]
 Own = tuple[Array, Array]
 """Values (d,) and figures (m,) of the model itself."""

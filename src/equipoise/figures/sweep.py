@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.crank import read_axis
-from equipoise.figures.over_speed import Named, bounded, curves_of, log_ends, ordered
+from equipoise.figures.shared import Named, bounded, curves_of, log_ends, ordered, read_axis
 from equipoise.figures.style import KINDS
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
     RPM,
+    Array,
     Aside,
     Axis,
     Band,
@@ -33,7 +33,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.free import Resonance
     from equipoise.vibration.sweep import Sweep
 
-Array = np.ndarray[Any, Any]
 LOUD = 0.1
 """Share from which a resonance is loud."""
 QUANTITIES = {

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.over_speed import Named, curves_of, log_ends
+from equipoise.figures.shared import Named, curves_of, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
@@ -20,7 +20,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension, Display, display
-from equipoise.results.charts import RPM, Axis, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.studies import DeterminantChart, Variation
 
-Array = np.ndarray[Any, Any]
 
 MOST_CHANGES = 8
 """Changes of a design that are told."""

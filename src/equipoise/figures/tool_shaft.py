@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from textwrap import wrap
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,15 +13,14 @@ from equipoise.figures.style import short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import RPM, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
+from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
+    from equipoise.handheld.layout import Line as ShaftLine
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse
-    from equipoise.handheld.shapes import Line as ShaftLine
 
-Array = np.ndarray[Any, Any]
 
 MM = 1000.0
 MOST_MODES, MOST_SHAPES, MOST_NAMES, LONGEST = 24, 6, 24, 20

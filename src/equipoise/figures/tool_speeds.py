@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
-from equipoise.figures.over_speed import Named, curves_of, log_ends, ordered
+from equipoise.figures.shared import Named, curves_of, log_ends, ordered
 from equipoise.figures.style import KINDS, short
 from equipoise.figures.tool_shaft import MOST_MODES, numbered, plane_named, turns_told
 from equipoise.i18n import say, to_say
@@ -20,6 +20,7 @@ from equipoise.results.charts import (
     DEGREES,
     RPM,
     Area,
+    Array,
     Axis,
     Chart,
     Curve,
@@ -34,9 +35,8 @@ if TYPE_CHECKING:
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.transmission import Transmissions
+    from equipoise.handheld.sweep import Transmissions
 
-Array = np.ndarray[Any, Any]
 
 RATE = Display("m/s^2", 1.0)
 ALONE = 0.1

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from html import escape
-from typing import Any
 
 import numpy as np
 
-from equipoise.figures.metrics import box_of
-from equipoise.figures.sheet import Box, Item, Sheet, Signs, Stroke, Words
+from equipoise.figures.sheet import Array, Box, Item, Sheet, Signs, Stroke, Words, box_of
 from equipoise.figures.style import PAPER
-
-Array = np.ndarray[Any, Any]
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
 BACK = 0.7

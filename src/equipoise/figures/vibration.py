@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.crank import (
-    GAUGES,
+from equipoise.figures.shared import (
     ROOM,
+    VARIES,
     continued,
     crank_axis,
     extremes,
@@ -22,8 +22,19 @@ from equipoise.figures.crank import (
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import AXES
-from equipoise.quantities import display
-from equipoise.results.charts import RPM, Axis, Band, Bars, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.results.charts import (
+    RPM,
+    Array,
+    Axis,
+    Band,
+    Bars,
+    Chart,
+    Curve,
+    Line,
+    Mark,
+    Panel,
+    shown,
+)
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear
 
@@ -32,26 +43,19 @@ if TYPE_CHECKING:
     from equipoise.vibration.response import GaugeSignals, MountForce, Response
     from equipoise.vibration.transient import Transient
 
-Array = np.ndarray[Any, Any]
 
 QUANTITIES = {
     "displacement": to_say("displacement"),
     "velocity": to_say("velocity"),
     "acceleration": to_say("acceleration"),
 }
-SAMPLES = 720
-"""In a turn."""
-VARIES = 1e-9
-"""Share of a signal below which what varies is rounding."""
-LEAST_ORDER, MOST_BARS = 10, 60
-MATTERS = 1e-4
-"""Share of the largest amplitude at which the log axis ends, and above which orders are drawn."""
-TOUCHES = 1e-3
-"""Share of the largest force below which a one-sided mount counts as off its ground."""
-SMALL = 78.0
-"""Points: height of one of many panels."""
-MOST_IN_TIME = 6
-"""Panels of the way from rest in one picture."""
+SAMPLES, LEAST_ORDER, MOST_BARS = 720, 10, 60
+"""In a turn; orders that are drawn at least, and bars at most."""
+MATTERS, TOUCHES = 1e-4, 1e-3
+"""Shares: of the largest amplitude at which the log axis ends, and above which orders are drawn; of
+the largest force below which a one-sided mount counts as off its ground."""
+SMALL, MOST_IN_TIME = 78.0, 6
+"""Points: height of one of many panels.  Panels of the way from rest in one picture."""
 LABELS = {
     ("displacement", False): to_say("moved"),
     ("displacement", True): to_say("turned"),
@@ -111,14 +115,9 @@ def gauge(response: Response, name: str) -> Chart:
     """Displacement, velocity and acceleration at a gauge."""
     read = response.gauges[name]
     panels = []
-    for quantity, signal in (
-        ("displacement", read.displacement),
-        ("velocity", read.velocity),
-        ("acceleration", read.acceleration),
-    ):
-        theta, values, places = told(signal)
-        turned = read.rotation and quantity == "displacement"
-        label = say("rotation") if turned else say(QUANTITIES[quantity])
+    for quantity, name_of in QUANTITIES.items():
+        theta, values, places = told(getattr(read, quantity))
+        label = say("rotation") if read.rotation and quantity == "displacement" else say(name_of)
         y = read_axis(label, quantity, read.rotation, values, room=ROOM)
         marks = extremes(y, values, places, "main", angles=True)
         panels.append(Panel(phase_axis(response), y, (Curve(theta, values),), marks))
@@ -130,12 +129,10 @@ def gauge(response: Response, name: str) -> Chart:
 def drive(response: Response) -> Chart:
     """Torque of the drive and, where it varies, speed of the crank."""
     found = response.drive
-    values = sampled(found.torque)[1]
-    torque = read_axis(say("drive torque"), "force", True, values, room=ROOM)
-    panels = [_with_mean(response, found.torque, torque)]
+    y = read_axis(say("drive torque"), "force", True, sampled(found.torque)[1], room=ROOM)
+    panels = [_with_mean(response, found.torque, y)]
     if found.speed is not None:
-        share = shown(100 * found.fluctuation)
-        title = say("varies by {share} % of its mean", share=share)
+        title = say("varies by {share} % of its mean", share=shown(100 * found.fluctuation))
         y = Axis(say("crank speed"), RPM, room=ROOM)
         panels.append(_with_mean(response, found.speed, y, title=title))
     what = say("Drive of {link}", link=short(response.machine.drive.link))
@@ -166,12 +163,11 @@ def spectra(response: Response) -> Iterator[Chart]:
     every = list(response.gauges)
     for suffix, names in groups(every):
         what = say("Amplitude at the gauges by order") + continued(names, every)
-        speed, model = told_speed(response.speed), response.model
-        what += ", " + say("at {speed}; model {model}", speed=speed, model=model)
+        values = {"speed": told_speed(response.speed), "model": response.model}
+        what += ", " + say("at {speed}; model {model}", **values)
         last = max(_last_order(response.gauges[name]) for name in names)
         panels = tuple(_bars(response.gauges[name], name, last) for name in names)
-        title = response.machine.title
-        yield Chart(f"spectrum{suffix}", title, what, panels, columns=min(2, len(panels)))
+        yield Chart(f"spectrum{suffix}", response.machine.title, what, panels, min(2, len(panels)))
 
 
 def _last_order(found: GaugeSignals) -> float:
@@ -188,15 +184,15 @@ def _bars(found: GaugeSignals, name: str, last: float) -> Panel:
     orders, sizes = signal.orders[1:], signal.sizes[1:]
     orders, sizes = orders[orders <= last], sizes[orders <= last]
     largest = float(np.max(sizes, initial=0.0))
+    ends: dict[str, Any] = {}
+    if largest:
+        ends = {"low": largest * MATTERS, "high": largest * 6, "scale": "log"}
     x = Axis(say("order: events in one turn of the crank"), low=0.0, high=last + 1)
-    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes)
+    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes, **ends)
     title = short(name, 44)
     if not largest:
         return Panel(x, y, title=title, message=say("does not move"), height=SMALL)
-    ends: dict[str, Any] = {"low": largest * MATTERS, "high": largest * 6, "scale": "log"}
-    y = read_axis(say("amplitude"), "displacement", found.rotation, sizes, **ends)
-    heard = sizes > largest * MATTERS
-    loudest = int(np.argmax(sizes))
+    heard, loudest = sizes > largest * MATTERS, int(np.argmax(sizes))
     mark = Mark(float(orders[loudest]), largest, y.told(largest), sign=False, near=3.0)
     bars = Bars(orders[heard], sizes[heard], 0.62 / signal.turns)
     return Panel(x, y, marks=(mark,), bars=(bars,), title=title, height=SMALL)
@@ -213,9 +209,8 @@ def mounts(response: Response) -> Iterator[Chart]:
         what = say("Force in the mounts on the support") + continued(names, every)
         what = f"{what}, {period_told(response)}"
         panels = tuple(_mount(response, name, at_rest[name]) for name in names)
-        keys = (("main", say("force")), ("mean", say("at rest")))
-        title = response.machine.title
-        yield Chart(f"mounts{suffix}", title, what, panels, min(2, len(panels)), keys=keys)
+        keys, columns = (("main", say("force")), ("mean", say("at rest"))), min(2, len(panels))
+        yield Chart(f"mounts{suffix}", response.machine.title, what, panels, columns, keys=keys)
 
 
 def _at_rest(response: Response) -> dict[str, float]:
@@ -230,10 +225,9 @@ def _at_rest(response: Response) -> dict[str, float]:
 
 
 def _mount(response: Response, name: str, rest: float) -> Panel:
-    """One mount."""
-    mount = response.mounts[name]
+    """One mount; rest : what it carries there."""
     assert response.machine.support is not None
-    model = response.machine.support.mounts[name]
+    mount, model = response.mounts[name], response.machine.support.mounts[name]
     rotation = model.axis is not None
     theta, values, places = told(mount.force)
     lifted = off_ground(mount) if model.one_sided else []
@@ -241,20 +235,14 @@ def _mount(response: Response, name: str, rest: float) -> Panel:
         values, places = np.maximum(values, 0.0), places[:1]
     label = say("torque") if rotation else say("force")
     y = read_axis(label, "force", rotation, [*values, rest], room=ROOM)
-    title = short(name, 44)
-    if lifted:
-        title = f"{short(name, 20)}: {_told_off(response, mount, lifted)}"
-    curves = (
-        Curve(theta, values),
-        Curve(theta[[0, -1]], np.full(2, rest), "", "mean"),
-    )
+    told_off = f"{short(name, 20)}: {_told_off(response, mount, lifted)}" if lifted else ""
     return Panel(
         phase_axis(response),
         y,
-        curves,
+        (Curve(theta, values), Curve(theta[[0, -1]], np.full(2, rest), "", "mean")),
         extremes(y, values, places, "main"),
         tuple(Band(low, high, "off", say("off its ground")) for low, high in lifted),
-        title=title,
+        title=told_off or short(name, 44),
         height=SMALL,
     )
 
@@ -299,8 +287,8 @@ def transient_charts(transient: Transient) -> dict[str, Chart]:
         found |= _in_time(transient, "mounts", what, "force", transient.mounts, turning)
     speed = transient.crank_speed
     if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
-        drive = short(transient.machine.drive.link)
-        what = say("Speed of {link}", link=drive) + f", {_from_rest(transient)}"
+        what = say("Speed of {link}", link=short(transient.machine.drive.link))
+        what += f", {_from_rest(transient)}"
         panel = _time_panel(transient, Axis(say("crank speed"), RPM, room=0.08), speed)
         found["speed"] = Chart("speed", transient.machine.title, what, (panel,))
     return found
@@ -319,16 +307,14 @@ def _in_time(
     for suffix, names in groups(every, MOST_IN_TIME):
         panels = []
         for one in names:
-            values = read[one] + 0.0
-            dimension, usual = GAUGES[quantity, turning[one]]
-            unit = display(dimension, values, usual)
-            y = Axis(say(LABELS[quantity, turning[one]]), unit, room=0.08)
+            values, which = read[one] + 0.0, (quantity, turning[one])
+            y = read_axis(say(LABELS[which]), *which, values, room=0.08)
             low, high = float(np.min(values)), float(np.max(values))
             ends = say("{low} to {high}", low=y.told(low), high=y.quantity(high))
             panels.append(_time_panel(transient, y, values, title=f"{short(one, 40)}: {ends}"))
         whole = f"{what}{continued(names, every)}, {_from_rest(transient)}"
-        title = transient.machine.title
-        drawn[name + suffix] = Chart(name + suffix, title, whole, tuple(panels))
+        own = name + suffix
+        drawn[own] = Chart(own, transient.machine.title, whole, tuple(panels))
     return drawn
 
 

@@ -1,23 +1,208 @@
-"""A panel with its place on a sheet, and what everything in it is drawn with."""
+"""A panel with its place on a sheet: its scales, the numbers beside them, what draws in it."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil, floor, log10
 from typing import Any
 
 import numpy as np
 
-from equipoise.figures.metrics import DOWN, UP
-from equipoise.figures.scales import Scale, Ticks, ticks_of
-from equipoise.figures.sheet import Anchor, Box, Sheet, Stroke, Words
+from equipoise.figures.sheet import (
+    MIDDLE,
+    Anchor,
+    Box,
+    Labels,
+    Sheet,
+    Stroke,
+    Words,
+    width_of,
+)
 from equipoise.figures.style import INK, SMALL, Look
-from equipoise.figures.texts import Labels
-from equipoise.results.charts import Panel
+from equipoise.quantities import typeset
+from equipoise.results.charts import Array, Axis, Panel
 
-Array = np.ndarray[Any, Any]
-MIDDLE = (UP - DOWN) / 2
-"""Of a text's height, from its base line, over its size."""
+Ticks = list[tuple[float, str]]
+
+TURN = (15, 30, 45, 60, 90, 180, 360, 720, 1440, 3600)
+"""Degrees between crank angles that are numbered."""
+UP, BESIDE, NARROW = 22.0, 12.0, 4.0
+"""Points between numbers above each other; free between those side by side, and at least."""
+NEAREST = 11.0
+"""Points between the middles of two numbers at least."""
+FEWEST, MOST = 3, 40
+"""Numbers on an axis."""
+ROUND, ROUNDISH = (1, 2, 2.5, 5), (1, 1.5, 2, 2.5, 3, 4, 5, 6, 8)
+"""First digits of the distances of numbers; and where these leave fewer than three."""
+MANTISSAS = ((1,), (1, 3), (1, 2, 5), (1, 1.5, 2, 3, 4, 5, 6, 8))
+"""First digits of the numbers on a log axis, from the fewest."""
+DECADES = 6.0
+"""Of a log axis at most."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """An axis between two places.
+
+    low, high : ends in the unit of the axis.  start, end : points, where these are.
+    """
+
+    axis: Axis
+    low: float
+    high: float
+    start: float
+    end: float
+
+    def at(self, values: Any) -> Any:
+        """Points of values in SI units."""
+        return self.of(np.asarray(values, float) * self.axis.unit.factor)
+
+    def of(self, values: Any) -> Any:
+        """Points of values in the unit of the axis."""
+        low, high = self.low, self.high
+        if self.axis.scale == "log":
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values = np.log10(np.maximum(values, low * 1e-9))
+            low, high = log10(low), log10(high)
+        return self.start + (values - low) / (high - low) * (self.end - self.start)
+
+    @property
+    def length(self) -> float:
+        """Points."""
+        return abs(self.end - self.start)
+
+
+def ends_of(axis: Axis, values: Iterable[Any]) -> tuple[float, float]:
+    """Ends of an axis in its unit, that hold values (SI) with room beyond where none are given."""
+    factor = axis.unit.factor
+    low, high = (None if end is None else factor * end for end in (axis.low, axis.high))
+    if low is None or high is None:
+        parts = [np.ravel(np.asarray(part, float)) for part in values]
+        every = factor * (np.concatenate(parts) if parts else np.zeros(1))
+        every = every[np.isfinite(every)]
+        if axis.scale == "log":
+            return _log_ends(every, low, high)
+        found = (float(np.min(every)), float(np.max(every))) if every.size else (0.0, 1.0)
+        least, most = low if low is not None else found[0], high if high is not None else found[1]
+        size = max(abs(least), abs(most))
+        if most - least <= 1e-9 * size or not size:
+            half = size / 2 or 1.0
+            least, most = least - half * (low is None), most + half * (high is None)
+        room = axis.room * (most - least)
+        low = least - room if low is None else low
+        high = most + room if high is None else high
+    return (low, high) if high != low else (low - 1, low + 1)
+
+
+def _log_ends(values: Array, low: float | None, high: float | None) -> tuple[float, float]:
+    above = values[values > 0]
+    most = (float(np.max(above)) if above.size else 1.0) if high is None else high
+    least = (float(np.min(above)) if above.size else most / 10) if low is None else low
+    least = max(least, most * 10**-DECADES)
+    return (least, most) if most > least else (least / 3, most * 3)
+
+
+def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
+    """Places in the unit of the axis, and numbers there: at least three where there is room."""
+    axis = scale.axis
+    if axis.ticks is not None:
+        pairs = [(place * axis.unit.factor, text) for place, text in axis.ticks]
+        inside = [pair for pair in pairs if _between(pair[0], scale.low, scale.high)]
+        return inside if upright else _apart(scale, inside)
+    if axis.scale == "log":
+        return _log_ticks(scale, upright)
+    return _round_ticks(scale, upright)
+
+
+def _between(value: float, low: float, high: float) -> bool:
+    slack = 1e-6 * abs(high - low)
+    return min(low, high) - slack <= value <= max(low, high) + slack
+
+
+def _apart(scale: Scale, ticks: Ticks) -> Ticks:
+    """Those of words side by side that do not touch."""
+    kept: Ticks = []
+    end = -np.inf
+    for place, text in ticks:
+        half = width_of(text, SMALL) / 2
+        x = float(scale.of(place))
+        if x - half > end + 3:
+            kept.append((place, text))
+            end = x + half
+    return kept
+
+
+def steps_of(scale: Scale, digits: tuple[float, ...]) -> Iterator[float]:
+    """Round distances of numbers, from small to large."""
+    span = scale.high - scale.low
+    if scale.axis.scale == "crank" and span >= 90:
+        yield from (step for step in TURN if step <= span)
+        return
+    power = 10.0 ** floor(log10(span / 20))
+    while power < 10 * span:
+        yield from (digit * power for digit in digits)
+        power *= 10
+
+
+def _round_ticks(scale: Scale, upright: bool) -> Ticks:
+    """Numbers as near to each other as they have room, but not fewer than three."""
+    fewer: Ticks = []
+    for digits, free in ((ROUND, BESIDE), (ROUNDISH, NARROW)):
+        for step in steps_of(scale, digits):
+            first, last = ceil(scale.low / step - 1e-6), floor(scale.high / step + 1e-6)
+            if last - first > MOST or step / (scale.high - scale.low) * scale.length < NEAREST:
+                continue
+            found = [(k * step, _written(k * step, step)) for k in range(first, last + 1)]
+            if _fits(scale, found, upright, free):
+                if len(found) >= FEWEST:
+                    return found
+                fewer = max(fewer, found, key=len)
+                break
+    return fewer
+
+
+def _fits(scale: Scale, ticks: Ticks, upright: bool, free: float) -> bool:
+    if len(ticks) < 2:
+        return True
+    gap = abs(float(scale.of(ticks[1][0]) - scale.of(ticks[0][0])))
+    if upright:
+        return gap >= (UP if free == BESIDE else SMALL + NARROW)
+    return gap >= max(width_of(text, SMALL) for _, text in ticks) + free
+
+
+def _written(value: float, step: float) -> str:
+    digits = max(0, -floor(log10(step) + 1e-9))
+    if abs(step * 10**digits - round(step * 10**digits)) > 1e-6:
+        digits += 1
+    if digits > 5 or abs(value) >= 1e7:
+        return typeset(f"{value:g}")
+    return typeset(f"{value + 0.0:.{digits}f}") if value else "0"
+
+
+def _log_ticks(scale: Scale, upright: bool) -> Ticks:
+    """Plain numbers, as few digits as give three of them; round ones where there are no decades."""
+    powers = range(floor(log10(scale.low)), ceil(log10(scale.high)) + 1)
+    found: Ticks = []
+    for digits in MANTISSAS:
+        places = sorted(digit * 10.0**power for power in powers for digit in digits)
+        inside = [p for p in places if 0.999 * scale.low <= p <= 1.001 * scale.high]
+        ticks = [(p, typeset(f"{p:.4g}")) for p in inside]
+        if found and len(found) >= FEWEST and not _log_fits(scale, ticks, upright):
+            return found
+        found = ticks
+    if len(found) >= FEWEST:
+        return found
+    return _round_ticks(scale, upright)
+
+
+def _log_fits(scale: Scale, ticks: Ticks, upright: bool) -> bool:
+    places = [float(scale.of(place)) for place, _ in ticks]
+    gaps = np.abs(np.diff(places))
+    if upright:
+        return bool(np.all(gaps >= 0.7 * UP))
+    return bool(np.all(gaps >= max(width_of(text, SMALL) for _, text in ticks) + BESIDE / 2))
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,14 +12,7 @@ from math import degrees, hypot, pi, radians
 from typing import Literal
 
 from equipoise.errors import ModelError
-from equipoise.keys import (
-    Frozen,
-    Table,
-    Tables,
-    Text,
-    declared,
-    key,
-)
+from equipoise.keys import Frozen, Table, Tables, Text, declared, key
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
 from equipoise.mechanism.counterweights import (
     BalanceShafts,
@@ -29,13 +22,7 @@ from equipoise.mechanism.counterweights import (
 )
 from equipoise.mechanism.declaring import Measure
 from equipoise.mechanism.force_elements import wrong_ends
-from equipoise.mechanism.objectives import (
-    MEASURES,
-    Limit,
-    Objective,
-    wrong_limit,
-    wrong_objective,
-)
+from equipoise.mechanism.objectives import MEASURES, Limit, Objective, wrong_limit, wrong_objective
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     CUT,
@@ -224,6 +211,5 @@ def _wrong_phases(phases: Phases, rows: int) -> Iterator[ModelError]:
         )
     if rows < 2:
         yield ModelError(
-            "balance.phases",
-            f"got {rows} rows, which leaves no phase to choose; give two at least",
+            "balance.phases", f"got {rows} rows, which leaves no phase to choose; give two at least"
         )

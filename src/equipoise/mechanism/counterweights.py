@@ -126,10 +126,7 @@ class GearedWeight(Frozen):
         example="0 deg",
     )
     gear_thickness: float | None = key(
-        "length",
-        "of both gears, solid discs; if left out they have no mass",
-        default=None,
-        above=0,
+        "length", "of both gears, solid discs; if left out they have no mass", default=None, above=0
     )
     gear_density: float | None = key(
         "density", "of both gears, instead of `gear_material`", default=None, above=0

@@ -18,7 +18,6 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.applied import load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
@@ -30,7 +29,9 @@ from equipoise.mechanism.reactions import (
     SliderForce,
     VectorSignal,
     full,
+    load_demands,
     reactions,
+    spring_demands,
 )
 from equipoise.mechanism.steps import p, planar, u
 

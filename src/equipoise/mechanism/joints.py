@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
 
 MOST_SUBSETS = 10_000
@@ -49,10 +50,7 @@ class Structure:
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
     bodies = (FRAME, *machine.links)
-    shared: dict[str, list[str]] = {}
-    for body in bodies:
-        for point in machine.points_of(body):
-            shared.setdefault(point, []).append(body)
+    shared = bodies_at(machine.bodies)
     pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
     _check_apart(machine, pins)
     result = Structure(bodies, pins, machine.sliders, machine.gears)

@@ -307,11 +307,7 @@ def middle_angle(
 
 
 def _add_references(
-    linkage: Linkage,
-    state: State,
-    chosen: Array,
-    side: int,
-    error: RangeError | ChangePointError,
+    linkage: Linkage, state: State, chosen: Array, side: int, error: RangeError | ChangePointError
 ) -> None:
     """Follow the running angles from crank angle 0 to the farthest on one side."""
     theta = state["theta"]
@@ -326,11 +322,7 @@ def _add_references(
 
 
 def _check(
-    linkage: Linkage,
-    state: State,
-    theta: Array,
-    error: RangeError | ChangePointError,
-    doing: str,
+    linkage: Linkage, state: State, theta: Array, error: RangeError | ChangePointError, doing: str
 ) -> None:
     """Raise the error again, with the crank angle, where a dyad cannot be closed."""
     for group in linkage.groups:

@@ -235,8 +235,7 @@ def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
     yield from _too_many(f"{where}.speeds", objective.speeds)
     if objective.speeds and not objective.output.startswith(GAUGES):
         yield ModelError(
-            f"{where}.speeds",
-            "goes with gauges; other outputs are taken at the speed of the drive",
+            f"{where}.speeds", "goes with gauges; other outputs are taken at the speed of the drive"
         )
     for number, speed in enumerate(objective.speeds, 1):
         if speed == 0:

@@ -21,11 +21,18 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.applied import demands_of, spring_direction, spring_vector
 from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, massless, place_of
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import Demand, JointForce, MeshForce, reactions
+from equipoise.mechanism.reactions import (
+    Demand,
+    JointForce,
+    MeshForce,
+    demands_of,
+    reactions,
+    spring_direction,
+    spring_vector,
+)
 from equipoise.mechanism.steps import planar
 
 Array = np.ndarray[Any, Any]

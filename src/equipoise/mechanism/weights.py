@@ -160,11 +160,7 @@ class Weight(Frozen):
     )
     mass: float | None = key("mass", "where it is given", default=None, example="500 g", above=0)
     at_most: float | None = key(
-        "mass",
-        "the most that it may be, instead of `mass`",
-        default=None,
-        example="800 g",
-        above=0,
+        "mass", "the most that it may be, instead of `mass`", default=None, example="800 g", above=0
     )
 
     @classmethod
@@ -272,8 +268,7 @@ def _wrong_inner_radius(where: str, weight: Weight) -> Iterator[ModelError]:
         yield ModelError(key, f"got {inner:g} m; give 0 or more")
     elif inner >= weight.radius:
         yield ModelError(
-            key,
-            f"got {_length(inner)} in a room of {_length(weight.radius)}; give less than that",
+            key, f"got {_length(inner)} in a room of {_length(weight.radius)}; give less than that"
         )
 
 
@@ -281,10 +276,7 @@ def _wrong_mass(where: str, weight: Weight) -> Iterator[ModelError]:
     if weight.mass is not None and weight.at_most is not None:
         yield ModelError(where, "give either mass or at_most")
     if weight.mass is None and not isfinite(weight.radius):
-        yield ModelError(
-            where,
-            "nothing limits it; give the radius of its room, or its mass",
-        )
+        yield ModelError(where, "nothing limits it; give the radius of its room, or its mass")
     cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
     if cut and weight.mass is not None and weight.mass > largest_mass(weight) * ROUNDING:
         yield ModelError(f"{where}.mass", _too_large(weight, weight.mass))

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import Signal, largest, roots, smallest
-from equipoise.mechanism.tip import STEP, TipCurve
+from equipoise.mechanism.tip import STEP, Signal, TipCurve, largest, roots, smallest
 from equipoise.planting.stroke import (
     Array,
     Figures,

@@ -15,8 +15,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import Signal, integral, lowest_within
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.tip import Signal, TipCurve, integral, lowest_within
 from equipoise.planting.curve import (
     extreme,
     ground_bend,

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import crossings, integral, lowest_within
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped
 
 Array = np.ndarray[Any, Any]

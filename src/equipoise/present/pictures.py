@@ -84,8 +84,7 @@ def _made(chart: Chart) -> Chart:
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     from equipoise.figures.linkage import linkage
-    from equipoise.figures.outputs import main_kinematics
-    from equipoise.figures.points import curves, hodograph
+    from equipoise.figures.points import curves, hodograph, main_kinematics
 
     analysis = found.analysis
     caption = to_say("The linkage to scale, with its joints, links and centres of mass.")
@@ -144,7 +143,7 @@ def _forces(found: Findings) -> Iterator[Entry]:
 def _joints(found: Findings) -> Iterator[Entry]:
     if found.analysis.solved is None:
         return
-    from equipoise.figures.joints import joint_polars, joints
+    from equipoise.figures.analysis import joint_polars, joints
 
     caption = to_say("Forces in the joints over crank angle.")
     yield from pages("joints", caption, partial(joints, found.analysis))

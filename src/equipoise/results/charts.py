@@ -94,6 +94,11 @@ class Curve:
     steps: bool = False
     dashed: bool = False
 
+    @classmethod
+    def of(cls, places: Array, label: str = "", role: str = "main") -> Curve:
+        """A line through places x + iy, (N,)."""
+        return cls(places.real, places.imag, label, role)
+
 
 @dataclass(frozen=True, eq=False)
 class Area:
@@ -165,6 +170,11 @@ class Mark:
     near: float = 7.0
     bold: bool = False
     label: str = ""
+
+    @classmethod
+    def of(cls, place: complex, *told: Any, **more: Any) -> Mark:
+        """A mark at x + iy; what else is given is as of any mark."""
+        return cls(float(place.real), float(place.imag), *told, **more)
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.exposure.daily import Task
-from equipoise.exposure.signal import UNEVEN_STEPS, uneven
+from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
 from equipoise.schema import csv_columns

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +12,7 @@ from equipoise.mechanism.support import Direction, Mount, unit_vector
 from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
+    Array,
     Shape,
     block,
     circle,
@@ -32,8 +32,6 @@ from equipoise.symbols.shapes import (
     wheel,
     zigzag,
 )
-
-Array = np.ndarray[Any, Any]
 
 BESIDE = 0.6
 """How much farther than the machine the soil reaches, over its size: out of every picture."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +16,10 @@ from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.support import Mount
 from equipoise.mechanism.tip import surface_of
-from equipoise.symbols.shapes import MOUNT
+from equipoise.symbols.shapes import MOUNT, Array
 
 if TYPE_CHECKING:
     from equipoise.mechanism.support import Gauge, Support
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True)

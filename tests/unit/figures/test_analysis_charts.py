@@ -12,11 +12,11 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.multi_row import Rows
 from equipoise.errors import UsageError
+from equipoise.figures import analysis as of_joints
 from equipoise.figures import analysis as view
 from equipoise.figures import forces, planting, points
-from equipoise.figures import joints as of_joints
-from equipoise.figures.crank import angle_step
 from equipoise.figures.pictures import analysis_pictures, planting_pictures
+from equipoise.figures.shared import angle_step
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row

@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.figures import balancing as view
 from equipoise.figures import objectives
-from equipoise.figures.additions import grams
+from equipoise.figures.changes import grams
 from equipoise.figures.forces import order_panel
 from equipoise.figures.layout import lay_out
 from equipoise.mechanism.objectives import Objective

@@ -11,8 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.design_variables import Change
-from equipoise.figures.additions import grams, sector
-from equipoise.figures.changes import changes
+from equipoise.figures.changes import changes, grams, sector
 from equipoise.figures.linkage import linkage
 from equipoise.results.charts import Chart, Outline
 from unit.figures.balance_samples import (

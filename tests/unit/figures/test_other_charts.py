@@ -16,10 +16,10 @@ import equipoise as eq
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
-from equipoise.figures import decay as of_decay
-from equipoise.figures import exposure, figure, objectives, plot, render, studies
+from equipoise.figures import figure, measured, objectives, plot, render, studies
+from equipoise.figures import measured as of_decay
 from equipoise.figures.curves import levels_of
-from equipoise.figures.scales import Scale, ends_of, ticks_of
+from equipoise.figures.view import Scale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
 from equipoise.mechanism.objectives import Objective
@@ -60,20 +60,20 @@ def tools(one: Exposure) -> list[tuple[str, float]]:
 
 def test_the_spectrum_before_and_after_weighting() -> None:
     found = weighted()
-    chart = exposure.spectrum(found, "mow.csv")
+    chart = measured.spectrum(found, "mow.csv")
     assert found.band_a_h is not None
     for area, wanted in zip(chart.panels[0].areas, (found.band_a_h, found.band_a_hw), strict=True):
         total = np.sqrt(np.sum(wanted**2, axis=0))
         np.testing.assert_allclose(area.high[::2], np.maximum(total, area.low[0]))
     assert f"weighted, a_hv = {found.a_hv:.4g} m/s²" in words(chart)
-    assert len(exposure.spectrum(weighted(weighted=True), "x").panels[0].areas) == 1
-    names = exposure.charts([("a", found), ("b", found)], tools(WORK), WORK)
+    assert len(measured.spectrum(weighted(weighted=True), "x").panels[0].areas) == 1
+    names = measured.exposure_charts([("a", found), ("b", found)], tools(WORK), WORK)
     assert list(names) == ["spectrum", "spectrum-2", "exposure"]
-    check(exposure.spectrum(weigh_spectrum(NOMINAL, np.zeros((3, 24)), bands=True), "nothing"))
+    check(measured.spectrum(weigh_spectrum(NOMINAL, np.zeros((3, 24)), bands=True), "nothing"))
 
 
 def test_tasks_and_the_day_stand_at_their_hours() -> None:
-    chart = exposure.exposure(tools(WORK), WORK)
+    chart = measured.exposure(tools(WORK), WORK)
     signs = [(mark.x, mark.y) for mark in chart.panels[0].marks if mark.sign]
     assert (WORK.duration / HOUR, WORK.a8) in signs
     for task in WORK.tasks:
@@ -95,8 +95,8 @@ def test_tasks_and_the_day_stand_at_their_hours() -> None:
     ],
 )
 def test_odd_days(one: Exposure) -> None:
-    check(exposure.exposure(tools(one), one))
-    check(exposure.exposure(tools(one), None))
+    check(measured.exposure(tools(one), one))
+    check(measured.exposure(tools(one), None))
 
 
 # -- decay -----------------------------------------------------------------------------------------
@@ -110,7 +110,7 @@ def decayed(kind: str = "length", **more: float) -> Decay:
 
 def test_the_record_and_the_line_of_half_swings() -> None:
     found = decayed(center=0.1)
-    charts = of_decay.charts(found, "rig.csv")
+    charts = of_decay.decay_charts(found, "rig.csv")
     (panel,) = charts["record"].panels
     samples, fit = panel.curves
     assert [mark.y for mark in panel.marks] == pytest.approx(list(found.turns.displacement))
@@ -118,7 +118,7 @@ def test_the_record_and_the_line_of_half_swings() -> None:
     assert len(samples.x) <= of_decay.MOST_DRAWN
     assert panel.y.text == "displacement, mm"
     found = decayed("angle")
-    charts = of_decay.charts(found, r"$x$ 減衰 \alpha " + "long " * 30)
+    charts = of_decay.decay_charts(found, r"$x$ 減衰 \alpha " + "long " * 30)
     assert charts["record"].panels[0].y.text == "angle, deg"
     line = charts["swings"].panels[0].curves[1]
     slope, cut = found.line["slope"].value, found.line["intercept"].value

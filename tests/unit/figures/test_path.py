@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.path import path
-from equipoise.figures.paths import Paths
+from equipoise.figures.path import Paths, path
 from equipoise.planting.summary import plant
 from unit.figures.samples import (
     BUNDLED,

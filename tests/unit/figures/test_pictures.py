@@ -10,9 +10,8 @@ import pytest
 
 from equipoise.figures import layout, render
 from equipoise.figures.layout import lay_out
-from equipoise.figures.metrics import box_of
 from equipoise.figures.planting import charts as planting_charts
-from equipoise.figures.sheet import Sheet
+from equipoise.figures.sheet import Sheet, box_of
 from equipoise.figures.view import View
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant

@@ -6,8 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from equipoise.figures.sheet import Sheet
-from equipoise.figures.texts import Labels, Text, spread
+from equipoise.figures.sheet import Labels, Sheet, Text, spread
 from equipoise.symbols.scene import hull
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.over_speed import bounded, ordered
 from equipoise.figures.pictures import pictures_of
+from equipoise.figures.shared import bounded, ordered
 from equipoise.figures.style import LOOKS, look_of
 from equipoise.figures.sweep import fraction, meeting, merged, sweep_charts
 from equipoise.figures.vibration import response_charts, transient_charts

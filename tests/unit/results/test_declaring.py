@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import EquipoiseError
 from equipoise.figures import render
-from equipoise.figures.outputs import kinematics, outputs_chart
+from equipoise.figures.points import kinematics, outputs_chart
 from equipoise.i18n import speaking
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Weight
 from equipoise.mechanism.outputs import DECLARED, declaring, output

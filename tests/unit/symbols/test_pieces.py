@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.symbols.clear import clear_angle
+from equipoise.figures.linkage import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
