@@ -284,7 +284,7 @@ KINDS: dict[str, dict[str, str | None]] = {
 
 
 def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
-    """Dimension of the figure at a path in what a command gives; None of plain and unknown ones.
+    """Dimension of the figure at a path of what a command gives; None of plain and unknown ones.
 
     Nothing is computed for it.
 
@@ -301,17 +301,16 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     first, _, rest = path.partition(".")
     if of == "respond":
         return _of_support(model, first, rest)
-    if of == "plant":
-        return _of_output(_LAST.sub("", rest)) if first == "forces" else of_planting(path)
-    if of == "balance":
-        kind, _, name = rest.partition(".")
-        if kind == "planting":
-            return of_planting(name)
-        found = _of_support(model, kind, name) if kind == "gauges" else None
-        return found or _of_output(_LAST.sub("", rest))
-    if first == "by_order":
-        return _of_output(_LAST.sub("", rest))
-    return _of_part(rest) if first in ("by_cause", "by_link") else _of_output(path)
+    if of == "plant" and first != "forces":
+        return of_planting(path)
+    if of == "balance" and rest.startswith("planting."):
+        return of_planting(rest.removeprefix("planting."))
+    if first in ("by_cause", "by_link"):
+        return _of_part(rest)
+    kind, _, name = rest.partition(".")
+    found = _of_support(model, kind, name) if of == "balance" and kind == "gauges" else None
+    plain = of == "analyze" and first != "by_order"
+    return found or _of_output(path if plain else _LAST.sub("", rest))
 
 
 _STATISTIC = re.compile(rf"\.({'|'.join(OF_LISTS)})$")
