@@ -100,7 +100,7 @@ def export(
         Only designs that keep every limit.
     """
     from equipoise.schema.files import printable
-    from equipoise.studies import table_files as of_stores
+    from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
     opened = open_store(store)

@@ -47,7 +47,7 @@ from equipoise.studies.design_space import (
     Uniform,
     Vary,
 )
-from equipoise.studies.dimensions import dimension_of
+from equipoise.studies.figures import dimension_of
 from equipoise.studies.study import Study, from_plain
 
 MODEL = "model "
