@@ -7,7 +7,10 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from json import dumps as quoted
 from math import isfinite
 from typing import Any
@@ -15,9 +18,78 @@ from typing import Any
 from equipoise import keys
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, parse
+from equipoise.quantities import KINDS, described, parse
 from equipoise.schema.numbers import Polar
-from equipoise.schema.objects import WRONG, Context, NamedFile, Place, Values, made, written_place
+
+Place = tuple[str | int, ...]
+"""Keys, and numbers in lists from 0."""
+LONGEST_KEY = 60
+
+
+def written_key(name: str) -> str:
+    """Return a key as it stands in TOML, cut where it is endless."""
+    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
+
+
+def written_place(place: Iterable[str | int]) -> str:
+    """Dotted path with numbers from 1, as the machine's own checks write it."""
+    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
+    return text.removeprefix(".")
+
+
+def within(place: Place, error: ModelError) -> ModelError:
+    """The same error, whose place is inside of another."""
+    outer = written_place(place)
+    point = "." if outer and error.where and error.where[0] != "[" else ""
+    return ModelError(f"{outer}{point}{error.where}", error.what)
+
+
+WRONG = object()
+"""Instead of a value that could not be read."""
+
+
+@dataclass
+class Context:
+    """What reading needs besides the content.
+
+    beside : reads what lies in a file of its own, by its sort and the file's name.
+    makers : make the objects of some classes otherwise than by `Frozen.from_table`.
+    problems : what has been found wrong, with its place.
+    """
+
+    beside: Callable[[str, str], Any] | None = None
+    makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
+        default_factory=dict
+    )
+    problems: list[tuple[Place, str]] = field(default_factory=list)
+
+    def wrong(self, place: Place, given: Any, right: str) -> Any:
+        """Note that a value is none that can be read."""
+        self.problems.append((place, f"got {described(given)}; {right}"))
+        return WRONG
+
+    def say(self, place: Place, sentence: str) -> Any:
+        self.problems.append((place, sentence))
+        return WRONG
+
+
+@dataclass(frozen=True)
+class Values:
+    """Values of a table, of which an object is to be made."""
+
+    of: type[keys.Frozen]
+    place: Place
+    given: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class NamedFile:
+    """What lies in a file that is named at a place."""
+
+    sort: str
+    place: Place
+    file: str
 
 
 def read_table(
@@ -89,6 +161,33 @@ def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
         return context.wrong(place, given, "give a table")
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
+
+
+def made(value: Any, context: Context) -> Any:
+    """The objects of what has been read."""
+    if isinstance(value, dict):
+        return {name: made(item, context) for name, item in value.items()}
+    if isinstance(value, tuple) and value and isinstance(value[0], Values | NamedFile):
+        return tuple(made(item, context) for item in value)
+    if isinstance(value, Values):
+        make = partial(context.makers.get(value.of, value.of.from_table), _given(value, context))
+    elif isinstance(value, NamedFile) and context.beside is not None:
+        make = partial(context.beside, value.sort, value.file)
+    else:
+        return value
+    try:
+        return make()
+    except ModelError as error:
+        raise within(value.place, error) from error
+
+
+def _given(found: Values, context: Context) -> dict[str, Any]:
+    """What an object is made of, by its fields."""
+    given = {name: made(value, context) for name, value in found.given.items()}
+    for name, one in keys.keys_of(found.of).items():
+        if isinstance(one.kind, keys.File) and one.kind.named and name in given:
+            given[one.kind.named] = found.given[name].file
+    return given
 
 
 # -- single values ---------------------------------------------------------------------------------

@@ -10,7 +10,7 @@ from equipoise import keys
 from equipoise.errors import ModelError
 from equipoise.quantities import format_exact
 from equipoise.schema.numbers import written_point
-from equipoise.schema.objects import Place, written_place
+from equipoise.schema.reading import Place, within, written_place
 
 Namer = Callable[[str, str, Any], str]
 """Name of the file for the key at a place: takes the place, its sort and what lies in it."""
@@ -52,9 +52,7 @@ def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: Place) 
     try:
         return to_table(value)
     except ModelError as error:
-        within = written_place(place)
-        inner = "." if within and error.where else ""
-        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
+        raise within(place, error) from error
 
 
 def plain_default(one: keys.Key) -> Any:
@@ -193,10 +191,10 @@ def _blocks(
     header: str, name: str, of: type[keys.Frozen], table: Mapping[str, Any]
 ) -> Iterator[str]:
     known = keys.all_keys(of)
-    within = {key: item for key, item in table.items() if _has_header(known[key].kind)}
-    own = {key: item for key, item in table.items() if key not in within}
+    below = {key: item for key, item in table.items() if _has_header(known[key].kind)}
+    own = {key: item for key, item in table.items() if key not in below}
     yield "".join([header, "\n", *_lines(own)])
-    for key, item in within.items():
+    for key, item in below.items():
         yield from _headed(f"{name}.{key}", known[key].kind, item)
 
 
