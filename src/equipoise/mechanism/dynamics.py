@@ -21,7 +21,6 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
-    Array,
     Demand,
     JointForce,
     MeshForce,
@@ -33,7 +32,7 @@ from equipoise.mechanism.reactions import (
     reactions,
     spring_demands,
 )
-from equipoise.mechanism.steps import p, planar, u
+from equipoise.mechanism.steps import Array, p, planar, u
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and

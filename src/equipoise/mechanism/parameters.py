@@ -38,9 +38,7 @@ from equipoise.mechanism.reactions import (
     spring_direction,
     spring_vector,
 )
-from equipoise.mechanism.steps import planar
-
-Array = np.ndarray[Any, Any]
+from equipoise.mechanism.steps import Array, planar
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
@@ -137,7 +135,7 @@ def _unit_demands(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
         unit = np.eye(4)[:, :, None]  # mass, moments and inertia, of one parameter a row
         own = kernels.about(unit[0], unit[1] + 1j * unit[2], unit[3], shift)
         moving = demand_of_inertia(motion, name, motion.speed**2, *own)
-        weight = kernels.weight_demand(motion.state[f"u({name})"], *own[:2], gravity)
+        weight = kernels.weight_demand(motion.state[f"u({name})"], own[0], own[1], gravity)
         inertia[name] = _spread(moving, k, count, shape)
         carried = _spread(weight, k, count, shape)
         total[name] = tuple(a + b for a, b in zip(inertia[name], carried, strict=True))
@@ -193,7 +191,7 @@ def base_parameters(
 def _rows(motion: Motion, output: str, size: float) -> Array:
     """Rows of an output in any motion: at rest, at constant speed, starting from rest."""
     rate = (9.81 / size) ** 0.5
-    parts = []
+    parts: list[Array] = []
     for case in (motion.at(0.0, 0.0), motion.at(rate, 0.0), motion.at(0.0, rate**2)):
         found = regressor(case).of_machine
         if output not in found:
