@@ -25,8 +25,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse
-    from equipoise.handheld.sweep import ToolSweep
-    from equipoise.handheld.transmission import Transmission, Transmissions
+    from equipoise.handheld.sweep import ToolSweep, Transmission, Transmissions
 
 Array = np.ndarray[Any, Any]
 
@@ -119,7 +118,7 @@ def _holds(station: Station) -> Iterator[str]:
         yield say("harness")
     if station.absorber is not None:
         yield say("absorber")
-    if any(station.stiffness) or any(station.damping):
+    if station.grounded:
         yield say("ground")
 
 

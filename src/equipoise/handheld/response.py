@@ -11,9 +11,8 @@ import numpy as np
 
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.handheld.chain import Pair, carry, solve
-from equipoise.handheld.layout import Layout, check_coverage
+from equipoise.handheld.layout import Field, Layout, Line, check_coverage
 from equipoise.handheld.model import Excitation, Station, Tool
-from equipoise.handheld.shapes import Field, Line
 from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
@@ -176,7 +175,7 @@ class ToolResponse(Result):
         """
         one, moved = self.tool.station(station), self._node(station).across
         held = self.field.layout.on_body(one, self.field.s)
-        if not (any(one.stiffness) or any(one.damping)):
+        if not one.grounded:
             held.pop("ground")
         return {part: self._shaped(stiffness * moved) for part, stiffness in held.items()}
 

@@ -132,6 +132,11 @@ class Station(Frozen):
     hand: Hand | None = key(Table(Hand), "what a hand with its arm is to the tool", default=None)
     harness: Harness | None = key(Table(Harness), "the belt that carries the tool", default=None)
 
+    @property
+    def grounded(self) -> bool:
+        """Whether a spring or damper to the ground holds it."""
+        return any(self.stiffness) or any(self.damping)
+
     def number(self, key: str) -> float | Both:
         """A number by its key, such as ``mass`` or ``harness.stiffness``, in SI units."""
         value: Any = self

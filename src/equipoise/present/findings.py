@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.sweep import ToolSweep
-    from equipoise.handheld.transmission import Transmissions
+    from equipoise.handheld.sweep import ToolSweep, Transmissions
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures

@@ -25,7 +25,6 @@ from equipoise.vibration.body import PITCH, Body, Reading
 from equipoise.vibration.coupled import Coupled, settled
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import BaseMotion, Sums, joint_forces, rows_of
-from equipoise.vibration.mode_shapes import swings_in_a_turn
 from equipoise.vibration.response import (
     NEUTRAL,
     DriveSignals,
@@ -35,6 +34,7 @@ from equipoise.vibration.response import (
     MountForce,
     Response,
     in_words,
+    swings_in_a_turn,
 )
 from equipoise.vibration.small_motion import force_amplitudes, mount_force
 from equipoise.vibration.steady import (

@@ -116,7 +116,7 @@ def models_of(machine: Machine) -> tuple[Model, ...]:
     """The models that can answer for a machine's support, from the plainest to the exact one."""
     if machine.support is None:
         return ()
-    return MODELS if machine.support.planar else ("linear", "torque", "moment")
+    return tuple(MODELS) if machine.support.planar else ("linear", "torque", "moment")
 
 
 Progress = Callable[[int, int], None]

@@ -17,8 +17,7 @@ from equipoise.results.result import Result
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
-from equipoise.vibration.mode_shapes import Mode
-from equipoise.vibration.response import Values, mode_values
+from equipoise.vibration.response import Mode, Values
 
 Array = np.ndarray[Any, Any]
 
@@ -149,7 +148,7 @@ class FreeVibration(Result):
         modes = []
         for number, mode in enumerate(self.modes):
             read = {n: [v[number].real, v[number].imag] for n, v in self.gauges.items()}
-            modes.append({**mode_values(mode), "gauges": read})
+            modes.append({**mode.to_dict(), "gauges": read})
         return {
             "title": self.machine.title,
             "model": self.linear.excitation.step,

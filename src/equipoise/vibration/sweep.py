@@ -26,8 +26,7 @@ from equipoise.vibration.forced import (
 )
 from equipoise.vibration.free import Resonance, resonances
 from equipoise.vibration.linear import Linear, Step
-from equipoise.vibration.mode_shapes import Mode
-from equipoise.vibration.response import Model, Response, Values, mode_values, range_shown
+from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
 Array = np.ndarray[Any, Any]
@@ -124,7 +123,7 @@ class Sweep(Result):
                 name: {key: _plain(getattr(curve, key)) for key in MOUNT}
                 for name, curve in self.mounts.items()
             },
-            "modes": [mode_values(mode) for mode in self.modes],
+            "modes": [mode.to_dict() for mode in self.modes],
             "resonances": [resonance.speed for resonance in self.resonances],
             "resonance_map": [resonance.to_dict() for resonance in self.resonances],
         }

@@ -28,7 +28,7 @@ from equipoise.handheld.exposed import (
 )
 from equipoise.handheld.model import Excitation, Hand, Impedance, Operation, Station, Tool, Work
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.section import Section
+from equipoise.handheld.shaft import Section
 from equipoise.handheld.studies import changed, has, number_of
 from unit.handheld.samples import THEORIES, bare, both, random_tool
 
