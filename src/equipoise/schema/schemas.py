@@ -196,6 +196,15 @@ SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
 # -- the documentation -----------------------------------------------------------------------------
 
 _COUNTS = {2: "two", 3: "three"}
+WORDS: dict[type[keys.Kind], str] = {
+    keys.Anything: "value",
+    keys.Direction: "angle, or vector",
+    keys.File: "file",
+    keys.Flag: "true or false",
+    keys.Number: "number",
+    keys.Whole: "whole number",
+}
+"""What values of kinds without a choice are called; all others are text."""
 
 
 def key_table(of: type[keys.Frozen]) -> str:
@@ -233,10 +242,9 @@ def words_of(kind: keys.Kind) -> str:
     if isinstance(kind, keys.Text) and (names := kind.names or kind.suggested):
         *most, last = (f'`"{name}"`' for name in names)
         return f"{', '.join(most)} or {last}"
-    other = {keys.Text: "text", keys.File: "file", keys.Flag: "true or false", keys.Whole: "whole number",
-             keys.Number: "number", keys.Direction: "angle, or vector", keys.Anything: "value"}  # fmt: skip
-    point = "place" if isinstance(kind, keys.Point) and kind.space else "point"
-    return point if isinstance(kind, keys.Point) else other.get(type(kind), "text")
+    if isinstance(kind, keys.Point):
+        return "place" if kind.space else "point"
+    return WORDS.get(type(kind), "text")
 
 
 def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes) -> str:
@@ -248,9 +256,9 @@ def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes
         return f"{count} {_plural(item)}"
     if isinstance(kind, keys.Named):
         return f"{item if item[0] == '`' else _plural(item)} by name"
-    return (
-        f"{item}, or {_COUNTS[kind.size]}" if isinstance(kind, keys.OneOr) else f"{item}, in planes"
-    )
+    if isinstance(kind, keys.OneOr):
+        return f"{item}, or {_COUNTS[kind.size]}"
+    return f"{item}, in planes"
 
 
 def _plural(words: str) -> str:
