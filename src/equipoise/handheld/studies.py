@@ -132,8 +132,9 @@ def without_damping(tool: Tool) -> Tool:
     stations = []
     for one in tool.stations:
         hand = None if one.hand is None or one.hand.impedance else one.hand
-        parts = {"absorber": one.absorber, "harness": one.harness, "hand": hand}
-        still = {name: part and replace(part, damping=NOTHING) for name, part in parts.items()}
-        stations.append(replace(one, damping=NOTHING, rotational_damping=NOTHING, **still))
+        parts: dict[str, Any] = {"absorber": one.absorber, "harness": one.harness, "hand": hand}
+        for name, part in parts.items():
+            parts[name] = part and replace(part, damping=NOTHING)
+        stations.append(replace(one, damping=NOTHING, rotational_damping=NOTHING, **parts))
     shaft = replace(tool.shaft, loss_factor=0.0)
     return replace(tool, shaft=shaft, stations=tuple(stations), design=None)
