@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import measured
 from surface.running import cells, changed, command, equipoise, massless, read, refuses, succeeded
 
 CRANK = ("yamashita-1", "--crank-counterweight")
