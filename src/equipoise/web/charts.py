@@ -1,7 +1,7 @@
 """Charts that a page draws without being asked: of each what can be chosen, with label and unit.
 
-A chart names arrays of its message.  Those over the crank angle run over a cycle of as many turns as
-the machine repeats in; those by order have a number for each of the message's orders.
+A chart names arrays of its message.  Those over the crank angle run over a cycle of the machine;
+those by order have a number for each of the message's orders.
 """
 
 from __future__ import annotations

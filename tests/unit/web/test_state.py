@@ -114,7 +114,7 @@ def test_numbers_are_written_as_everywhere() -> None:
 
 def test_charts_are_those_of_the_outputs() -> None:
     """Every chart draws arrays that are there, with label and unit of the output that it shows."""
-    session, shown = opened("four-row-transplanter")
+    _, shown = opened("four-row-transplanter")
     outputs = {one["name"]: one for one in shown.content["outputs"]}
     drawn = {}
     for chart in shown.content["charts"]:
