@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     import numpy as np
 
     from equipoise.figures import Picture
-    from equipoise.schema.study_units import Unit
+    from equipoise.studies.blocks import Unit
     from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study

@@ -18,8 +18,7 @@ from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.figures import Picture
-    from equipoise.schema.study_units import Unit
-    from equipoise.studies.blocks import Summary
+    from equipoise.studies.blocks import Summary, Unit
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
 
