@@ -294,7 +294,7 @@ def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -
 
 
 def _write(out: str | os.PathLike[str], data: bytes) -> None:
-    from equipoise.schema.output import write_all
+    from equipoise.schema.files import write_all
 
     write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
 
