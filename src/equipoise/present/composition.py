@@ -261,7 +261,7 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
 
 def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -> None:
     """Write a document as each of these files."""
-    from equipoise.schema.output import write_all
+    from equipoise.schema.files import write_all
 
     for out in outs:
         data = pdf(document) if kind_of(out) == "pdf" else page(document).encode()

@@ -1,15 +1,35 @@
-"""From values that have been read to the objects that they make, from the inside out."""
+"""Places in a file, what is wrong there, and from what is read to the objects that it makes."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from json import dumps as quoted
 from typing import Any
 
 from equipoise.errors import ModelError
 from equipoise.keys import File, Frozen, keys_of
 from equipoise.quantities import described
-from equipoise.schema.places import Place, written_place
+
+Place = tuple[str | int, ...]
+"""Keys, and numbers in lists from 0."""
+LONGEST_KEY = 60
+
+
+def written_key(name: str) -> str:
+    """Return a key as it stands in TOML, cut where it is endless."""
+    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
+
+
+def written_place(place: Iterable[str | int]) -> str:
+    """Dotted path with numbers from 1, as the machine's own checks write it."""
+    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
+    return text.removeprefix(".")
+
+
+# -- what has been read ---
 
 WRONG = object()
 """Instead of a value that could not be read."""

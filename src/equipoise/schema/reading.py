@@ -40,8 +40,8 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, parse
-from equipoise.schema.objects import WRONG, Context, NamedFile, Values, made
-from equipoise.schema.places import Place, Polar, written_place
+from equipoise.schema.numbers import Polar
+from equipoise.schema.objects import WRONG, Context, NamedFile, Place, Values, made, written_place
 
 
 def read_table(

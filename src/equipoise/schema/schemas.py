@@ -32,8 +32,8 @@ from equipoise.keys import (
     keys_of,
 )
 from equipoise.quantities import KINDS, Dimension, pattern
+from equipoise.schema.numbers import Polar
 from equipoise.schema.opening import FileKind, document_of
-from equipoise.schema.places import Polar
 from equipoise.schema.writing import plain_default, value_text
 
 Schema = dict[str, Any]

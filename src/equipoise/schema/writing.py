@@ -32,7 +32,8 @@ from equipoise.keys import (
     keys_of,
 )
 from equipoise.quantities import format_exact
-from equipoise.schema.places import Place, written_place, written_point
+from equipoise.schema.numbers import written_point
+from equipoise.schema.objects import Place, written_place
 
 Namer = Callable[[str, str, Any], str]
 """Name of the file for the key at a place: takes the place, its sort and what lies in it."""

@@ -15,7 +15,7 @@ from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
 from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.selection import far_apart
+from equipoise.studies.outcomes import far_apart
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make, Output, Spread

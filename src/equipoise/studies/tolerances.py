@@ -18,8 +18,7 @@ from equipoise.codegen.figures import COMPUTED
 from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept
-from equipoise.studies.selection import why_none
+from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
     Effect,
