@@ -1,10 +1,10 @@
 """The support as a rigid body on mounts: small motion, rest, and points that turn with it.
 
-Small motion has six coordinates: displacement of the reference point along x, y, z and rotation about x, y, z, in
-the order of `FREEDOMS`.  A force f at a point b is the generalized force (f, (b - r) x f); a
-displacement along n of that point is read by the row (n, (b - r) x n).  How the support can move
-picks coordinates out of the six at the very end.  Points of a planar support turn with it, by no
-small angle; there places and rates are arrays (3, ...) along surge, heave and pitch.
+Small motion has six coordinates: displacement of the reference point along x, y, z and rotation
+about x, y, z, in the order of `FREEDOMS`.  A force f at a point b is the generalized force
+(f, (b - r) x f); a displacement along n of that point is read by the row (n, (b - r) x n).  How the
+support can move picks coordinates out of the six at the very end.  Points of a planar support turn
+with it, by no small angle; there places and rates are arrays (3, ...) along surge, heave and pitch.
 """
 
 from __future__ import annotations

@@ -57,15 +57,17 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
 
     Those whose order the linkages do not excite in that mode are left out.
     """
-    found = []
+    found: list[tuple[float, float, int, Mode]] = []
     low, high = sorted((abs(slowest), abs(fastest)))
     orders = linear.wrench(high).orders[1:]
     for number, mode in enumerate(linear.modes, 1):
         rate = mode.natural_frequency
         # The ends belong to the range, whatever rounding says.
         inside = (rate >= orders * low * (1 - 1e-12)) & (rate <= orders * high * (1 + 1e-12))
-        for order in map(float, orders[inside & mode.swings]):
-            found.append((copysign(rate / order, fastest), order, number, mode))
+        found += [
+            (copysign(rate / order, fastest), order, number, mode)
+            for order in map(float, orders[inside & mode.swings])
+        ]
     loud = _loudness(linear, found)
     return sorted(
         (
