@@ -15,7 +15,6 @@ from equipoise.mechanism.model import Machine
 from equipoise.quantities import format_exact, parse
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
-from equipoise.schema.objects import Context
 from equipoise.schema.opening import (
     Folder,
     Opened,
@@ -25,7 +24,7 @@ from equipoise.schema.opening import (
     opened,
     opened_example,
 )
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.writing import Writer, beside, toml_text
 
 if TYPE_CHECKING:

@@ -12,7 +12,6 @@ from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact, parse
 from equipoise.quantities.reading import described
 from equipoise.schema.numbers import read_number
-from equipoise.schema.objects import Context
 from equipoise.schema.opening import (
     Opened,
     bundled,
@@ -22,7 +21,7 @@ from equipoise.schema.opening import (
     opened_example,
     toml_content,
 )
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.study_keys import (
     SPREADS,
     AccuracyTable,

@@ -29,9 +29,8 @@ from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal, dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
-from equipoise.schema.objects import Context
 from equipoise.schema.opening import in_file, toml_content
-from equipoise.schema.reading import read_table
+from equipoise.schema.reading import Context, read_table
 
 Quantity = str | float
 VALUE = Anything()

@@ -23,8 +23,8 @@ from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
 from equipoise.schema.models import Beside, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
-from equipoise.schema.objects import Place, written_place
 from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
+from equipoise.schema.reading import Place, written_place
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
