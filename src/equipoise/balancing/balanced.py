@@ -7,21 +7,19 @@ from dataclasses import asdict, dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
-from equipoise.balancing.design_variables import Bound, Change
+from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
 from equipoise.balancing.geared import geared_range
-from equipoise.balancing.measures import unit_of
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
-from equipoise.i18n import Note, to_say
+from equipoise.balancing.workshop import Change
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 
 @dataclass(frozen=True)
@@ -195,13 +193,13 @@ def _scope(found: Solution) -> tuple[Note, ...]:
     problem, told = found.problem, []
     pairs = zip(problem.parts, found.numbers, strict=True)
     if problem.reads_gauges and problem.supports_more:
-        told.append(Note(to_say("for small changes about it")))
+        told.append(Note("for small changes about it"))
     if any(part.stopped(own) for part, own in pairs):
-        told.append(Note(to_say("within where it was stopped")))
+        told.append(Note("within where it was stopped"))
     if problem.flips:
-        told.append(Note(to_say("for the flanks of gears in contact here")))
+        told.append(Note("for the flanks of gears in contact here"))
     if any(geared_range(geared) for geared in problem.plan.geared):
-        told.append(Note(to_say("for each of the gears tried")))
+        told.append(Note("for each of the gears tried"))
     return tuple(told)
 
 
@@ -249,38 +247,24 @@ def _notes(found: Solution) -> Iterator[Note]:
     """What a reader has to know."""
     problem, rows = found.problem, len(found.problem.machine.rows)
     if problem.machine.drive.acceleration:
-        yield Note(
-            to_say("the drive's acceleration is left out: the crank is taken as turning steadily")
-        )
+        yield Note("the drive's acceleration is left out: the crank is taken as turning steadily")
     if problem.reads_gauges and problem.supports_more:
-        yield (
-            Note(
-                to_say(
-                    "added mass makes the support heavier, which bends what is linear "
-                    "otherwise: the bound is that of small changes about this result"
-                )
-            )
+        yield Note(
+            "added mass makes the support heavier, which bends what is linear "
+            "otherwise: the bound is that of small changes about this result"
         )
     pairs = zip(problem.parts, found.numbers, strict=True)
     yield from filter(None, (part.stopped(own) for part, own in pairs))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
-        yield Note(to_say("masses are those of one row; the machine has {rows}"), rows=rows)
+        yield Note("masses are those of one row; the machine has {rows}", rows=rows)
     if found.ties > 1:
-        yield (
-            Note(
-                to_say(
-                    "{count} of the ratios tried are as good, and the lightest was taken;"
-                    " drive and joints may tell them apart: give them a limit"
-                ),
-                count=found.ties,
-            )
+        yield Note(
+            "{count} of the ratios tried are as good, and the lightest was taken;"
+            " drive and joints may tell them apart: give them a limit",
+            count=found.ties,
         )
     if found.best.nodes >= 1 and found.best.value - found.best.bound > 1e-7:
-        yield (
-            Note(
-                to_say(
-                    "the search ended before it had proved that nothing better exists; "
-                    "the gap tells how far it came"
-                )
-            )
+        yield Note(
+            "the search ended before it had proved that nothing better exists; "
+            "the gap tells how far it came"
         )

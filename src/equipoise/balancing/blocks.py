@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.balancing.measures import unit_of as si_unit
-from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.patterns import Pattern, arranged, patterns_for
-from equipoise.balancing.phase_cost import Term
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import Objective

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from math import isclose, sqrt
-from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.effects import ANGLES
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import measured
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
@@ -16,8 +15,7 @@ from equipoise.mechanism.motion import move
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 GONE = 1e-9
 """Share of a figure before below which it is rounding."""
@@ -59,8 +57,7 @@ def _of_rows(machine: Machine) -> dict[str, float]:
     """Figures of all rows together, where there are several."""
     if len(machine.rows) < 2:
         return {}
-    from equipoise.balancing.multi_row import Rows
-    from equipoise.balancing.phase_cost import Term
+    from equipoise.balancing.multi_row import Rows, Term
 
     rows, phases = Rows(machine), np.array([row.phase for row in machine.rows])
     figures = {}

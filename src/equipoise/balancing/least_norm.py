@@ -18,8 +18,7 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MET = 1e-9
 """Share of a condition's largest term that may be left of it."""

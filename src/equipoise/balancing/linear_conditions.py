@@ -27,9 +27,8 @@ from equipoise.mechanism.parameters import (
     regressor,
 )
 from equipoise.results.result import Result
-from equipoise.signals import harmonics
+from equipoise.signals import Array, harmonics
 
-Array = np.ndarray[Any, Any]
 Kind = Literal["zero", "sine"]
 
 KINDS: tuple[Kind, ...] = ("zero", "sine")

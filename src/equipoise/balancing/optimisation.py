@@ -12,22 +12,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from math import inf
-from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced, result_of
-from equipoise.balancing.design_variables import Change
 from equipoise.balancing.geared import Gearing, Mesh, with_shafts
 from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
 Progress = Callable[[int, int], None]
@@ -118,9 +118,6 @@ def reach_of(machine: Machine, link: str) -> float:
     points = machine.links[link].points
     center = complex(*points[pin_of(machine, link)])
     return max(abs(complex(*point) - center) for point in points.values()) or SMALLEST
-
-
-Array = np.ndarray[Any, Any]
 
 
 LARGE = 1e300
@@ -264,10 +261,8 @@ def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> Non
 
 
 ROWS_AFTER_LINKAGE = Note(
-    to_say(
-        "the linkage was balanced first and its rows were turned after it; both together "
-        "might do better"
-    )
+    "the linkage was balanced first and its rows were turned after it; both together "
+    "might do better"
 )
 
 
@@ -305,10 +300,7 @@ def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Ph
         cost=float(search.cost.of([after[name] for name in before])),
         bound=None,
         method=Note(
-            to_say(
-                "{count} arrangements of the rows on a grid of {step} deg, the best of them "
-                "polished"
-            ),
+            "{count} arrangements of the rows on a grid of {step} deg, the best of them polished",
             count=phasing.combinations,
             step=f"{np.degrees(phasing.step):.4g}",
         ),

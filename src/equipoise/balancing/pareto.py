@@ -12,15 +12,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.measures import unit_of
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 
 POINTS = 21

@@ -23,8 +23,8 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Fractions = tuple[tuple[int, int], ...]
 
 ROUNDING = 1e-9

@@ -21,8 +21,7 @@ from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.mechanism.tip import roots
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 CHANGES = ("mass", "center_x", "center_y", "inertia")
 """Mass at a fixed centre of mass, kg; that centre at a fixed mass, m; inertia about it, kg m2."""
