@@ -23,8 +23,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.dynamics import JointForce, SliderForce
 from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.signals import Periodic
 

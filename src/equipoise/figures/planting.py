@@ -23,7 +23,8 @@ from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.dynamics import Forces, JointForce
+    from equipoise.mechanism.dynamics import Forces
+    from equipoise.mechanism.reactions import JointForce
     from equipoise.planting.summary import PlantingFigures
 
 Extremes = Sequence[tuple[float, float]]

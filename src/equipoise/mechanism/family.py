@@ -26,10 +26,9 @@ from equipoise.keys import changed
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
-from equipoise.mechanism.steps import Call, State, Step, p, planar, run, u
+from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u
 from equipoise.quantities.units import HUGE, TINY
 
-Array = np.ndarray[Any, Any]
 Triple = tuple[Array, Array, Array]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
@@ -112,43 +112,25 @@ def _check_mobility(joints: Structure, drive: str) -> None:
         f"{_number(len(links), 'moving link')}, {_number(pins, 'pin')}, "
         f"{_number(len(joints.sliders), 'sliding joint')} and {_number(len(joints.gears), 'gear')}"
     )
+    known = [FRAME, drive]
+    others = [link for link in links if link != drive]
     if mobility < 1:
-        locked = _locked(joints, drive)
+        held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
+        locked = next(held, (drive,))
         raise MobilityError(
             f"the linkage has no free motion (count {mobility}: {count}); "
             f"too many joints hold {_names(locked)}"
         )
-    free = _undetermined(joints, drive)
+    while others:
+        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
+        if not (group := next(found, ())):
+            break
+        known += group
+        others = [link for link in others if link not in group]
     raise MobilityError(
         f"the linkage has {mobility} free motions ({count}), and one drive can command only one; "
-        f"the drive leaves {_names(free)} undetermined"
+        f"the drive leaves {_names(others)} undetermined"
     )
-
-
-def _locked(joints: Structure, drive: str) -> list[str]:
-    """Find the smallest set of neighbouring links that is held by too many joints."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
-    for group in subsets(joints, others):
-        if joints.freedom(group, known) < 0:
-            return list(group)
-    return [drive]
-
-
-def _undetermined(joints: Structure, drive: str) -> list[str]:
-    """Find the links that stay free when all that the drive determines is determined."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
-    settled = True
-    while settled:
-        settled = False
-        for group in subsets(joints, others):
-            if joints.freedom(group, known) <= 0:
-                known += group
-                others = [link for link in others if link not in group]
-                settled = True
-                break
-    return others
 
 
 def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
@@ -184,7 +166,7 @@ def _number(count: int, word: str) -> str:
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
-def _names(links: list[str]) -> str:
+def _names(links: Sequence[str]) -> str:
     if len(links) < 2:
         return "".join(repr(link) for link in links) or "the drive link"
     return f"{', '.join(repr(link) for link in links[:-1])} and {links[-1]!r}"

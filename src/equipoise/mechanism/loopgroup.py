@@ -16,7 +16,6 @@ from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import Gear, Position, Slider
 from equipoise.mechanism.newton import (
-    Array,
     End,
     GearLoop,
     Loop,
@@ -28,6 +27,7 @@ from equipoise.mechanism.newton import (
     StartAngle,
 )
 from equipoise.mechanism.steps import (
+    Array,
     Builder,
     Group,
     Reaction,

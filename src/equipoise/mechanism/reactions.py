@@ -22,10 +22,9 @@ from equipoise.mechanism.field import Soil
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import FRAME, Load, LoadTable
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.steps import Call, Reaction, State, Step, run
+from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
 
-Array = np.ndarray[Any, Any]
 Demand = tuple[Any, Any]
 """Force (complex) and moment about a link's anchor, each (..., N) or the same at all angles."""
 

@@ -19,10 +19,9 @@ from equipoise.mechanism.family import Family, Triple, column
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.steps import State
+from equipoise.mechanism.steps import Array, State
 from equipoise.signals import EQUAL, highest_at
 
-Array = np.ndarray[Any, Any]
 Signal = Callable[[Array], Any]
 
 CLOSE = 1e-14

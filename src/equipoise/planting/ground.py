@@ -14,8 +14,7 @@ import numpy as np
 from equipoise.mechanism import kernels
 from equipoise.mechanism.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 STILL = 1e-9
 """Rate of the path, over its largest, at which the tip counts as standing still over ground."""

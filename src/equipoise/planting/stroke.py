@@ -11,9 +11,8 @@ from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.family import column
 from equipoise.mechanism.tip import TipCurve, crossings, roots
-from equipoise.signals import EQUAL, highest_at, within_period
+from equipoise.signals import EQUAL, Array, highest_at, within_period
 
-Array = np.ndarray[Any, Any]
 Figures = dict[str, Array]
 """Figures by dotted name; (P,), one value for each machine."""
 

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.quantities import Dimension, angle
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
