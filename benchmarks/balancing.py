@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 import equipoise as eq
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import measured
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import closed_form
 from timing import in_turn, report

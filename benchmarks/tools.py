@@ -37,10 +37,9 @@ from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.section import Tube
-from equipoise.handheld.shaft import Shaft
+from equipoise.handheld.shaft import Shaft, Tube
 from equipoise.handheld.studies import changed
-from equipoise.handheld.transmission import transmit
+from equipoise.handheld.sweep import transmit
 from timing import in_turn, report
 
 try:

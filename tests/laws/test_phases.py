@@ -15,7 +15,7 @@ import pytest
 from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
-from equipoise.balancing.phase_cost import Combine
+from equipoise.balancing.multi_row import Combine
 from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.rows_in_time import in_time, measured, side_by_side, value_of

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.phase_cost import Term, Tops
+from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.phase_grid import Grid
+from equipoise.balancing.phase_polish import Tops, square_with_slopes
 from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
 from equipoise.vibration.forced import respond, usual_step
@@ -157,9 +157,9 @@ def test_second_derivatives_by_phase() -> None:
     wish = Objective("shaking_force")
     term = Term(wish, Rows(machine).signals(wish))
     phases = np.array([row.phase for row in machine.rows])
-    _, gradient, second = term.square_with_slopes(phases)
+    _, gradient, second = square_with_slopes(term, phases)
     for k, direction in enumerate(np.eye(4) * 1e-5):
-        ahead, behind = (term.square_with_slopes(phases + s * direction) for s in (1, -1))
+        ahead, behind = (square_with_slopes(term, phases + s * direction) for s in (1, -1))
         scale = term.single**2
         assert (ahead[0] - behind[0]) / 2e-5 == pytest.approx(gradient[k], abs=1e-7 * scale)
         assert (ahead[1] - behind[1]) / 2e-5 == pytest.approx(second[k], abs=1e-7 * scale)

@@ -12,12 +12,11 @@ import numpy as np
 import pytest
 
 from equipoise.handheld.frequencies import natural_frequencies
+from equipoise.handheld.layout import Line
 from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.section import Section, Theory
-from equipoise.handheld.shaft import Segment
-from equipoise.handheld.shapes import Line
+from equipoise.handheld.shaft import Section, Segment, Theory
 from equipoise.keys import Planes, Quantity, keys_of
 from unit.handheld.samples import THEORIES, bare, both, pieces_of, random_tool, still
 

@@ -10,8 +10,8 @@ HVM200, Table 3.1 (of the edition of 2005); Tables 1, 4, 5 and B.6 in the test d
 with each other and with Table A.2 of ISO 5349-1.
 
 Tolerances: the factors to the last of four printed digits.  Signals: those of Table 5, which is the
-point.  Two claims of `equipoise.exposure.signal` are measured besides: a steady sine is read to 1 %
-from one second, and to 0.1 % from eight.
+point.  Two claims of `equipoise.exposure.spectra` are measured besides: a steady sine is read to
+1 % from one second, and to 0.1 % from eight.
 """
 
 from __future__ import annotations
@@ -21,8 +21,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.exposure.signal import LEAST_DURATION, LEAST_RATE, WHOLE_RATE
-from equipoise.exposure.spectra import weigh_signal
+from equipoise.exposure.spectra import LEAST_DURATION, LEAST_RATE, WHOLE_RATE, weigh_signal
 from equipoise.exposure.weighting import factor, weighting
 
 DESIGN_GOAL = {

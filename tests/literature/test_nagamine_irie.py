@@ -29,7 +29,7 @@ from equipoise.handheld.model import Excitation, Hand, Harness, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import changed, determinant_chart, vary_tool
-from equipoise.handheld.transmission import transmit
+from equipoise.handheld.sweep import transmit
 from equipoise.schema.models import load_tool
 
 KGF = 9.80665

@@ -20,7 +20,7 @@ from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Hand, Impedance, Tool
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
-from equipoise.handheld.section import Theory
+from equipoise.handheld.shaft import Theory
 from support.beam_reference import Response
 from unit.handheld.samples import THEORIES, attached_of, random_tool, reference, still
 

@@ -8,8 +8,7 @@ from math import pi
 import numpy as np
 
 import equipoise as eq
-from equipoise.balancing.multi_row import Rows
-from equipoise.balancing.phase_cost import Term
+from equipoise.balancing.multi_row import Rows, Term
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
 from unit.vibration.build import Array

@@ -3,58 +3,30 @@
 from __future__ import annotations
 
 import io
+import json
 import os
+import re
+import shlex
+import signal
 import subprocess
 import sys
+import time
 import tomllib
-from contextlib import redirect_stderr, redirect_stdout
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 from unittest import mock
 
+import pytest
+
+import equipoise as eq
 from equipoise.cli import run
 
-EXAMPLES = (
-    "balance-coupler",
-    "balance-crank",
-    "balance-geared-a",
-    "balance-geared-b",
-    "balance-geared-c",
-    "balance-rig",
-    "balance-shafts",
-    "balance-spring",
-    "brush-cutter-engine",
-    "class-three",
-    "drag-link",
-    "exudyn-slider-crank",
-    "four-row-transplanter",
-    "geared-counterweight",
-    "kim-chung-a",
-    "kim-chung-b",
-    "kim-chung-c",
-    "lee-kim-a",
-    "lee-kim-b",
-    "lee-kim-c",
-    "planetary-planting-arm",
-    "quick-return",
-    "riding-transplanter",
-    "scotch-yoke",
-    "slider-crank-engine",
-    "spring-balanced-crank",
-    "stephenson-six-bar",
-    "transplanter",
-    "walking-transplanter",
-    "watt-six-bar",
-    "yamashita-1",
-    "yamashita-2",
-    "yamashita-rig",
-    "yamashita-rig-counterweight",
-)
-TOOLS = ("brush-cutter", "nagamine-irie", "pole-saw")
-STUDIES = ("study-of-balance", "study-of-lengths", "study-of-tolerances")
-"""Bundled files of tools and studies; those above are of linkages."""
+EXAMPLES, TOOLS, STUDIES = (tuple(eq.examples(kind)) for kind in ("linkage", "tool", "study"))
+"""Bundled files."""
 
 WIDE = 400
 """Signs in a line of the terminal: values and words are asserted on, not where lines break."""
@@ -100,14 +72,6 @@ def process(*arguments: str | Path, **options: Any) -> Result:
     return Result(done.returncode, done.stdout or "", done.stderr or "")
 
 
-def told(*arguments: str) -> Result:
-    """Run a command that tells its help, on a terminal of 80 signs.
-
-    In a process of its own: within this one help is as wide as the first that was told here.
-    """
-    return process(*arguments, env={**os.environ, "COLUMNS": "80"})
-
-
 def succeeded(result: Result) -> str:
     """Return the output of a command that has to succeed."""
     assert result.status == 0, result.err
@@ -126,6 +90,29 @@ def refused(result: Result) -> str:
     return line.removeprefix("equipoise: ")
 
 
+def no_constant(text: str) -> None:
+    raise AssertionError(f"{text} is not JSON")
+
+
+def read(*words: str | Path) -> dict[str, Any]:
+    """Return what a command prints with --json, which is one line and nothing else."""
+    result = equipoise(*words, "--json")
+    assert result.err == ""
+    assert result.out.count("\n") == 1
+    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
+
+
+def cells(text: str, label: str) -> list[str]:
+    """What stands in the first row with this label, behind which a unit may stand."""
+    begin = re.compile(rf"{re.escape(label)}(, \S+( \S+)*?)?  +")
+    rows = ((begin.match(line), line.rstrip()) for line in text.splitlines())
+    row = next(line[label.end() :] for label, line in rows if label)
+    return re.split(r"  +", re.sub(r" at (?=[-0-9])", "  ", row))
+
+
+# -- files -----------------------------------------------------------------------------------------
+
+
 def example_text(name: str) -> str:
     """Return the text of a bundled model file."""
     return files("equipoise").joinpath("examples", f"{name}.toml").read_text(encoding="utf-8")
@@ -136,9 +123,94 @@ def example(name: str) -> dict[str, Any]:
     return tomllib.loads(example_text(name))
 
 
-def model(old: str = "", new: str = "", name: str = "model.toml") -> Path:
-    """Mechanism A of Kim and Chung as a file here, with one piece of text replaced."""
-    text = example_text("kim-chung-a")
-    assert old in text
-    Path(name).write_text(text.replace(old, new) if old else text, encoding="utf-8")
-    return Path(name)
+def massless(name: str = "yamashita-1") -> str:
+    """Return the text of a bundled linkage without masses."""
+    return re.sub(r"(?m)^(mass|center_of_mass|inertia) = .*\n", "", example_text(name))
+
+
+def replaced(text: str, *pairs: tuple[str, str]) -> str:
+    """Return a text with pieces of it replaced, each of which has to be there."""
+    for old, new in pairs:
+        assert old in text, f"{old!r} is not there"
+        text = text.replace(old, new)
+    return text
+
+
+def written(text: str, *pairs: tuple[str, str], to: str = "model.toml") -> str:
+    """Write a text with pieces of it replaced into a file here, and return the file's name."""
+    Path(to).write_text(replaced(text, *pairs), encoding="utf-8")
+    return to
+
+
+def changed(name: str, *pairs: tuple[str, str], to: str = "model.toml") -> str:
+    """Write a bundled file with pieces of it replaced, and return the name of the copy."""
+    return written(example_text(name), *pairs, to=to)
+
+
+# -- what is refused -------------------------------------------------------------------------------
+
+
+def command_lines(table: dict[str, dict[str, str]]) -> pytest.MarkDecorator:
+    """Try every command line of a table, begin: {rest: what is said}, in a test of its own."""
+    lines = [
+        (f"{begin} {rest}", said) for begin, part in table.items() for rest, said in part.items()
+    ]
+    return pytest.mark.parametrize(("line", "said"), lines, ids=[line[:99] for line, _ in lines])
+
+
+def refuses(line: str, said: str) -> str:
+    """Return the one sentence that a command line is answered with; it writes nothing."""
+    before = sorted(Path().iterdir())
+    sentence = refused(equipoise(*shlex.split(line)))
+    assert said in sentence
+    assert sorted(Path().iterdir()) == before
+    return sentence
+
+
+@contextmanager
+def within(seconds: float) -> Iterator[None]:
+    """Fail where something takes more of the processor's time, or ten times that on the clock."""
+
+    def late(*_: object) -> None:
+        raise TimeoutError(f"not done within {seconds} s")
+
+    timers = {signal.ITIMER_PROF: signal.SIGPROF, signal.ITIMER_REAL: signal.SIGALRM}
+    before = {name: signal.signal(name, late) for name in timers.values()}
+    signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.setitimer(signal.ITIMER_REAL, 10 * seconds)
+    try:
+        yield
+    finally:
+        for timer, name in timers.items():
+            signal.setitimer(timer, 0)
+            signal.signal(name, before[name])
+
+
+def interrupted(words: list[str], ready: Callable[[], bool] | str | float) -> Result:
+    """Run a process and interrupt it once it is ready: after a line, a sign, or so many seconds."""
+    pipe = subprocess.PIPE
+    with subprocess.Popen(
+        words,
+        stdout=pipe,
+        stderr=pipe,
+        encoding="utf-8",
+        preexec_fn=heed_interrupts,  # noqa: PLW1509
+    ) as child:
+        assert child.stdout is not None
+        if isinstance(ready, str):
+            assert child.stdout.readline() == ready
+        elif callable(ready):
+            end = time.monotonic() + 60
+            while not ready() and time.monotonic() < end:
+                time.sleep(0.05)
+        else:
+            time.sleep(ready)
+        assert child.poll() is None
+        child.send_signal(signal.SIGINT)
+        out, err = child.communicate(timeout=60)
+    return Result(child.returncode, out, err)
+
+
+def heed_interrupts() -> None:
+    """A shell that runs the tests in the background makes them and their children ignore it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

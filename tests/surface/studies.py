@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pathlib import Path
+from surface import running
 
 LENGTHS = """
 schema = 1
@@ -68,8 +68,6 @@ at_most = "23.5 N"
 """
 
 
-def written(text: str, old: str = "", new: str = "", name: str = "study.toml") -> str:
-    """Name of a study file here, with one piece of text replaced."""
-    assert old in text
-    Path(name).write_text(text.replace(old, new, 1) if old else text, encoding="utf-8")
-    return name
+def written(text: str, *pairs: tuple[str, str], name: str = "study.toml") -> str:
+    """Name of a study file here, with pieces of its text replaced."""
+    return running.written(text, *pairs, to=name)

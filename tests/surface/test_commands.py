@@ -5,8 +5,13 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
 import re
 import subprocess
+import sys
+import tomllib
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +25,19 @@ from surface.running import (
     READY,
     STUDIES,
     TOOLS,
+    changed,
     command,
     equipoise,
     example,
     example_text,
+    massless,
     process,
+    read,
     refused,
+    refuses,
+    replaced,
     succeeded,
-    told,
+    written,
 )
 
 ROOT = Path(__file__).parents[2]
@@ -38,42 +48,42 @@ COMMANDS = (
 )
 LINK_KEYS = ["angle", "angular_velocity", "angular_acceleration"]
 POINT_KEYS = ["x", "y", "vx", "vy", "ax", "ay"]
-MASSES = re.compile(r"^(mass|center_of_mass|inertia) = .*\n", re.MULTILINE)
-
-
-def no_constant(text: str) -> None:
-    raise AssertionError(f"{text} is not JSON")
 
 
 def analyzed(*arguments: str | Path) -> dict[str, Any]:
-    """Return what `equipoise analyze ... --json` prints, and check that it prints only that."""
-    result = equipoise("analyze", *arguments, "--json")
-    assert result.err == ""
-    content = json.loads(succeeded(result), parse_constant=no_constant)
-    assert result.out.count("\n") == 1
-    return content  # type: ignore[no-any-return]
-
-
-@pytest.fixture
-def massless(tmp_path: Path) -> Path:
-    """A model file without masses."""
-    path = tmp_path / "massless.toml"
-    path.write_text(MASSES.sub("", example_text("yamashita-1")), encoding="utf-8")
-    return path
+    return read("analyze", *arguments)
 
 
 # -- in general ------------------------------------------------------------------------------------
 
 
-def test_version() -> None:
-    result = process("--version")
-    assert (result.status, result.out, result.err) == (0, f"{package.__version__}\n", "")
+HELPS = """
+import sys
+from equipoise.cli import run
+for name in sys.argv[1].split(","):
+    run(name.split())
+    print("=====")
+"""
 
 
-def test_help_names_every_command() -> None:
-    for result in (told("--help"), told("-h"), told()):
-        listed = re.findall(r"^[│|] ([a-z]+) ", succeeded(result), re.MULTILINE)
-        assert sorted(listed) == sorted(COMMANDS)
+@cache
+def helps() -> dict[str, str]:
+    """What all commands tell of themselves, on a terminal of 80 signs.
+
+    In a process of its own: within this one help is as wide as the first that was told here.
+    """
+    asked = [*(f"{name} --help" for name in OPTIONS), "--help", "-h", ""]
+    words = [sys.executable, "-c", HELPS, ",".join(asked)]
+    environment = {**os.environ, "COLUMNS": "80"}
+    done = subprocess.run(words, capture_output=True, env=environment, check=True)
+    assert done.stderr == b""
+    return dict(zip(asked, done.stdout.decode().split("=====\n"), strict=False))
+
+
+@pytest.mark.parametrize("asked", ["--help", "-h", ""])
+def test_help_names_every_command(asked: str) -> None:
+    listed = re.findall(r"^[│|] ([a-z]+) ", helps()[asked], re.MULTILINE)
+    assert sorted(listed) == sorted(COMMANDS)
 
 
 DRAWN = ["--json", "--plot", "--format"]
@@ -140,7 +150,7 @@ OPTIONS = {
 
 @pytest.mark.parametrize("name", OPTIONS)
 def test_help_of_a_command_tells_each_option(name: str) -> None:
-    text = succeeded(told(*name.split(), "--help"))
+    text = helps()[f"{name} --help"]
     assert text.startswith(f"Usage: equipoise {name}")
     shown = re.findall(r"^[│|] \*? *([A-Z]+|--[a-z-]+) +\S", text, re.MULTILINE)
     assert shown == OPTIONS[name]
@@ -167,6 +177,8 @@ def test_examples_are_listed_with_their_titles() -> None:
     lines = succeeded(equipoise("examples")).splitlines()
     listed = dict(line.split(maxsplit=1) for line in lines)
     assert listed == {name: example(name)["title"] for name in (*EXAMPLES, *TOOLS, *STUDIES)}
+    there = (file.name for file in files("equipoise").joinpath("examples").iterdir())
+    assert {f"{name}.toml" for name in listed} == {name for name in there if "toml" in name}
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -184,15 +196,8 @@ def test_check_tells_the_build_up() -> None:
     assert "geared" in succeeded(equipoise("check", "geared-counterweight"))
 
 
-def test_check_of_a_model_without_masses(massless: Path) -> None:
-    assert re.search(r"^note: .*mass", succeeded(equipoise("check", massless)), re.MULTILINE)
-
-
-def test_a_file_beats_the_example_of_its_name(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    Path("yamashita-1").write_text(example_text("quick-return"), encoding="utf-8")
+def test_a_file_beats_the_example_of_its_name() -> None:
+    changed("quick-return", to="yamashita-1")
     assert succeeded(equipoise("check", "yamashita-1")).startswith("Quick-return")
 
 
@@ -212,41 +217,68 @@ def test_tables_of_an_example(name: str) -> None:
     assert result.err == ""
 
 
-def test_tables_of_a_model_without_masses(massless: Path) -> None:
-    text = succeeded(equipoise("analyze", massless))
-    assert re.search(r"^coupler ", text, re.MULTILINE)
+@pytest.mark.parametrize("name", ["check", "analyze"])
+def test_a_model_without_masses_is_told_of(name: str) -> None:
+    text = succeeded(equipoise(name, written(massless())))
+    assert re.search(r"^ *coupler[ :]", text, re.MULTILINE)
     assert re.search(r"^note: .*mass", text, re.MULTILINE)
     assert "shaking force" not in text
 
 
-def test_a_process_prints_the_same_as_a_call() -> None:
-    result = process("analyze", "yamashita-1")
-    assert result.err == ""
-    assert result.out == equipoise("analyze", "yamashita-1").out
+PROCESSES = {
+    "tables": ("analyze", "yamashita-1"),
+    "JSON": ("respond", "yamashita-rig", "--json"),
+    "wrong": ("balance", "yamashita-1", "--spead", "5 rpm"),
+    "version": ("--version",),
+}
 
 
-def test_markup_in_names_is_shown_as_it_stands(tmp_path: Path) -> None:
-    path = tmp_path / "model.toml"
-    text = example_text("yamashita-1").replace("links.coupler", "links.'[bold]coupler[/]'")
-    path.write_text(text.replace("Planting", "[red]Planting"), encoding="utf-8")
-    for name in ("check", "analyze"):
-        text = succeeded(equipoise(name, path))
-        assert text.startswith("[red]Planting")
-        assert "[bold]coupler[/]" in text
+@pytest.mark.parametrize("words", PROCESSES.values(), ids=PROCESSES)
+def test_a_process_prints_the_same_as_a_call(words: tuple[str, ...]) -> None:
+    """And nothing else; `test_start_is_quick_and_alone` and others run processes besides."""
+    result = process(*words)
+    assert result == equipoise(*words)
+    assert bool(result.err) == bool(result.status)
 
 
-def test_control_characters_do_not_reach_the_terminal(tmp_path: Path) -> None:
-    path = tmp_path / "model.toml"
-    text = example_text("yamashita-1")
-    for changed in (
-        text.replace("links.coupler", r'links."\u001b[31mcoupler"'),
-        text.replace("Planting", r"\u001b[2J\u0007"),
-    ):
-        path.write_text(changed, encoding="utf-8")
-        for name in ("check", "analyze"):
-            line = refused(equipoise(name, path))
-            assert line.isprintable()
-            assert "give printable characters" in line
+def test_version() -> None:
+    assert equipoise("--version").out == f"{package.__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("command", "more"),
+    [("check", ()), ("analyze", ()), ("plant", ("--csv", "tip.csv"))],
+)
+def test_markup_in_names_is_shown_as_it_stands(command: str, more: tuple[str, ...]) -> None:
+    pairs = (("links.coupler", "links.'[bold]coupler[/]'"), ("Planting", "[red]Planting"))
+    text = succeeded(equipoise(command, changed("kim-chung-b", *pairs), *more))
+    assert text.startswith("[red]Planting")
+    assert "[bold]coupler[/]" in text
+
+
+@pytest.mark.parametrize("name", ["odd name [1] %s $x$.toml", "ü-機.toml", "no ending"])
+def test_odd_file_names(name: str) -> None:
+    changed("kim-chung-a", to=name)
+    balance = ("balance", name, "--crank-counterweight", "--objective", "shaking_force", "-o")
+    for words in (("analyze", name, "--csv"), ("plant", name, "--csv"), balance):
+        result = equipoise(*words, f"{words[0]} {name}")
+        succeeded(result)
+        assert result.err == f"wrote {words[0]} {name}\n"
+    succeeded(equipoise("check", f"balance {name}"))
+    changed("kim-chung-a", ('depth = "4 cm"', 'depth = "4 m"'), to=name)
+    line = refused(equipoise("plant", f"./{name}"))
+    assert line.startswith(f"./{name}: planting.depth: got 4000 mm; the tip P never leaves")
+
+
+@pytest.mark.parametrize(
+    "pair",
+    [("links.coupler", r'links."\u001b[31mcoupler"'), ("Planting", r"\u001b[2J\u0007")],
+    ids=["name", "title"],
+)
+@pytest.mark.parametrize("name", ["check", "analyze"])
+def test_control_characters_do_not_reach_the_terminal(name: str, pair: tuple[str, str]) -> None:
+    changed("yamashita-1", pair)
+    refuses(f"{name} model.toml", "give printable characters")
 
 
 # -- analyze: JSON and CSV -------------------------------------------------------------------------
@@ -296,31 +328,23 @@ def test_json_is_in_si_units() -> None:
     assert summary["four_bar"]["type"] == "crank-rocker"
 
 
-def test_json_of_a_model_without_masses(massless: Path) -> None:
-    content = analyzed(massless, "--angles", "3")
+def test_json_of_a_model_without_masses() -> None:
+    content = analyzed(written(massless()), "--angles", "3")
     assert set(content["links"]) == {"crank", "coupler", "rocker"}
     assert len(content["points"]["P"]["ax"]) == 3
     assert "mass" in content["missing"]
     assert not {"joints", "shaking_force", "shaking_moment", "drive_torque"} & set(content)
 
 
-def test_json_of_a_process_is_all_of_its_output() -> None:
-    result = process("analyze", "yamashita-1", "--json", "--angles", "3")
-    assert result.err == ""
-    assert json.loads(result.out) == analyzed("yamashita-1", "--angles", "3")
-
-
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
 def test_output_in_a_terminal_that_lacks_letters(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, encoding: str
+    monkeypatch: pytest.MonkeyPatch, encoding: str
 ) -> None:
     monkeypatch.setenv("PYTHONIOENCODING", encoding)
-    path = tmp_path / "model.toml"
-    path.write_text(example_text("yamashita-1").replace("Planting", "Überträger 机"), "utf-8")
+    path = changed("yamashita-1", ("Planting", "Überträger 机"))
     text = process("analyze", path, "--json", "--angles", "1", encoding=encoding).out
     assert json.loads(text)["title"].startswith("Überträger 机 mechanism")
     assert succeeded(process("check", path, encoding=encoding)).endswith(f"{READY}\n")
-    assert json.loads(process("schema", encoding=encoding).out)
 
 
 def split_by_dots(content: dict[str, Any], column: str) -> Any:
@@ -332,8 +356,8 @@ def split_by_dots(content: dict[str, Any], column: str) -> Any:
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "slider-crank-engine", "geared-counterweight"])
-def test_csv_has_the_numbers_of_the_json(name: str, tmp_path: Path) -> None:
-    path = tmp_path / "result.csv"
+def test_csv_has_the_numbers_of_the_json(name: str) -> None:
+    path = Path("result.csv")
     result = equipoise("analyze", name, "--json", "--angles", "6", "--csv", path)
     content = json.loads(succeeded(result))
     assert result.err == f"wrote {path}\n"
@@ -351,22 +375,20 @@ def test_csv_has_the_numbers_of_the_json(name: str, tmp_path: Path) -> None:
         assert list(map(float, values)) == split_by_dots(content, column)
 
 
-def test_csv_stands_beside_the_tables(tmp_path: Path) -> None:
-    path = tmp_path / "result.csv"
+def test_csv_stands_beside_the_tables(folder: Path) -> None:
+    path = folder / "result.csv"
     path.write_text("old")
     result = equipoise("analyze", "yamashita-1", "--csv", path)
     assert succeeded(result) == equipoise("analyze", "yamashita-1").out
     assert len(path.read_text().splitlines()) == 361
-    assert list(tmp_path.iterdir()) == [path]
+    assert list(folder.iterdir()) == [path]
 
 
 # -- analyze: options ------------------------------------------------------------------------------
 
 
-def test_angles_by_number_cover_whole_cycles(tmp_path: Path) -> None:
-    path = tmp_path / "model.toml"
-    text = example_text("planetary-planting-arm").replace("teeth = [40, 20]", "teeth = [40, 30]")
-    path.write_text(text, encoding="utf-8")
+def test_angles_by_number_cover_whole_cycles() -> None:
+    path = changed("planetary-planting-arm", ("teeth = [40, 20]", "teeth = [40, 30]"))
     content = analyzed(path, "--angles", "10")
     assert content["turns"] == 3
     assert content["crank_angle"] == pytest.approx([k * math.tau / 10 for k in range(30)])
@@ -429,17 +451,13 @@ def schema() -> dict[str, Any]:
     return json.loads(succeeded(result))  # type: ignore[no-any-return]
 
 
-def test_schema_is_the_shipped_file(schema: dict[str, Any]) -> None:
-    shipped = Path(package.__file__).with_name("schema") / "model.schema.json"
-    assert schema == json.loads(shipped.read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator.check_schema(schema)
-
-
-@pytest.mark.parametrize("kind", ["tool", "study"])
-def test_schemas_of_other_files_are_the_shipped_ones(kind: str) -> None:
+@pytest.mark.parametrize("kind", ["model", "tool", "study"])
+def test_schema_is_the_shipped_file(kind: str) -> None:
     shipped = Path(package.__file__).with_name("schema") / f"{kind}.schema.json"
-    found = json.loads(succeeded(equipoise("schema", f"--{kind}")))
+    option = () if kind == "model" else (f"--{kind}",)
+    found = json.loads(succeeded(equipoise("schema", *option)))
     assert found == json.loads(shipped.read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(found)
 
 
 @pytest.mark.parametrize("name", EXAMPLES)
@@ -458,84 +476,67 @@ def test_schema_fits_the_example(name: str, schema: dict[str, Any]) -> None:
         ("schema = 1", "schema = 2"),
     ],
 )
-def test_schema_refuses_what_the_reader_refuses(
-    old: str, new: str, schema: dict[str, Any], tmp_path: Path
-) -> None:
-    import tomllib
-
-    text = example_text("yamashita-1")
-    assert old in text
-    text = text.replace(old, new, 1)
+def test_schema_refuses_what_the_reader_refuses(old: str, new: str, schema: dict[str, Any]) -> None:
+    text = replaced(example_text("yamashita-1"), (old, new))
     assert not jsonschema.Draft202012Validator(schema).is_valid(tomllib.loads(text))
-    path = tmp_path / "model.toml"
-    path.write_text(text, encoding="utf-8")
-    refused(equipoise("check", path))
+    refused(equipoise("check", written(text)))
 
 
 # -- new -------------------------------------------------------------------------------------------
 
 
-def test_new_writes_a_file_that_can_be_analyzed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_new_writes_a_file_that_can_be_analyzed(folder: Path) -> None:
     result = equipoise("new")
     assert (result.status, result.out) == (0, "")
     assert result.err == "wrote machine.toml; next: equipoise analyze machine.toml\n"
-    assert [path.name for path in tmp_path.iterdir()] == ["machine.toml"]
+    assert [path.name for path in folder.iterdir()] == ["machine.toml"]
     assert analyzed("machine.toml", "--angles", "2")["joints"]
     assert succeeded(equipoise("check", "machine.toml")).endswith(f"{READY}\n")
 
 
-def test_new_writes_a_study_that_can_be_computed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_new_writes_a_study_that_can_be_computed() -> None:
     result = equipoise("new", "--study")
     assert result.err == "wrote study.toml; next: equipoise sweep study.toml -o designs.zarr\n"
     shown = succeeded(equipoise("check", "study.toml"))
     assert "computed many at once" in shown
     assert "ready for: equipoise search study.toml" in shown
-    said = refused(equipoise("new", "other.toml", "--study", "--tool"))
+    said = refuses("new other.toml --study --tool", "")
     assert said == "--tool and --study are two kinds of files; give one of them"
-    assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
-def test_every_hint_in_the_new_file_is_valid(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    assert equipoise("new", path).status == 0
+def test_every_hint_in_the_new_file_is_valid() -> None:
+    """Those of support, rows and motor, and those of a load."""
+    assert equipoise("new", "mine.toml").status == 0
+    text = Path("mine.toml").read_text(encoding="utf-8")
+    before, hints = text.split("# The frame need not")
+    hints, after = hints.split("# A load from outside")
+    supported = re.sub(r"^# (?=\[|\w+ = )", "", hints, flags=re.MULTILINE)
+    written(f"{before}# The frame need not{supported}# A load from outside{after}", to="all.toml")
+    shown = succeeded(equipoise("check", "all.toml"))
+    parts = ("support: 60.00 kg", "mount front", "handle: a gauge", "rows: 2", "motor: 3000 rpm")
+    for words in parts:
+        assert words in shown
     loads = re.compile(r"^# (\[\[loads\]\]|(?:link|point|force|from|to) = .*)$", re.MULTILINE)
-    head, tail = path.read_text(encoding="utf-8").split("# A load from outside")
-    path.write_text(head + loads.sub(r"\1", "# A load from outside" + tail), encoding="utf-8")
-    by_cause = analyzed(path, "--angles", "60", "--split")["by_cause"]
+    written(before + loads.sub(r"\1", f"# A load from outside{after}"), to="loaded.toml")
+    by_cause = analyzed("loaded.toml", "--angles", "60", "--split")["by_cause"]
     assert any(by_cause["drive_torque"]["load"])
 
 
-def test_new_leaves_a_file_that_is_there_alone(tmp_path: Path) -> None:
-    path = tmp_path / "mine.toml"
-    path.write_text("mine")
-    assert "is there already" in refused(equipoise("new", path))
-    dangling = tmp_path / "dangling.toml"
-    dangling.symlink_to(tmp_path / "nowhere")
-    assert "is there already" in refused(equipoise("new", dangling))
-    assert path.read_text() == "mine"
-    assert sorted(tmp_path.iterdir()) == [dangling, path]
+def test_new_leaves_a_file_that_is_there_alone() -> None:
+    Path("mine.toml").write_text("mine")
+    refuses("new mine.toml", "is there already")
+    Path("dangling.toml").symlink_to("nowhere")
+    refuses("new dangling.toml", "is there already")
+    assert Path("mine.toml").read_text() == "mine"
+    refuses("new no/x.toml", "no such file or directory")
 
 
-def test_new_in_a_missing_folder_leaves_nothing(tmp_path: Path) -> None:
-    assert "no such file or directory" in refused(equipoise("new", tmp_path / "no" / "x.toml"))
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_new_that_fails_midway_leaves_nothing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_new_that_fails_midway_leaves_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
     def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("os.fsync", full)
-    assert "no space left" in refused(equipoise("new", tmp_path / "x.toml"))
-    assert list(tmp_path.iterdir()) == []
+    refuses("new x.toml", "no space left")
 
 
 # -- streams ---------------------------------------------------------------------------------------

@@ -19,7 +19,7 @@ import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from surface.running import EXAMPLES, Result, equipoise, example, example_text, refused
+from surface.running import EXAMPLES, Result, equipoise, example, example_text, no_constant, refused
 from unit.schema.samples import BALANCE, ROWS, SUPPORT
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
@@ -37,20 +37,7 @@ def fuzz(examples: int) -> settings:
     )
 
 
-@pytest.fixture(scope="module", autouse=True)
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """A working directory in which random file names do no harm."""
-    with pytest.MonkeyPatch.context() as patch:
-        path = tmp_path_factory.mktemp("fuzz")
-        patch.chdir(path)
-        yield path
-
-
 # -- the property ----------------------------------------------------------------------------------
-
-
-def no_constant(text: str) -> None:
-    raise AssertionError(f"{text} in the output")
 
 
 def checked(result: Result, is_json: bool = False) -> None:
@@ -152,6 +139,15 @@ MOTOR = {"no_load_speed": "3000 rpm", "stall_torque": "2 N m", "ratio": 12.5}
 
 
 @st.composite
+def mutated_of(draw: Draw, documents: list[Document]) -> Document:
+    """One of some documents with pieces of it lost, put elsewhere and replaced."""
+    document = deepcopy(draw(st.sampled_from(documents)))
+    for _ in range(draw(st.integers(1, 3))):
+        mutate(draw, document)
+    return document
+
+
+@st.composite
 def mutated(draw: Draw) -> Document:
     document = deepcopy(example(draw(st.sampled_from(EXAMPLES))))
     if draw(st.booleans()):
@@ -159,9 +155,7 @@ def mutated(draw: Draw) -> Document:
         document["drive"] |= {"flywheel": "2 kg cm^2", "motor": dict(MOTOR)}
     if draw(st.integers(0, 3)) == 0:  # of a four-bar, by the names that most examples have
         document |= deepcopy(BALANCED)
-    for _ in range(draw(st.integers(1, 3))):
-        mutate(draw, document)
-    return document
+    return draw(mutated_of([document]))
 
 
 @given(mutated(), commands)
@@ -171,9 +165,9 @@ def test_mutated_documents(document: Document, words: tuple[str, ...]) -> None:
 
 
 @st.composite
-def garbled(draw: Draw) -> bytes:
+def garbled(draw: Draw, bundled: tuple[str, ...] = EXAMPLES) -> bytes:
     """The text of an example with lines lost, doubled and swapped, and with noise in it."""
-    lines = example_text(draw(st.sampled_from(EXAMPLES))).splitlines()
+    lines = example_text(draw(st.sampled_from(bundled))).splitlines()
     for _ in range(draw(st.integers(1, 3))):
         at, to = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
         match draw(st.sampled_from(("delete", "double", "swap"))):

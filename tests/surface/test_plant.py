@@ -15,37 +15,15 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.field import Soil
 from equipoise.planting.summary import plant
-from surface.running import equipoise, example_text, model, process, succeeded
+from surface.running import cells, changed, equipoise, massless, read, refuses, succeeded
 from unit.planting.build import planetary, spinner, twice
 
 EXAMPLES = ("kim-chung-a", "kim-chung-b", "kim-chung-c")
 SURFACE = 'surface = "-117 mm"'
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Every test runs in an empty folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def cells(text: str, label: str) -> list[str]:
-    """The numbers of the first row with this label, behind which a unit may stand."""
-    begin = re.compile(rf"{re.escape(label)}(, \S+( \S+)*?)?  ")
-    (row, *_) = (line for line in text.splitlines() if begin.match(line))
-    return re.split(r"  +", re.sub(r" at (?=[-0-9])", "  ", row.strip()))[1:]
-
-
-def read(*words: str | Path) -> dict[str, Any]:
-    """What `equipoise plant ... --json` prints, which is one line and nothing else."""
-    result = equipoise("plant", *words, "--json")
-    assert result.err == ""
-    assert result.out.count("\n") == 1
-    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
-
-
-def no_constant(text: str) -> None:
-    raise AssertionError(f"{text} is not JSON")
+def planted(*words: str) -> dict[str, Any]:
+    return read("plant", *words)
 
 
 # -- tables ----------------------------------------------------------------------------------------
@@ -121,7 +99,7 @@ def test_crank_angles_from_another_direction() -> None:
     assert "249.83" in text  # first pass of the loop
     back = succeeded(equipoise("plant", "kim-chung-a", "--crank-zero", "-1.5 turn"))
     assert cells(back, "crank angle") == ["15.24", "56.77", "88.65", "227.01"]
-    assert read("kim-chung-a", "--crank-zero", "90 deg") == read("kim-chung-a")
+    assert planted("kim-chung-a", "--crank-zero", "90 deg") == planted("kim-chung-a")
 
 
 def test_units_of_the_tables() -> None:
@@ -132,7 +110,7 @@ def test_units_of_the_tables() -> None:
     assert "smallest acceleration of the tip, gn" in text
     assert cells(text, "smallest acceleration of the tip")[::2] == ["4.580", "0.6076"]
     assert cells(text, "time in the soil") == ["50.98"]
-    assert read("kim-chung-a", "--units", "mm") == read("kim-chung-a")
+    assert planted("kim-chung-a", "--units", "mm") == planted("kim-chung-a")
     turns = succeeded(equipoise("plant", "kim-chung-a", "--units", "turn, rad/s, s"))
     assert "crank driven at 240.0 rpm" in turns
     assert cells(turns, "crank angle")[0] == "0.54235"
@@ -143,12 +121,12 @@ def test_another_speed() -> None:
     text = succeeded(equipoise("plant", "kim-chung-a", "--speed", "-300 rpm"))
     assert "crank driven at 300.0 rpm, clockwise" in text
     figures = plant(eq.load("kim-chung-a"), speed=-math.tau * 5)
-    assert read("kim-chung-a", "--speed", "-5 turn/s") == figures.to_dict()
+    assert planted("kim-chung-a", "--speed", "-5 turn/s") == figures.to_dict()
 
 
 def test_soil_and_limits_have_tables() -> None:
     values = 'depth = "4 cm"\nacceleration_limit = "150 m/s^2"\nsoil.per_depth = "300 N/m"'
-    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    text = succeeded(equipoise("plant", changed("kim-chung-a", ('depth = "4 cm"', values))))
     assert "Limits of the tip's acceleration" in text
     assert cells(text, "all the way")[:2] == ["150.0", "209.1"]
     assert "Peaks of drive torque and joint forces" in text
@@ -165,7 +143,7 @@ def test_soil_and_limits_have_tables() -> None:
 
 def test_tray_and_release_have_columns() -> None:
     values = f'{SURFACE}\nrelease = "200 deg"\ntray = [["-300 mm", "12 mm"], ["0 mm", "12 mm"]]'
-    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    text = succeeded(equipoise("plant", changed("kim-chung-a", ('depth = "4 cm"', values))))
     header = next(line for line in text.splitlines() if "entry" in line)
     assert header.split() == [
         "pick-up",
@@ -185,19 +163,19 @@ def test_tray_and_release_have_columns() -> None:
 def test_rounding_is_not_printed() -> None:
     """A tray at y = 0 is passed at y = 0."""
     values = f'{SURFACE}\ntray = [["-300 mm", "0 mm"], ["0 mm", "0 mm"]]'
-    text = succeeded(equipoise("plant", model('depth = "4 cm"', values)))
+    text = succeeded(equipoise("plant", changed("kim-chung-a", ('depth = "4 cm"', values))))
     assert cells(text, "y")[0] == "0"
     assert not re.search(r"[0-9]e-1[0-9]", text)
 
 
 def test_a_machine_at_rest() -> None:
-    text = succeeded(equipoise("plant", model("60 cm/s", "0 m/s")))
+    text = succeeded(equipoise("plant", changed("kim-chung-a", ("60 cm/s", "0 m/s"))))
     assert "note: forward_speed is 0: there is no path over ground" in text
     assert "Loops" not in text
     assert "ground distance" not in text
     assert "length of the path over ground" not in text
     assert "smallest radius over ground" not in text
-    content = read("model.toml")
+    content = planted("model.toml")
     assert content["loops"] == []
     assert "ground_distance" not in content["soil"]
 
@@ -206,7 +184,7 @@ def test_every_stay_is_listed() -> None:
     eq.save(twice(), "twice.toml")
     text = succeeded(equipoise("plant", "twice.toml", "--crank-zero", "10 deg"))
     rows = text.partition("Every stay in the soil; crank angles")[2].splitlines()[4:6]
-    content = read("twice.toml")
+    content = planted("twice.toml")
     assert len(content["visits"]) == 2
     for row, visit in zip(rows, content["visits"], strict=True):
         wanted = [(math.degrees(visit[k]) - 10) % 360 for k in ("entry", "exit", "deepest")]
@@ -230,7 +208,7 @@ def test_a_cycle_of_three_turns() -> None:
     figures = plant(eq.load("arm.toml"))
     assert cells(text, "crank angle")[0] == f"{math.degrees(figures['entry.crank_angle']):.2f}"
     assert figures["entry.crank_angle"] > math.tau
-    assert len(read("arm.toml")["visits"]) == 3
+    assert len(planted("arm.toml")["visits"]) == 3
 
 
 # -- JSON and CSV ----------------------------------------------------------------------------------
@@ -238,13 +216,7 @@ def test_a_cycle_of_three_turns() -> None:
 
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_json_is_one_object_with_all_figures(name: str) -> None:
-    assert read(name) == plant(eq.load(name)).to_dict()
-
-
-def test_json_of_a_process_is_all_of_its_output() -> None:
-    result = process("plant", "kim-chung-b", "--json")
-    assert (result.status, result.err) == (0, "")
-    assert json.loads(result.out) == read("kim-chung-b")
+    assert planted(name) == plant(eq.load(name)).to_dict()
 
 
 @pytest.mark.parametrize("name", ["kim-chung-a", "kim-chung-b"])
@@ -279,14 +251,37 @@ def test_csv_and_json_together() -> None:
     assert len(Path("tip.csv").read_text(encoding="utf-8").splitlines()) == 361
 
 
-def test_markup_and_masses_are_shown_as_they_stand() -> None:
-    """A name in brackets is no markup, and without masses there is neither force nor its centre."""
-    text = re.sub(r"(?m)^(mass|center_of_mass|inertia) = .*\n", "", example_text("kim-chung-b"))
-    text = text.replace("Planting", "[red]Planting").replace("[links.coupler]", "[links.'[b]']")
-    Path("model.toml").write_text(text, encoding="utf-8")
-    eq.save(eq.load("model.toml").with_planting(soil=Soil(resistance=3.0)), "soil.toml")
+def test_without_masses_there_is_neither_force_nor_its_centre() -> None:
+    eq.save(eq.loads(massless("kim-chung-b")).with_planting(soil=Soil(resistance=3.0)), "soil.toml")
     shown = succeeded(equipoise("plant", "soil.toml", "--csv", "tip.csv"))
-    assert shown.startswith("[red]Planting mechanism B")
-    assert "tip P on [b], finger from B" in shown
+    assert "tip P on coupler, finger from B" in shown
     assert "Peaks" not in shown
     assert "center_of_mass" not in Path("tip.csv").read_text(encoding="utf-8")
+
+
+# -- machines that cannot --------------------------------------------------------------------------
+
+MACHINES = {
+    # what is replaced, by what, what is said of the file
+    "never reaches": ('depth = "4 cm"', 'surface = "-20 cm"',
+                      "planting.surface: got -200 mm; the tip P never reaches the soil, its lowest "
+                      "point is at -156.9 mm; give a surface above that"),
+    "never leaves": ('depth = "4 cm"', 'depth = "26 cm"',
+                     "planting.depth: got 260 mm; the tip P never leaves the soil, its path is "
+                     "251.6 mm high; give a depth below that"),
+    "under the surface": ('depth = "4 cm"', 'surface = "10 cm"',
+                          "planting.surface: got 100 mm; the tip P never leaves the soil, it is at "
+                          "94.69 mm at most; give a surface below that"),
+    "cannot turn": ('points.B = ["35 mm", "0 mm"]', 'points.B = ["79 mm", "0 mm"]',
+                    "the crank cannot turn fully"),
+    "stands still": ('"240 rpm"', '"0 rpm"', "drive.speed: got 0; give the speed at which"),
+    "wrong tip": ('tip = "P"', 'tip = "Q"', "planting.tip: no point of a moving link is called"),
+    "wrong key": ('depth = "4 cm"', 'deep = "4 cm"', "planting.deep: no key is called 'deep'"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("old", "new", "said"), MACHINES.values(), ids=MACHINES)
+def test_a_machine_that_cannot_plant(old: str, new: str, said: str) -> None:
+    """One sentence that names the file, and no results beside it."""
+    changed("kim-chung-a", (old, new))
+    assert refuses("plant model.toml --csv tip.csv", said).startswith(f"model.toml: {said}")

@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
+import json
+import shlex
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from surface.running import equipoise, refused, succeeded
+from surface.running import equipoise, refuses, succeeded
 
 WEIGHT = "counterweights.crank"
 RADIUS = f"{WEIGHT}.radius = 0 : 70 mm"
 DIRECTION = f"{WEIGHT}.direction = 0 deg : 360 deg"
 MAP = (RADIUS, DIRECTION, "ripple shaking_force.y")
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def test_every_picture_is_written_and_told(folder: Path) -> None:
@@ -60,47 +57,49 @@ def test_a_map_tells_the_best_place(folder: Path) -> None:
     assert [path.name for path in (folder / "map").iterdir()] == ["landscape.svg"]
 
 
-BAD = {
-    "name": (["plot", "--only", "polr"], "did you mean 'polar'"),
-    "angle": (["plot", "--at", "3 mm"], "--at"),
-    "folder": (["plot", "-o", "taken"], "--out"),
-    "half a map": (["plot", "map", "links.crank.mass = 1 g : 2 g"], "parameter SECOND requires"),
-    "no aim": (["plot", "map", *MAP[:2]], "parameter OUTPUT requires"),
-    "unknown aim": (["plot", "map", *MAP[:2], "rms force"], "no output is called 'force'"),
-    "unknown number": (["plot", "map", "links.a = 1 : 2", *MAP[1:]], "no number of the model"),
-    "no range": (
-        ["plot", "map", "links.crank.mass = 2 g", *MAP[1:]], "FIRST: got 'links.crank.mass = 2 g'; "
-        "give a number and its range"),
-    "no path": (["plot", "map", "2 g : 3 g", *MAP[1:]], "give such as"),
-    "wrong unit": (["plot", "map", "links.crank.mass = 1 : 2 mm", *MAP[1:]], "a mass is wanted"),
-    "back to front": (["plot", "map", "links.crank.mass = 2 : 1 g", *MAP[1:]], "the smaller value"),
-    "the same twice": (["plot", "map", RADIUS, RADIUS, MAP[2]], "twice"),
-    "set too": (["plot", "map", *MAP, "--set", f"{WEIGHT}.radius = 1 mm"], "give one of both"),
-    "points": (["plot", "map", *MAP, "--points", "3"], "--points"),
-    "a map's folder": (["plot", "map", *MAP, "-o", "taken"], "--out"),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("words", "said"), BAD.values(), ids=BAD)
-def test_wrong_wishes_are_told(folder: Path, words: list[str], said: str) -> None:
-    (folder / "taken").write_text("", encoding="utf-8")
-    name = 2 if words[1] == "map" else 1
-    assert said in refused(equipoise(*words[:name], "yamashita-1", *words[name:]))
-    assert [path.name for path in folder.iterdir()] == ["taken"]
-
-
 def test_tools_have_no_crank_angles_and_no_map() -> None:
-    assert "crank angles" in refused(equipoise("plot", "pole-saw", "--at", "0 deg"))
-    assert "tool vary" in refused(equipoise("plot", "map", "pole-saw", *MAP))
+    refuses("plot pole-saw --at '0 deg'", "crank angles")
+    refuses(f"plot map pole-saw {shlex.join(MAP)}", "tool vary")
 
 
-def test_studies_draw_what_they_print(folder: Path) -> None:
-    pytest.importorskip("pymoo")
-    study = ["study-of-balance", "--population", "8", "--generations", "2"]
-    result = equipoise("search", *study, "--plot", "found", "--format", "pdf", "--json")
-    assert succeeded(result).count("\n") == 1
-    pictures = sorted(path.name for path in (folder / "found").iterdir())
-    assert pictures == ["designs.pdf", "front.pdf", "search.pdf"]
-    succeeded(equipoise("tolerance", "study-of-tolerances", "--designs", "800", "--plot", "made"))
-    pictures = sorted(path.name for path in (folder / "made").iterdir())
-    assert pictures == ["scatter.svg", "shares.svg", "tighten.svg"]
+PICTURES = {
+    # a command line: the pictures that it draws beside what it prints
+    "respond yamashita-rig": {"drive", "gauge-gauge", "mounts", "spectrum"},
+    "respond yamashita-rig --speed '100:140 rpm' --speeds 5": {
+        *("response", "velocity", "acceleration", "resonance-map", "mounts")
+    },
+    "simulate yamashita-rig '0.2 s'": {"gauges", "mounts"},
+    "modes yamashita-rig": {"mode-1"},
+    "balance trade-off yamashita-1 --crank-counterweight "
+    "shaking_force.x shaking_force.y --points 3": {"front"},
+    "decay decay.csv": {"record", "swings"},
+    "exposure lines.csv lines.csv --duration '1 h'": {"exposure", "spectrum-2", "spectrum"},
+    "search study-of-balance --population 8 --generations 2": {"designs", "front", "search"},
+    "tolerance study-of-tolerances --designs 800": {"scatter", "shares", "tighten"},
+}
+
+
+@pytest.mark.parametrize("line", PICTURES)
+def test_pictures_beside_what_is_printed(line: str) -> None:
+    time = np.linspace(0.0, 2.6, 800)
+    swings = 9 * np.exp(-0.4 * time) * np.cos(12.4 * time)
+    rows = "".join(f"{t:.6f},{x:.6f}\n" for t, x in zip(time, swings, strict=True))
+    Path("decay.csv").write_text(f"time [s],displacement [mm]\n{rows}")
+    Path("lines.csv").write_text("frequency [Hz],x [m/s^2]\n50,3\n100,4\n")
+    result = equipoise(*shlex.split(line), "--plot", "new/pictures")
+    assert succeeded(result)
+    names = PICTURES[line]
+    count = "1 picture" if len(names) == 1 else f"{len(names)} pictures"
+    assert result.err == f"wrote {count} to new/pictures\n"
+    assert {path.name for path in Path("new/pictures").iterdir()} == {f"{n}.svg" for n in names}
+    assert all(b"<svg" in path.read_bytes()[:600] for path in Path("new/pictures").iterdir())
+
+
+@pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
+def test_kinds_of_pictures(kind: str, begin: bytes) -> None:
+    """Beside one line of JSON, and in a folder that is there."""
+    words = ("modes", "yamashita-rig", "--plot", ".", "--format", kind)
+    result = equipoise(*words, "--json")
+    assert json.loads(succeeded(result))["modes"]
+    assert result.err == "wrote 1 picture to .\n"
+    assert Path(f"mode-1.{kind}").read_bytes().startswith(begin)

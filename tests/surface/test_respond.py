@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from surface.running import equipoise, example_text, process, succeeded
+from surface.running import cells, changed, equipoise, example_text, read, succeeded, written
 
 PLANAR = ("yamashita-rig", "yamashita-rig-counterweight", "walking-transplanter")
 MODELS = ("linear", "torque", "moment", "coupled", "exact")
@@ -41,25 +41,6 @@ phase = "180 deg"
 FIGURES = {"mean", "peak_to_peak", "max", "min", "rms", "orders", "harmonics", "phases"}
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Every test runs in an empty folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def no_constant(text: str) -> None:
-    raise AssertionError(f"{text} is not JSON")
-
-
-def read(*words: str | Path) -> dict[str, Any]:
-    """What a command prints with --json, which is one line and nothing else."""
-    result = equipoise(*words, "--json")
-    assert result.err == ""
-    assert result.out.count("\n") == 1
-    return json.loads(succeeded(result), parse_constant=no_constant)  # type: ignore[no-any-return]
-
-
 def answer(*words: str | Path) -> dict[str, Any]:
     return read("respond", RIG, *words)
 
@@ -67,13 +48,6 @@ def answer(*words: str | Path) -> dict[str, Any]:
 def peak(content: dict[str, Any], gauge: str = "gauge") -> float:
     """Peak to peak at a gauge, mm."""
     return 1e3 * float(content["gauges"][gauge]["peak_to_peak"])
-
-
-def cells(text: str, label: str) -> list[str]:
-    """The numbers of the first row with this label, behind which a unit may stand."""
-    begin = re.compile(rf"{re.escape(label)}(, \S+( \S+)*?)?  ")
-    (row, *_) = (line for line in text.splitlines() if begin.match(line))
-    return re.split(r"  +", re.sub(r" at (?=[-0-9])", "  ", row.strip()))[1:]
 
 
 def table(path: str) -> tuple[list[str], np.ndarray[Any, Any]]:
@@ -171,12 +145,6 @@ def test_the_counterweight_takes_most_of_it() -> None:
 def test_the_usual_model_fits_the_support() -> None:
     assert answer()["model"] == "linear"
     assert read("respond", "riding-transplanter")["model"] == "moment"
-
-
-def test_json_of_a_process_is_all_of_its_output() -> None:
-    result = process("respond", RIG, "--json")
-    assert (result.status, result.err) == (0, "")
-    assert json.loads(result.out) == answer()
 
 
 # -- speeds ----------------------------------------------------------------------------------------
@@ -415,8 +383,8 @@ def test_rows_in_opposite_phase_leave_even_orders_only(model: str) -> None:
     """Order n of the second row is turned by n times 180 deg."""
     text = example_text("walking-transplanter")
     begin, end = text.index("[[rows]]"), text.index("[support]")
-    Path("rows.toml").write_text(text[:begin] + OPPOSED + text[end:], encoding="utf-8")
-    sizes = np.array(read("respond", "rows.toml", "--model", model)["gauges"]["pitch"]["harmonics"])
+    rows = written(text[:begin] + OPPOSED + text[end:])
+    sizes = np.array(read("respond", rows, "--model", model)["gauges"]["pitch"]["harmonics"])
     assert np.max(sizes[1::2]) < 1e-12 * np.max(sizes[2::2])
     together = read("respond", "walking-transplanter", "--model", model)
     np.testing.assert_allclose(sizes[2:12:2], together["gauges"]["pitch"]["harmonics"][2:12:2])
@@ -424,9 +392,8 @@ def test_rows_in_opposite_phase_leave_even_orders_only(model: str) -> None:
 
 def test_rows_in_opposite_phase_on_a_float() -> None:
     """What is left shakes less, and the float stays on the ground."""
-    text = example_text("walking-transplanter").replace('lateral = "150 mm"', 'phase = "180 deg"')
-    Path("rows.toml").write_text(text, encoding="utf-8")
-    content = read("respond", "rows.toml", "--model", "exact")
+    rows = changed("walking-transplanter", ('lateral = "150 mm"', 'phase = "180 deg"'))
+    content = read("respond", rows, "--model", "exact")
     together = read("respond", "walking-transplanter", "--model", "exact")
     assert peak(content, "planting_part") < 0.2 * peak(together, "planting_part")
     assert content["mounts"]["float"]["lifts_off"] == 0 < together["mounts"]["float"]["lifts_off"]
@@ -517,36 +484,6 @@ def test_orders_beside_json_and_csv() -> None:
     assert len(table("out.csv")[1]) == 360
 
 
-# -- pictures --------------------------------------------------------------------------------------
-
-PICTURES = {
-    "one speed": (("respond", RIG), {"drive", "gauge-gauge", "mounts", "spectrum"}),
-    "range": (
-        ("respond", RIG, "--speed", "100:140 rpm", "--speeds", "5"),
-        {"response", "velocity", "acceleration", "resonance-map", "mounts"},
-    ),
-    "from rest": (("simulate", RIG, "0.2 s"), {"gauges", "mounts"}),
-    "modes": (("modes", RIG), {"mode-1"}),
-}
-
-
-@pytest.mark.parametrize(("words", "names"), PICTURES.values(), ids=PICTURES)
-def test_pictures(words: tuple[str, ...], names: set[str]) -> None:
-    result = equipoise(*words, "--plot", "new/pictures")
-    succeeded(result)
-    count = "1 picture" if len(names) == 1 else f"{len(names)} pictures"
-    assert result.err == f"wrote {count} to new/pictures\n"
-    assert {path.name for path in Path("new/pictures").iterdir()} == {f"{n}.svg" for n in names}
-    assert all(b"<svg" in path.read_bytes()[:600] for path in Path("new/pictures").iterdir())
-
-
-@pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])
-def test_kinds_of_pictures(kind: str, begin: bytes) -> None:
-    result = equipoise("modes", RIG, "--plot", ".", "--format", kind, "--json")
-    assert json.loads(succeeded(result))
-    assert Path(f"mode-1.{kind}").read_bytes().startswith(begin)
-
-
 # -- more than one steady state --------------------------------------------------------------------
 
 WALKING = "walking-transplanter"
@@ -571,12 +508,9 @@ def test_both_branches_of_a_range() -> None:
     assert any(re.search("two steady states at .* rpm", note) for note in found["notes"])
 
 
-def test_what_does_nothing_is_told(tmp_path: Path) -> None:
-    text = example_text("yamashita-rig").replace(
-        'speed = "193 rpm"', 'speed = "193 rpm"\nacceleration = "5 rad/s^2"'
-    )
-    path = tmp_path / "model.toml"
-    path.write_text(f'{text}\n[support.gauges.roll]\naxis = "roll"\n', encoding="utf-8")
-    notes = read("respond", path)["notes"]
+def test_what_does_nothing_is_told() -> None:
+    text = example_text(RIG) + '\n[support.gauges.roll]\naxis = "roll"\n'
+    speeding = ('speed = "193 rpm"', 'speed = "193 rpm"\nacceleration = "5 rad/s^2"')
+    notes = read("respond", written(text, speeding))["notes"]
     assert any("gauges.roll does nothing: the support cannot roll" in note for note in notes)
     assert any("acceleration is left out" in note for note in notes)

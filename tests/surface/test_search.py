@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +13,9 @@ import pytest
 import equipoise as eq
 from equipoise.cli import progress as progress_lines
 from equipoise.cli.progress import left_told, rate_told, swept, time_told
-from equipoise.schema.study_units import Unit
+from equipoise.schema.study_units import unit_named
 from equipoise.studies.outcomes import Progress
-from surface.running import equipoise, succeeded
+from surface.running import command_lines, equipoise, refuses, succeeded
 from surface.studies import LENGTHS, TOLERANCES, written
 
 FRONT = LENGTHS.replace('list = ["199 g", "0.4 kg"]', 'range = ["199 g", "0.4 kg"]').replace(
@@ -25,19 +24,7 @@ FRONT = LENGTHS.replace('list = ["199 g", "0.4 kg"]', 'range = ["199 g", "0.4 kg
 QUICK = ("--population", "12", "--generations", "8")
 
 
-@pytest.fixture(autouse=True, scope="module")
-def with_progress() -> Iterator[None]:
-    """Here lines of progress are looked at."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
-        yield
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Every test runs in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
+pytestmark = pytest.mark.usefixtures("with_progress")
 
 
 def test_json_is_what_python_has() -> None:
@@ -56,7 +43,7 @@ def test_json_is_what_python_has() -> None:
 
 def test_generations_before_there_is_a_front() -> None:
     """JSON knows no NaN."""
-    study = written(FRONT, "13000 mN", "11700 mN")
+    study = written(FRONT, ("13000 mN", "11700 mN"))
     found = json.loads(succeeded(equipoise("search", study, *QUICK, "--json")))
     assert found["volumes"][0] is None
     assert found["volumes"][-1] > 0
@@ -109,38 +96,44 @@ def test_a_bundled_study() -> None:
 
 
 REFUSED = {
-    # text, words after the file, what is said
-    "tolerances": (TOLERANCES, [], "study.toml: vary[1]: links.coupler.mass has a tolerance, whic"),
-    "no aim": (
-        LENGTHS.replace('make = "smallest"', ""),
-        [],
-        "study.toml: outputs: none is to become small or large; give one of them make = ",
-    ),
-    "impossible": (
-        LENGTHS.replace("13000 mN", "1 N"),
-        [*QUICK],
-        "none of ",
-    ),
-    "population": (LENGTHS, ["--population", "4"], "--population: got '4'; give a whole number f"),
-    "generations": (LENGTHS, ["--generations", "0"], "--generations: got '0'; give a whole number"),
-    "seed": (LENGTHS, ["--seed", "-1"], "--seed: got '-1'; give a whole number from 0 to 4294967"),
-    "design alone": (LENGTHS, ["--design", "1"], "--design belongs to --out; give both"),
-    "no such design": (
-        LENGTHS,
-        [*QUICK, "-o", "x.toml", "--design", "7"],
-        "--design: got 7; give a whole number from 0 to 0",
-    ),
-    "there": (LENGTHS, ["-o", "study.toml"], "study.toml: is there already; choose another name"),
-    "csv": (LENGTHS, ["--csv", "study.toml"], "--csv: study.toml is what is to be analysed; give"),
+    "search": {
+        "tolerances.toml": "tolerances.toml: vary[1]: links.coupler.mass has a tolerance, whic",
+        "aimless.toml": (
+            "aimless.toml: outputs: none is to become small or large; give one of them make = "
+        ),
+        "impossible.toml --population 12 --generations 8": "none of ",
+        "study.toml --population 4": "--population: got '4'; give a whole number f",
+        "study.toml --generations 0": "--generations: got '0'; give a whole number",
+        "study.toml --seed -1": "--seed: got '-1'; give a whole number from 0 to 4294967",
+        "study.toml --design 1": "--design belongs to --out; give both",
+        "study.toml --population 12 --generations 8 -o x.toml --design 7": (
+            "--design: got 7; give a whole number from 0 to 0"
+        ),
+        "study.toml -o study.toml": "study.toml: is there already; choose another name",
+        "study.toml --csv study.toml": "--csv: study.toml is what is to be analysed; give",
+    },
+    "tolerance": {
+        "study.toml": (
+            "study.toml: vary[1]: links.coupler.points.C.x has a range or a list, which is no tol"
+        ),
+        "tolerances.toml --designs 10": "--designs: got 10; to tell 3 tolerances apart",
+        "tolerances.toml --designs x": "--designs: got 'x'; give a whole number from",
+        "few.toml": "few.toml: sampling.designs: got 10; to tell 3 tolerances apart give ",
+        "yamashita-1": "yamashita-1.toml: this is a model file; give a study file",
+        "none.toml": "none.toml: there is no such file",
+    },
 }
 
 
-@pytest.mark.parametrize(("text", "words", "said"), REFUSED.values(), ids=REFUSED)
-def test_refused(text: str, words: list[str], said: str) -> None:
-    result = equipoise("search", written(text), *words)
-    assert (result.status, result.out) == (2, "")
-    assert result.err.splitlines()[-1].startswith(f"equipoise: {said}")
-    assert [path.name for path in Path().iterdir()] == ["study.toml"]
+@command_lines(REFUSED)
+def test_refused(line: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("EQUIPOISE_PROGRESS", "off")
+    written(LENGTHS)
+    written(TOLERANCES, name="tolerances.toml")
+    written(TOLERANCES, ("2048", "10"), name="few.toml")
+    written(LENGTHS, ('make = "smallest"', ""), name="aimless.toml")
+    written(LENGTHS, ("13000 mN", "1 N"), name="impossible.toml")
+    assert refuses(line, said).startswith(said)
 
 
 # -- progress --------------------------------------------------------------------------------------
@@ -158,7 +151,7 @@ def test_lines_in_a_log_grow_fewer(
     now = [0.0]
     monkeypatch.setattr(progress_lines, "monotonic", lambda: now[0])
     told = []
-    with swept({"height": Unit.of("mm")}) as tell:
+    with swept({"height": unit_named("mm")}) as tell:
         for second in range(1000):
             now[0] = float(second)
             tell(progress(10 * second, float(second), 10_000))

@@ -7,11 +7,8 @@ import json
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
-import time
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,18 +17,22 @@ import pytest
 
 import equipoise as eq
 from equipoise.schema.study_units import study_of
-from surface.running import command, equipoise, process, refused, succeeded
+from surface.running import (
+    command,
+    command_lines,
+    equipoise,
+    interrupted,
+    process,
+    refused,
+    refuses,
+    succeeded,
+)
 from surface.studies import LENGTHS, TOLERANCES, written
 
 STORE = "lengths.zarr"
 
 
-@pytest.fixture(autouse=True, scope="module")
-def with_progress() -> Iterator[None]:
-    """Here lines of progress are looked at."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
-        yield
+pytestmark = pytest.mark.usefixtures("with_progress")
 
 
 @pytest.fixture(scope="module")
@@ -46,11 +47,9 @@ def made(tmp_path_factory: pytest.TempPathFactory, with_progress: None) -> Path:
 
 
 @pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: Path) -> Path:
-    """Every test runs in a folder of its own, with a copy of the store."""
-    monkeypatch.chdir(tmp_path)
+def copied(folder: Path, made: Path) -> None:
+    """A copy of the store for each test."""
     shutil.copytree(made / STORE, STORE)
-    return tmp_path
 
 
 def best(*words: str | Path) -> dict[str, Any]:
@@ -92,8 +91,8 @@ def test_units_are_those_of_the_files(made: Path) -> None:
     assert re.search(r"^.* mN +N m +mm +g$", shown, re.MULTILINE)
 
 
-def test_json(folder: Path) -> None:
-    study = written(LENGTHS, "designs = 200", "designs = 50")
+def test_json() -> None:
+    study = written(LENGTHS, ("designs = 200", "designs = 50"))
     result = equipoise("sweep", study, "-o", "new.zarr", "--json")
     content = json.loads(succeeded(result))
     assert result.out.count("\n") == 1
@@ -110,7 +109,7 @@ def test_json(folder: Path) -> None:
     assert content["seconds"] > 0
 
 
-def test_resuming_computes_what_is_missing_and_nothing_else(folder: Path) -> None:
+def test_resuming_computes_what_is_missing_and_nothing_else() -> None:
     def chunks() -> dict[str, bytes]:
         return {str(file): file.read_bytes() for file in Path(STORE).glob("*/c/*")}
 
@@ -128,7 +127,7 @@ def test_resuming_computes_what_is_missing_and_nothing_else(folder: Path) -> Non
     assert chunks() == before
 
 
-def test_one_process_at_a_time(folder: Path) -> None:
+def test_one_process_at_a_time() -> None:
     for file in Path(STORE).glob("vertical/c/*"):
         file.unlink()
     with eq.studies.open_store(STORE, write=True).writing():
@@ -137,8 +136,8 @@ def test_one_process_at_a_time(folder: Path) -> None:
     assert "is writing into this store; wait until it is done, or stop it" in said
 
 
-def test_a_study_without_an_aim(folder: Path) -> None:
-    study = written(LENGTHS, 'at_most = "13000 mN"\nmake = "smallest"\n')
+def test_a_study_without_an_aim() -> None:
+    study = written(LENGTHS, ('at_most = "13000 mN"\nmake = "smallest"\n', ""))
     shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
     assert "The best" not in shown
     assert "keep every limit" not in shown
@@ -147,8 +146,8 @@ def test_a_study_without_an_aim(folder: Path) -> None:
     assert "no output of the study is to become small or large; name one to go by" in said
 
 
-def test_no_design_keeps_the_limits(folder: Path) -> None:
-    study = written(LENGTHS, "13000 mN", "1 N")
+def test_no_design_keeps_the_limits() -> None:
+    study = written(LENGTHS, ("13000 mN", "1 N"))
     shown = succeeded(equipoise("sweep", study, "-o", "new.zarr"))
     assert re.search(r"^keep every limit +0 +0.00$", shown, re.MULTILINE)
     assert re.search(r"^note: none of \d+ designs keeps every limit; kept is vert", shown, re.M)
@@ -157,7 +156,7 @@ def test_no_design_keeps_the_limits(folder: Path) -> None:
     assert said.startswith("new.zarr: none of ")
 
 
-def test_a_bundled_study_and_the_examples(folder: Path) -> None:
+def test_a_bundled_study_and_the_examples() -> None:
     names = {line.split()[0] for line in succeeded(equipoise("examples")).splitlines()}
     assert set(eq.examples("study")) <= names
     for name in eq.examples("study"):
@@ -166,12 +165,16 @@ def test_a_bundled_study_and_the_examples(folder: Path) -> None:
         assert f"ready for: equipoise sweep {name} -o designs.zarr" in shown
 
 
-def test_processes(folder: Path) -> None:
+def test_processes() -> None:
     """Figures of `plant` are computed one by one, in processes of their own."""
     study = written(
-        LENGTHS.replace("yamashita-1", "kim-chung-a").replace("designs = 200", "designs = 6"),
-        '[[outputs]]\nname = "torque"\nvalue = "drive_torque.peak"\n',
-        '[[outputs]]\nof = "plant"\nvalue = "curve.height"\nmake = "largest"\n',
+        LENGTHS,
+        ("yamashita-1", "kim-chung-a"),
+        ("designs = 200", "designs = 6"),
+        (
+            '[[outputs]]\nname = "torque"\nvalue = "drive_torque.peak"\n',
+            '[[outputs]]\nof = "plant"\nvalue = "curve.height"\nmake = "largest"\n',
+        ),
     )
     result = process("sweep", study, "-o", "new.zarr", "--workers", "2")
     shown = succeeded(result)
@@ -179,85 +182,70 @@ def test_processes(folder: Path) -> None:
     assert result.err.splitlines()[-1].startswith("6 designs computed in ")
 
 
-def test_an_interrupted_sweep_goes_on(folder: Path) -> None:
-    study = written(LENGTHS, "designs = 200", "designs = 100_000_000")
+def test_an_interrupted_sweep_goes_on() -> None:
+    study = written(LENGTHS, ("designs = 200", "designs = 5_000_000"))
     words = command("sweep", study, "-o", "long.zarr")
-    running = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-    for _ in range(600):
-        if len([*Path("long.zarr").glob("reason/c/*")]) > 1:
-            break
-        time.sleep(0.05)
-    running.send_signal(signal.SIGINT)
-    out, err = running.communicate(timeout=60)
-    assert (running.returncode, out) == (130, "")
-    assert err.splitlines()[-1] == (
+    result = interrupted(words, lambda: len([*Path("long.zarr").glob("reason/c/*")]) > 1)
+    assert (result.status, result.out) == (130, "")
+    assert result.err.splitlines()[-1] == (
         "equipoise: interrupted; what is stored stays; go on by: equipoise resume long.zarr"
     )
-    assert "Traceback" not in err
+    assert "Traceback" not in result.err
     store = eq.studies.open_store("long.zarr")
     assert 0 < len(store.missing()) < store.chunks
 
 
 REFUSED = {
-    # words, what is said
-    "no store": (["sweep", "study.toml"], "--out: missing; say where the store is to be, such as"),
-    "empty store": (["sweep", "study.toml", "-o", ""], "--out: missing; say where the store is"),
-    "there already": (["sweep", "study.toml", "-o", STORE], "lengths.zarr: is there already; choo"),
-    "workers": (
-        ["sweep", "study.toml", "-o", "x", "--workers", "0"],
-        "--workers: got '0'; give a whole number from 1 to 1000",
-    ),
-    "both": (
-        ["sweep", "study.toml", "-o", "x", "--workers", "2", "--cluster", "tcp://127.0.0.1:9"],
-        "--workers belongs to this machine, and --cluster computes elsewhere; give one of them",
-    ),
-    "no cluster": (
-        ["sweep", "study.toml", "-o", "x", "--cluster", "nowhere"],
-        "no Dask scheduler answers at nowhere",
-    ),
-    "no study": (["sweep", "none.toml", "-o", "x"], "none.toml: there is no such file; give a p"),
-    "nearly a study": (
-        ["sweep", "study-of-length", "-o", "x"],
-        "study-of-length: there is no such file; did you mean 'study-of-lengths'?",
-    ),
-    "a linkage": (
-        ["sweep", "yamashita-1", "-o", "x"],
-        "yamashita-1.toml: this is a model file; give a study file, which names it by a key model",
-    ),
-    "a tool": (["sweep", "pole-saw", "-o", "x"], "pole-saw.toml: this is a model file; give a st"),
-    "a wrong output": (
-        ["sweep", "wrong.toml", "-o", "x"],
-        "wrong.toml: outputs[2].value: got 'drive_torque.pek'; ",
-    ),
-    "resume nothing": (["resume", "x"], "x: there is no such store; make it by: equipoise sweep"),
-    "resume a file": (["resume", "study.toml"], "study.toml: is no store of Equipoise ("),
-    "by": (["best", STORE, "--by", "vertcal"], "no output or varied number is called 'vertcal'; "),
-    "count": (["best", STORE, "--count", "0"], "--count: got '0'; give a whole number from 1 to"),
-    "design alone": (["best", STORE, "--design", "3"], "--design belongs to --out; give both"),
-    "no such design": (
-        ["best", STORE, "-o", "x.toml", "--design", "200"],
-        "--design: got 200; give a whole number from 0 to 199",
-    ),
-    "model there": (["best", STORE, "-o", "study.toml"], "study.toml: is there already; choose an"),
-    "no folder": (["best", STORE, "-o", "no/x.toml"], "no/x.toml: there is no such folder; make i"),
-    "csv": (["best", STORE, "--csv", STORE], "--csv: lengths.zarr is a directory; give the name"),
-    "one for both": (
-        ["best", STORE, "-o", "x.toml", "--csv", "x.toml"],
-        "--csv: x.toml has another part in this command; give another name",
-    ),
-    "export to nowhere": (["export", STORE], "--out: missing; give the name of a file that ends i"),
-    "export to text": (["export", STORE, "-o", "x.txt"], "--out: got 'x.txt'; give the name of a"),
-    "export to no folder": (["export", STORE, "-o", "no/x.csv"], "--out: no/x.csv: there is no su"),
-    "export nothing": (["export", "x", "-o", "x.csv"], "x: there is no such store; make it by: eq"),
+    "sweep": {
+        "study.toml": "--out: missing; say where the store is to be, such as",
+        "study.toml -o ''": "--out: missing; say where the store is",
+        "study.toml -o lengths.zarr": "lengths.zarr: is there already; choo",
+        "study.toml -o x --workers 0": "--workers: got '0'; give a whole number from 1 to 1000",
+        "study.toml -o x --workers 2 --cluster tcp://127.0.0.1:9": (
+            "--workers belongs to this machine, and --cluster computes elsewhere; give one of them"
+        ),
+        "study.toml -o x --cluster nowhere": "no Dask scheduler answers at nowhere",
+        "none.toml -o x": "none.toml: there is no such file; give a p",
+        "study-of-length -o x": (
+            "study-of-length: there is no such file; did you mean 'study-of-lengths'?"
+        ),
+        "yamashita-1 -o x": (
+            "yamashita-1.toml: this is a model file; give a study file, which names it by a key "
+            "model"
+        ),
+        "pole-saw -o x": "pole-saw.toml: this is a model file; give a st",
+        "wrong.toml -o x": "wrong.toml: outputs[2].value: got 'drive_torque.pek'; ",
+    },
+    "resume": {
+        "x": "x: there is no such store; make it by: equipoise sweep",
+        "study.toml": "study.toml: is no store of Equipoise (",
+    },
+    "best lengths.zarr": {
+        "--by vertcal": "no output or varied number is called 'vertcal'; ",
+        "--count 0": "--count: got '0'; give a whole number from 1 to",
+        "--design 3": "--design belongs to --out; give both",
+        "-o x.toml --design 200": "--design: got 200; give a whole number from 0 to 199",
+        "-o study.toml": "study.toml: is there already; choose an",
+        "-o no/x.toml": "no/x.toml: there is no such folder; make i",
+        "--csv lengths.zarr": "--csv: lengths.zarr is a directory; give the name",
+        "-o x.toml --csv x.toml": (
+            "--csv: x.toml has another part in this command; give another name"
+        ),
+    },
+    "export": {
+        "lengths.zarr": "--out: missing; give the name of a file that ends i",
+        "lengths.zarr -o x.txt": "--out: got 'x.txt'; give the name of a",
+        "lengths.zarr -o no/x.csv": "--out: no/x.csv: there is no su",
+        "x -o x.csv": "x: there is no such store; make it by: eq",
+    },
 }
 
 
-@pytest.mark.parametrize(("words", "said"), REFUSED.values(), ids=REFUSED)
-def test_refused(words: list[str], said: str) -> None:
+@command_lines(REFUSED)
+def test_refused(line: str, said: str) -> None:
     written(LENGTHS)
-    written(LENGTHS, "drive_torque.peak", "drive_torque.pek", "wrong.toml")
-    assert said in refused(equipoise(*words))
-    assert {path.name for path in Path().iterdir()} == {STORE, "study.toml", "wrong.toml"}
+    written(LENGTHS, ("drive_torque.peak", "drive_torque.pek"), name="wrong.toml")
+    refuses(line, said)
 
 
 @pytest.mark.parametrize(
@@ -284,16 +272,13 @@ def test_a_library_that_is_not_installed(
 
 @pytest.mark.parametrize("name", ["analyze", "plant", "respond", "balance", "modes", "tool"])
 def test_commands_for_models_refuse_a_study(name: str) -> None:
-    line = refused(equipoise(name, written(LENGTHS)))
-    assert line == (
-        "study.toml: this is a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep "
-        "FILE`"
-    )
+    said = "this is a study, with tables [[vary]] and [[outputs]]; use `equipoise sweep FILE`"
+    assert refuses(f"{name} {written(LENGTHS)}", said) == f"study.toml: {said}"
 
 
 def test_a_study_of_a_study() -> None:
     written(TOLERANCES, name="other.toml")
-    said = refused(equipoise("check", written(LENGTHS, "yamashita-1", "other.toml")))
+    said = refused(equipoise("check", written(LENGTHS, ("yamashita-1", "other.toml"))))
     assert said.endswith("other.toml: this is a study; name the file of a linkage or a tool")
 
 
@@ -416,11 +401,11 @@ def test_all_designs_as_one_table() -> None:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="a terminal is made by posix means")
-def test_a_bar_in_a_terminal(folder: Path) -> None:
+def test_a_bar_in_a_terminal() -> None:
     """With rate, time left, best so far and failures; gone in the end."""
     import pty
 
-    study = written(LENGTHS, "designs = 200", "designs = 300_000")
+    study = written(LENGTHS, ("designs = 200", "designs = 120_000"))
     ours, theirs = pty.openpty()
     words = command("sweep", study, "-o", "new.zarr")
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
@@ -435,8 +420,8 @@ def test_a_bar_in_a_terminal(folder: Path) -> None:
     out, _ = done.communicate()
     text = seen.decode()
     assert done.returncode == 0
-    assert b"300000 designs of 2 numbers" in out
-    assert re.search(r"\d+ %, \d+ of 300000 designs", text)
+    assert b"120000 designs of 2 numbers" in out
+    assert re.search(r"\d+ %, \d+ of 120000 designs", text)
     assert re.search(r"designs/s, \d.* left", text)
     assert "best so far: vertical" in text
     assert "failed: does not turn fully" in text

@@ -4,22 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 
 import equipoise as eq
-from surface.running import equipoise, refused, succeeded
-from surface.studies import LENGTHS, TOLERANCES, written
-
-
-@pytest.fixture(scope="module")
-def with_progress() -> Iterator[None]:
-    """Here the line of progress is looked at."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("EQUIPOISE_PROGRESS", raising=False)
-        yield
+from surface.running import equipoise, succeeded
+from surface.studies import TOLERANCES, written
 
 
 @pytest.fixture(scope="module")
@@ -30,13 +20,6 @@ def shown(tmp_path_factory: pytest.TempPathFactory, with_progress: None) -> str:
     result = equipoise("tolerance", path)
     assert re.fullmatch(r"\d+ designs computed in .* s, .* designs/s", result.err.splitlines()[-1])
     return succeeded(result)
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Every test runs in a folder of its own."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
 
 
 def test_json_is_what_python_has() -> None:
@@ -80,14 +63,14 @@ def test_what_to_tighten_first(shown: str) -> None:
 
 
 def test_without_limits() -> None:
-    shown = succeeded(equipoise("tolerance", written(TOLERANCES, 'at_most = "23.5 N"')))
+    shown = succeeded(equipoise("tolerance", written(TOLERANCES, ('at_most = "23.5 N"', ""))))
     assert "Limits" not in shown
     assert "Every limit" not in shown
     assert re.search(r"^Tighten first: .* off the variance of vertical\.$", shown, re.MULTILINE)
 
 
 def test_a_limit_that_the_model_does_not_keep() -> None:
-    shown = succeeded(equipoise("tolerance", written(TOLERANCES, "23.5 N", "20 N")))
+    shown = succeeded(equipoise("tolerance", written(TOLERANCES, ("23.5 N", "20 N"))))
     assert "Every limit is kept by 0.00 % (" in shown
     assert "hardly more machines keep every limit then" in shown
     assert (
@@ -105,31 +88,3 @@ def test_a_bundled_study() -> None:
     shown = succeeded(equipoise("tolerance", "study-of-tolerances", "--designs", "1024"))
     assert "Tighten first: " in shown
     assert not re.search(r"\b(nan|inf)\b|-0\.0 ", shown)
-
-
-REFUSED = {
-    # text, words after the file, what is said
-    "ranges": (
-        LENGTHS,
-        [],
-        "study.toml: vary[1]: links.coupler.points.C.x has a range or a list, which is no tol",
-    ),
-    "too few": (TOLERANCES, ["--designs", "10"], "--designs: got 10; to tell 3 tolerances apart"),
-    "no number": (TOLERANCES, ["--designs", "x"], "--designs: got 'x'; give a whole number from"),
-    "too few in the file": (
-        TOLERANCES.replace("2048", "10"),
-        [],
-        "study.toml: sampling.designs: got 10; to tell 3 tolerances apart give ",
-    ),
-}
-
-
-@pytest.mark.parametrize(("text", "words", "said"), REFUSED.values(), ids=REFUSED)
-def test_refused(text: str, words: list[str], said: str) -> None:
-    assert refused(equipoise("tolerance", written(text), *words)).startswith(said)
-
-
-def test_files_that_are_no_studies() -> None:
-    said = refused(equipoise("tolerance", "yamashita-1"))
-    assert said.startswith("yamashita-1.toml: this is a model file; give a study file")
-    assert "none.toml: there is no such file" in refused(equipoise("tolerance", "none.toml"))

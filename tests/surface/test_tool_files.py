@@ -4,37 +4,18 @@ from __future__ import annotations
 
 import json
 import tomllib
-from copy import deepcopy
 from pathlib import Path
 
 import pytest
 import tomli_w
 from hypothesis import given
-from hypothesis import strategies as st
 from jsonschema import Draft202012Validator
 
-from surface.running import (
-    READY,
-    TOOLS,
-    equipoise,
-    example,
-    example_text,
-    refused,
-    succeeded,
-)
-from surface.test_fuzz import Document, Draw, checked, fuzz, mutate
+from surface.running import READY, TOOLS, equipoise, example, refused, refuses, replaced, succeeded
+from surface.test_fuzz import Document, checked, fuzz, garbled, mutated_of
 from unit.schema.tool_samples import EVERY_TOOL, IMPEDANCE, TOOL
 
 HAND = 'hand.stiffness = "8000 N/m"'
-
-
-@pytest.fixture(autouse=True, scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> object:
-    """A working directory for the files of these tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        path = tmp_path_factory.mktemp("tools")
-        patch.chdir(path)
-        yield path
 
 
 def checked_tool(text: str) -> list[str]:
@@ -122,49 +103,23 @@ BAD = {
 
 @pytest.mark.parametrize(("old", "new", "said"), BAD.values(), ids=BAD)
 def test_bad_files(old: str, new: str, said: str) -> None:
-    assert old in TOOL
     Path("bad.csv").write_text("x\n1\n")
-    Path("mine.toml").write_text(TOOL.replace(old, new, 1))
-    line = refused(equipoise("check", "mine.toml"))
-    assert line.startswith(f"mine.toml: {said}")
+    Path("mine.toml").write_text(replaced(TOOL, (old, new)))
+    assert refuses("check mine.toml", said).startswith(f"mine.toml: {said}")
 
 
 # -- random ones -----------------------------------------------------------------------------------
 
 
-@st.composite
-def mutated(draw: Draw) -> Document:
-    document = deepcopy(draw(st.sampled_from([tomllib.loads(EVERY_TOOL), *map(example, TOOLS)])))
-    for _ in range(draw(st.integers(1, 3))):
-        mutate(draw, document)
-    return document
-
-
-@given(mutated())
+@given(mutated_of([tomllib.loads(EVERY_TOOL), *map(example, TOOLS)]))
 @fuzz(150)
 def test_mutated_documents(document: Document) -> None:
     Path("random.toml").write_bytes(tomli_w.dumps(document).encode())
     checked(equipoise("check", "random.toml"))
 
 
-@st.composite
-def garbled(draw: Draw) -> str:
-    """The text of an example with lines lost, doubled and swapped."""
-    lines = example_text(draw(st.sampled_from(TOOLS))).splitlines()
-    for _ in range(draw(st.integers(1, 3))):
-        at, to = (draw(st.integers(0, len(lines) - 1)) for _ in range(2))
-        match draw(st.sampled_from(("delete", "double", "swap"))):
-            case "delete":
-                del lines[at]
-            case "double":
-                lines.insert(to, lines[at])
-            case _:
-                lines[at], lines[to] = lines[to], lines[at]
-    return "\n".join(lines)
-
-
-@given(garbled())
+@given(garbled(TOOLS))
 @fuzz(100)
-def test_garbled_text(text: str) -> None:
-    Path("random.toml").write_text(text)
+def test_garbled_text(content: bytes) -> None:
+    Path("random.toml").write_bytes(content)
     checked(equipoise("check", "random.toml"))

@@ -9,14 +9,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.signals import (
-    Periodic,
-    figures,
-    harmonics,
-    highest_at,
-    synthesis,
-    within_period,
-)
+from equipoise.signals import Periodic, figures, harmonics, highest_at, synthesis, within_period
 
 THETA = 2 * pi * np.arange(24) / 24
 

@@ -16,8 +16,8 @@ from math import inf, isfinite
 
 import numpy as np
 
-from equipoise.balancing.design_variables import Square
-from equipoise.balancing.program import Array, NoSolutionError, Program, Solved, StalledError
+from equipoise.balancing.program import Affine, NoSolutionError, Program, Solved, StalledError
+from equipoise.signals import Array
 
 MISSED = 1e-8
 """Of a square, scaled numbers, that is taken for rounding."""
@@ -30,6 +30,59 @@ WIDE = 10.0
 """Half the first interval of a ratio without limits, over lengths of the machine."""
 
 Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class Square:
+    """lift = y^2 / w, with y / w between `low` and `high`; numbers by place, w None for 1."""
+
+    lift: int
+    y: int
+    w: int | None
+    low: float
+    high: float
+
+    def ratio(self, x: Array) -> float:
+        """y / w, 0 where there is no w."""
+        w = 1.0 if self.w is None else float(x[self.w])
+        return min(max(float(x[self.y]) / w, self.low), self.high) if w > 0 else 0.0
+
+    def missed(self, x: Array) -> float:
+        """By how much the lift lies above y^2 / w."""
+        w = 1.0 if self.w is None else float(x[self.w])
+        return max(0.0, float(x[self.lift]) - (float(x[self.y]) ** 2 / w if w > 0 else 0.0))
+
+    def keep_above(self, program: Program) -> None:
+        """lift w >= y^2."""
+        program.rotated(*self._rows, self.lift)
+
+    def keep_between(self, program: Program, low: float, high: float) -> None:
+        """y / w in the interval, and the lift below the chord over it."""
+        lift, w, y = self._rows
+        for limit, sign in ((low, 1.0), (high, -1.0)):
+            if abs(limit) < inf:
+                program.nonnegative(sign * y - sign * limit * w)
+        if high - low < inf:
+            program.nonnegative((low + high) * y - low * high * w - lift)
+
+    def keep_at(self, program: Program, ratio: float) -> None:
+        """y / w at a ratio, and the lift with it."""
+        lift, w, y = self._rows
+        program.zero(y - ratio * w)
+        program.zero(lift - ratio**2 * w)
+
+    def keep_tangent(self, program: Program, ratio: float, width: float) -> None:
+        """y / w near a ratio, and the lift on the tangent there."""
+        lift, w, y = self._rows
+        program.zero(lift - 2 * ratio * y + ratio**2 * w)
+        for sign in (1.0, -1.0):
+            program.nonnegative(sign * y + (width - sign * ratio) * w)
+
+    @property
+    def _rows(self) -> tuple[Affine, Affine, Affine]:
+        """lift, w and y."""
+        w = Affine.fixed(1.0) if self.w is None else Affine.of(self.w, 1.0)
+        return Affine.of(self.lift, 1.0), w, Affine.of(self.y, 1.0)
 
 
 @dataclass(frozen=True, eq=False)

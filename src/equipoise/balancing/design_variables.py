@@ -3,100 +3,31 @@
 Every part adds scaled numbers to the program, keeps them within its limits, says what a unit of
 each does to its link's inertial parameters, and reads the result back.  Where a number has to be
 the square of another over a third (the inertia of a mass that may move), the program can only keep
-it above; such squares are told, and `branch` makes equalities of them.
+it above; such squares are told, and `branch_and_bound` makes equalities of them.
 """
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import hypot, inf
 from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.program import Affine, Program, stacked
-from equipoise.i18n import Note, to_say
+from equipoise.balancing.workshop import Change
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import spring_columns
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 ROUNDING = 1e-14
 """Over a moment of inertia: what is left of it about the centre of mass that is rounding."""
-
-
-@dataclass(frozen=True)
-class Square:
-    """lift = y^2 / w, with y / w between `low` and `high`; numbers by place, w None for 1."""
-
-    lift: int
-    y: int
-    w: int | None
-    low: float
-    high: float
-
-    def ratio(self, x: Array) -> float:
-        """y / w, 0 where there is no w."""
-        w = 1.0 if self.w is None else float(x[self.w])
-        return min(max(float(x[self.y]) / w, self.low), self.high) if w > 0 else 0.0
-
-    def missed(self, x: Array) -> float:
-        """By how much the lift lies above y^2 / w."""
-        w = 1.0 if self.w is None else float(x[self.w])
-        return max(0.0, float(x[self.lift]) - (float(x[self.y]) ** 2 / w if w > 0 else 0.0))
-
-    def keep_above(self, program: Program) -> None:
-        """lift w >= y^2."""
-        program.rotated(*self._rows, self.lift)
-
-    def keep_between(self, program: Program, low: float, high: float) -> None:
-        """y / w in the interval, and the lift below the chord over it."""
-        lift, w, y = self._rows
-        for limit, sign in ((low, 1.0), (high, -1.0)):
-            if abs(limit) < inf:
-                program.nonnegative(sign * y - sign * limit * w)
-        if high - low < inf:
-            program.nonnegative((low + high) * y - low * high * w - lift)
-
-    def keep_at(self, program: Program, ratio: float) -> None:
-        """y / w at a ratio, and the lift with it."""
-        lift, w, y = self._rows
-        program.zero(y - ratio * w)
-        program.zero(lift - ratio**2 * w)
-
-    def keep_tangent(self, program: Program, ratio: float, width: float) -> None:
-        """y / w near a ratio, and the lift on the tangent there."""
-        lift, w, y = self._rows
-        program.zero(lift - 2 * ratio * y + ratio**2 * w)
-        for sign in (1.0, -1.0):
-            program.nonnegative(sign * y + (width - sign * ratio) * w)
-
-    @property
-    def _rows(self) -> tuple[Affine, Affine, Affine]:
-        """lift, w and y."""
-        w = Affine.fixed(1.0) if self.w is None else Affine.of(self.w, 1.0)
-        return Affine.of(self.lift, 1.0), w, Affine.of(self.y, 1.0)
-
-
-@dataclass(frozen=True)
-class Change:
-    """One thing to change, as a workshop needs it.
-
-    kind : ``center of mass``, ``added mass``, ``spring``, ``gears``, ``phases``.
-    link : what is changed.  values : its figures in SI units and radians.
-    """
-
-    kind: str
-    link: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-
-    def to_dict(self) -> dict[str, Any]:
-        return {"kind": self.kind, "link": self.link, **self.values}
 
 
 @dataclass(frozen=True)
@@ -296,10 +227,8 @@ class FreeSpring(DesignVariables):
         if self.choice.free_length is not None or not 0 < 0.999 * longest < float(numbers[1]):
             return None
         return Note(
-            to_say(
-                "the spring on {link} has come to twice the largest distance of "
-                "points, where its free length was stopped; give it free_length"
-            ),
+            "the spring on {link} has come to twice the largest distance of "
+            "points, where its free length was stopped; give it free_length",
             link=self.link,
         )
 

@@ -12,16 +12,15 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import Change, with_parameters
+from equipoise.balancing.design_variables import with_parameters
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import BalanceShafts, GearedWeight
 from equipoise.mechanism.kernels import about
 from equipoise.mechanism.model import Gear, Link, Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.parameters import parameter_values
-
-Array = np.ndarray[Any, Any]
 
 GRID, COARSE, WAYS = 33, 13, 24
 """Ratios at which a range is looked at, before the best are followed to their tops; the same where

@@ -1,9 +1,11 @@
-"""Outputs of several rows by orders, each row at phase 0, so that phases only turn them.
+"""Outputs of several rows by orders, each row at phase 0, and their measures at any phases.
 
 A row whose crank is ahead by phi has the amplitudes Y_n exp(i n phi) (see `Periodic.shifted`).
 Rows are equal linkages, so that all that differs between them is a lever: with (x, y, z) the place
 of a row's drive pivot, a force F = (F_x, F_y, 0) in its plane has the moment (x, y, z) x F.
-A change to the linkage is made in each of them: outputs of all rows are signals of one's numbers.
+
+By Parseval's theorem the mean square of a sum is that of its orders, S_n = sum_k T_kn exp(i n
+phi_k); peaks are looked for on the signal itself, as the largest of all its tops.
 """
 
 from __future__ import annotations
@@ -11,33 +13,38 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from math import pi
+from typing import Any, Literal
 
 import numpy as np
 
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near, gauge_signals
-from equipoise.balancing.measures import Signal
+from equipoise.balancing.objectives import arm_of, moment_of_row, read_rows
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Objective
-from equipoise.mechanism.dynamics import forces, place_of
-from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.balance import Measure, Objective
+from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, wrong_objective
+from equipoise.mechanism.objectives import GAUGES, JOINTS, output_of, wrong_objective
 from equipoise.mechanism.support import Row
 from equipoise.results.analysis import Analysis
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.forced import chosen_model, steady_speed, usual_step
 from equipoise.vibration.linear import ANGLES, Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 
-Array = np.ndarray[Any, Any]
+Combine = Literal["sum", "squares"]
 
 SHAKING, FRAME = 0, 3
 """Among signals of one row: force x, y and moment about the drive's pivot, twice."""
 UNIT = np.array([1.0, 1j, 0.0]), np.array([0.0, 0.0, 1.0])
 """Force and moment of which force x, y and moment are 1 in turn."""
+AREA_SAMPLES = 1440
+"""In a turn, from which an area is summed."""
+SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
+"""In a turn, among which tops are looked for; share of the range by which a sample may miss its
+top; steps of Newton's method from there, and how far they may lead, rad."""
+NOTHING = 1e-12
+"""Share of the loudest at which an amplitude or a value is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,14 +74,12 @@ class RowSignals:
     def turned(self, phases: Array) -> Array:
         """Amplitudes (..., V, m, C, K + 1) of each row at phases (..., m), rad."""
         turning = np.exp(1j * np.multiply.outer(phases, self.orders))
-        turned: Array = self.amplitudes * turning[..., None, :, None, :]
-        return turned
+        return np.asarray(self.amplitudes * turning[..., None, :, None, :])
 
     def total(self, phases: Array) -> Array:
         """Amplitudes (..., V, C, K + 1) of the sum of all rows at phases (..., m), rad."""
         turning = np.exp(1j * np.multiply.outer(phases, self.orders))
-        total: Array = np.einsum("vkcn,...kn->...vcn", self.amplitudes, turning)
-        return total
+        return np.asarray(np.einsum("vkcn,...kn->...vcn", self.amplitudes, turning))
 
     def alone(self, row: int) -> RowSignals:
         """What one row does without the others."""
@@ -153,37 +158,11 @@ class Rows:
 
     def _gauge(self, name: str, speeds: Sequence[float]) -> RowSignals:
         chosen_model(self.machine, None, False)  # refuses a machine without a support
-        linear = self._linear
+        linear = Linear.of(self.machine, usual_step(self.machine))
         reading = linear.body.row(gauges_of(linear.body)[name])[linear.body.free]
-        each = [
-            _read(linear, reading, steady_speed(self.machine, speed, False))
-            for speed in (speeds or (None,))
-        ]
-        return RowSignals(
-            _padded([found[:, None] for found in each]), linear.excitation.motion.turns
-        )
-
-    @cached_property
-    def _linear(self) -> Linear:
-        return Linear.of(self.machine, usual_step(self.machine))
-
-
-def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
-    """From the point about which moments are taken to a row's drive pivot, m."""
-    pivot = complex(*machine.frame[motion.linkage.pivot])
-    return pivot + complex(*row.offset) - (pivot if about is None else place_of(machine, about))
-
-
-def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Array) -> Array:
-    """What a row adds to a moment: (x, y, z) x F, with (x, y) the arm and z to the side, N m.
-
-    force : complex, in the row's plane, N.  moment : of the row about its own drive pivot, N m.
-    """
-    if output == "roll_moment":
-        return np.asarray(-row.lateral * force.imag)
-    if output == "yaw_moment":
-        return np.asarray(row.lateral * force.real)
-    return np.asarray(moment + cross(arm, force))
+        steady = [steady_speed(self.machine, speed, False) for speed in (speeds or (None,))]
+        each = [read_rows(linear, reading, speed)[:, None] for speed in steady]
+        return RowSignals(_padded(each), linear.excitation.motion.turns)
 
 
 def _padded(each: Sequence[Array]) -> Array:
@@ -195,76 +174,163 @@ def _padded(each: Sequence[Array]) -> Array:
     return whole
 
 
-def _read(linear: Linear, reading: Array, speed: float) -> Array:
-    """What a reading (D,) of the free coordinates sees of each row, (m, K + 1), at a speed, rad/s.
+def by_orders(measure: Measure) -> bool:
+    """Whether a measure follows from the sizes of the orders."""
+    return measure in {"rms", "ripple"}
 
-    (K - (n w)^2 M + i n w C) q_n = W_n, whose matrices do not depend on the phases.  They are
-    symmetric, so that the answer to the reading itself serves all rows.
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """One objective as a function of the phases.
+
+    signals : of each row, of the orders that count.
+    scale : value that counts as one, in the output's unit.
     """
-    linear.motion(speed)  # refuses what resonates, or drives the support away
-    one = linear.excitation.of_one(speed)
-    impedance = linear.impedance(one.orders[1:] * speed)
-    along = np.broadcast_to(reading[:, None], (len(impedance), len(reading), 1))
-    answer = np.zeros((6, len(one.orders)), complex)
-    answer[linear.body.free, 1:] = np.linalg.solve(impedance, along)[..., 0].T
-    rows = rows_of(linear.excitation.machine)
-    found = np.zeros((len(rows), len(one.orders)), complex)
-    for k, row in enumerate(rows):
-        wrench = one.amplitudes.copy()
-        wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
-        found[k] = np.sum(answer * wrench, axis=0)
-    return found
+
+    objective: Objective
+    signals: RowSignals
+    scale: float = 1.0
+
+    @property
+    def measure(self) -> Measure:
+        return self.objective.measure
+
+    def values(self, phases: Array) -> Array:
+        """Value (...) at phases (..., m), rad; of several speeds the loudest."""
+        return np.asarray(np.max(self.each(self.signals.total(phases)), axis=-1))
+
+    def each(self, total: Array) -> Array:
+        """Measure (...) of signals by their orders (..., C, K + 1)."""
+        if by_orders(self.measure):
+            return np.asarray(np.sqrt(np.sum(np.abs(total) ** 2 * self.shares, axis=(-2, -1))))
+        if self.measure == "area":
+            values = Periodic(total, self.signals.turns).samples(AREA_SAMPLES * self.signals.turns)
+            return np.asarray(2 * pi * np.mean(np.abs(values[..., 0, :]), axis=-1))
+        if total.shape[-2] > 1:
+            square = squared(Periodic(total, self.signals.turns))
+            return np.asarray(np.sqrt(np.maximum(highest(square, 1), 0.0)))
+        signal = Periodic(total[..., 0, :], self.signals.turns)
+        high, low = highest(signal, 1), -highest(signal, -1)
+        return high - low if self.measure == "peak_to_peak" else np.maximum(high, -low)
+
+    @cached_property
+    def shares(self) -> Array:
+        """Share (K + 1,) of each squared amplitude in the mean square that is measured."""
+        shares = np.full(self.signals.amplitudes.shape[-1], 0.5)
+        shares[0] = 0.0 if self.measure == "ripple" else 1.0
+        return shares
+
+    @cached_property
+    def single(self) -> float:
+        """Sum of the values that every row has alone: m times that of one where all are equal."""
+        rows = range(self.signals.amplitudes.shape[1])
+        alone = [Term(self.objective, self.signals.alone(k)) for k in rows]
+        return float(sum(term.values(np.zeros(1)) for term in alone))
+
+    def value_at(self, phases: Array) -> float:
+        """Value at phases (m,), 0 where it is what rounding leaves of the rows' own."""
+        value = float(self.values(phases))
+        return value if value > NOTHING * self.single else 0.0
+
+    @cached_property
+    def influenced(self) -> bool:
+        """Whether phases change the value: two rows must meet in the same order."""
+        sizes = np.max(np.abs(self.signals.amplitudes), axis=(0, 2))
+        loud = sizes[:, 1:] > NOTHING * max(float(np.max(sizes)), 1e-300)
+        if by_orders(self.measure):
+            return bool(np.any(np.sum(loud, axis=0) > 1))
+        return int(np.sum(np.any(loud, axis=1))) > 1
 
 
-def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
-    """Signals whose largest measure an objective is: one for each speed at which it is read."""
-    if objective.output.startswith("gauges."):
-        return gauge_signals(effects, objective, near)
-    read = of_all_rows if _counts_rows(effects, objective.output) else Effects.signal
-    return [read(effects, objective.output, objective.about).kept(objective.orders)]
+@dataclass(frozen=True, eq=False)
+class Cost:
+    """Several objectives as one: their weighted sum, or the root of the sum of squares, each over
+    the value that counts as one.
+    """
+
+    terms: tuple[Term, ...]
+    combine: Combine = "sum"
+
+    @property
+    def rows(self) -> int:
+        return int(self.terms[0].signals.amplitudes.shape[1])
+
+    @property
+    def period(self) -> float:
+        """By which a phase may change without any effect, rad."""
+        return 2 * pi * self.terms[0].signals.turns
+
+    @cached_property
+    def factors(self) -> Array:
+        """Weight over scale of each term."""
+        return np.array([term.objective.weight / term.scale for term in self.terms])
+
+    def values(self, phases: Array) -> Array:
+        """Combined value (...) at phases (..., m), rad."""
+        return self.of([term.values(phases) for term in self.terms])
+
+    def of(self, values: Sequence[Any]) -> Array:
+        """Combined value (...) of the values (...) of all terms."""
+        pairs = zip(self.factors, values, strict=True)
+        parts = [factor * np.asarray(value) for factor, value in pairs]
+        if self.combine == "sum" or len(parts) == 1:
+            return np.asarray(sum(parts))
+        return np.asarray(np.sqrt(sum(part**2 for part in parts)))
+
+    @property
+    def smooth(self) -> bool:
+        """Whether mean squares at one speed each are all there is."""
+        return all(
+            by_orders(term.measure) and len(term.signals.amplitudes) == 1 for term in self.terms
+        )
 
 
-def _counts_rows(effects: Effects, output: str) -> bool:
-    """Whether an output is that of all rows: of machines that have several, but within no row."""
-    of_one = output.startswith((GAUGES, JOINTS))
-    return output in OF_ROWS or (len(effects.machine.rows) > 1 and not of_one)
+def squared(vector: Periodic) -> Periodic:
+    """Square (...) of the length of vectors (..., C), exactly: its orders reach twice as far."""
+    count = 4 * vector.amplitudes.shape[-1] + 4
+    return Periodic.of(np.sum(vector.samples(count) ** 2, axis=-2), vector.turns, 0.0)
 
 
-def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
-    """An output summed over all rows in their phases."""
-    kind, _, axis = output.rpartition(".")
-    if axis in {"x", "y"} and kind:
-        whole = of_all_rows(effects, kind, about)
-        part = np.real if axis == "x" else np.imag
-        return Signal(part(whole.start), part(whole.columns), whole.turns)
-    first = "frame" if output.startswith("frame") else "shaking"
-    one = effects.signal(output if output not in OF_ROWS else "shaking_force")
-    force = effects.signal(f"{first}_force")
-    total = Signal(0.0 * one.start, 0.0 * one.columns, one.turns)
-    if output in OF_ROWS:
-        total = Signal(total.start.real, total.columns.real, one.turns)
-    for row in effects.machine.rows:
-        here = one
-        if output.endswith("_moment"):
-            arm = arm_of(effects.machine, effects.motion, row, about)
-            start = moment_of_row(output, row, arm, force.start, one.start)
-            columns = moment_of_row(output, row, arm, force.columns, one.columns)
-            here = Signal(start, columns, one.turns)
-        total = _added(total, ahead_by(here, row.phase))
-    return total
+def highest(signal: Periodic, sign: int) -> Array:
+    """Largest value (...) of signals, or of their negatives (sign -1), to rounding.
+
+    Every top that may be the highest is followed: the best phases make tops tie, and then the
+    highest sample need not lie at the highest top.
+    """
+    flat = Periodic(sign * signal.amplitudes.reshape(-1, signal.amplitudes.shape[-1]), signal.turns)
+    owner, start, best = tops(flat, NEAR)
+    np.maximum.at(best, owner, _at(flat, owner, followed(flat, owner, start, REACH)))
+    return best.reshape(signal.amplitudes.shape[:-1])
 
 
-def _added(one: Signal, other: Signal) -> Signal:
-    return Signal(one.start + other.start, one.columns + other.columns, one.turns)
+def tops(flat: Periodic, near: float) -> tuple[Array, Array, Array]:
+    """Tops among samples of signals (B,): of which signal, and where, rad, (T,) each; and the
+    highest sample (B,) of every signal.
+
+    near : share of the range by which a top may be lower than the highest; 1 for all of them.
+    """
+    count = max(SAMPLES * flat.turns, 8 * flat.amplitudes.shape[-1])
+    values = flat.samples(count)
+    best, least = np.max(values, axis=1), np.min(values, axis=1)
+    top = values >= (best - near * (best - least))[:, None]
+    top &= (values >= np.roll(values, 1, axis=1)) & (values >= np.roll(values, -1, axis=1))
+    owner, place = np.nonzero(top)
+    return owner, place * (flat.period / count), best
 
 
-def ahead_by(signal: Signal, phase: float) -> Signal:
-    """The signal ahead by a phase, rad."""
-    count = len(signal.start)
-    turning = np.exp(1j * phase * np.fft.fftfreq(count, 1 / count) / signal.turns)
+def followed(flat: Periodic, owner: Array, start: Array, reach: float) -> Array:
+    """Crank angles (T,) of the tops of signals `owner` (T,) by Newton's method, within a reach of
+    where they are nearly, rad.
+    """
+    theta, slope, bend = start, flat.derivative(), flat.derivative(2)
+    for _ in range(NEWTON_ROUNDS):
+        down, curve = _at(slope, owner, theta), _at(bend, owner, theta)
+        step = np.divide(-down, curve, out=np.zeros_like(down), where=curve < 0)
+        theta = np.clip(theta + step, start - reach, start + reach)
+    return theta
 
-    def turned(values: Array) -> Array:
-        found: Array = np.fft.ifft(np.fft.fft(values) * turning)
-        return found if np.iscomplexobj(values) else found.real
 
-    return Signal(turned(signal.start), turned(signal.columns), signal.turns)
+def _at(signal: Periodic, owner: Array, theta: Array) -> Array:
+    """Values (T,) of signals `owner` (T,) at crank angles (T,)."""
+    turning = np.exp(1j * np.outer(theta, signal.orders))
+    return np.asarray(np.sum((signal.amplitudes[owner] * turning).real, axis=1))

@@ -16,16 +16,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, permutations
 from math import comb, factorial, prod
-from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import RowSignals
-from equipoise.balancing.phase_cost import Cost, Term, by_orders, size
+from equipoise.balancing.multi_row import Cost, RowSignals, Term, by_orders
 from equipoise.mechanism.balance import Measure
-from equipoise.signals import synthesis
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, synthesis
 
 MOST = 5_000_000
 """Arrangements that are looked at."""
@@ -152,7 +148,7 @@ class Grid:
         def judge(levels: Array) -> Array:
             found = sum(samples[levels[:, k], :, k] for k in range(self.cost.rows))
             values = np.asarray(found)
-            values = values[:, :, 0] if values.shape[2] == 1 else size(values)
+            values = values[:, :, 0] if values.shape[2] == 1 else np.linalg.norm(values, axis=2)
             return np.asarray(np.max(_sampled(values, term.measure), axis=1), float)
 
         return judge

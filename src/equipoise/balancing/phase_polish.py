@@ -3,18 +3,29 @@
 Mean squares are followed by Newton's method in a trust region.  Where their roots are summed, the
 sum has a kink wherever one of them vanishes; sqrt(q + e^2) with a falling e leads there.  Peaks
 have a kink where two of them tie, which is where the best phases usually lie: linear programs over
-all tops, in a trust region too, find it.
+all tops, in a trust region too, find it.  How a top moves does not matter for its slope by the
+phases, since the signal is level there.
 """
 
 from __future__ import annotations
 
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from equipoise.balancing.phase_cost import Cost, Pieces, Tops
+from equipoise.balancing.multi_row import (
+    AREA_SAMPLES,
+    Cost,
+    Term,
+    by_orders,
+    followed,
+    squared,
+    tops,
+)
+from equipoise.signals import Array, Periodic
 
-Array = np.ndarray[Any, Any]
+Pieces = tuple[Array, Array]
+"""Values (P,) and their slopes (P, m) by the phases."""
 
 SMOOTHING = (1e-1, 1e-2, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11)
 """e over the value that counts as one."""
@@ -22,6 +33,9 @@ ROUNDS, SMALLEST, GAIN = 40, 1e-4, 1e-12
 """Linear programs; trust region, rad, and relative gain at which they end."""
 CURVED, LEAP = 6, 0.05
 """Times that tops are looked for anew and followed; change of a phase meanwhile, rad."""
+REACH = 0.1
+"""How far a top may move meanwhile, rad."""
+TINY = 1e-300
 
 
 def polished(cost: Cost, phases: Array, step: float) -> Array:
@@ -63,7 +77,7 @@ def _slopes(cost: Cost, free: Array, smoothing: float) -> tuple[float, Array, Ar
     phases = np.concatenate([[0.0], free])
     value, gradient, second = 0.0, np.zeros(len(free)), np.zeros((len(free),) * 2)
     for term, factor in zip(cost.terms, cost.factors, strict=True):
-        square, slope, bend = term.square_with_slopes(phases)
+        square, slope, bend = square_with_slopes(term, phases)
         slope, bend = slope[1:], bend[1:, 1:]
         if smoothing:
             root = float(np.sqrt(square + (smoothing * term.scale) ** 2))
@@ -75,6 +89,22 @@ def _slopes(cost: Cost, free: Array, smoothing: float) -> tuple[float, Array, Ar
             gradient += factor**2 * slope
             second += factor**2 * bend
     return value, gradient, second
+
+
+def square_with_slopes(term: Term, phases: Array) -> tuple[float, Array, Array]:
+    """Mean square, its gradient (m,) and its second derivatives (m, m) at phases (m,), rad.
+
+    Of the first speed.
+    """
+    turned, orders = term.signals.turned(phases)[0], term.signals.orders
+    total, shares = np.sum(turned, axis=0), term.shares
+    slope = 1j * orders * turned
+    bend = 1j * orders * slope
+    gradient = 2 * np.sum((total.conj() * slope * shares).real, axis=(1, 2))
+    flat = (slope * np.sqrt(shares)).reshape(len(slope), -1)
+    second = 2 * (flat.conj() @ flat.T).real
+    second += np.diag(2 * np.sum((total.conj() * bend * shares).real, axis=(1, 2)))
+    return float(np.sum(np.abs(total) ** 2 * shares)), gradient, second
 
 
 # -- peaks -----------------------------------------------------------------------------------------
@@ -135,12 +165,9 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
 
 def _below(found: list[Pieces], unit: Array) -> Array:
     """Rows (P, m - 1 + terms): slopes of each value, less that of the largest of its term."""
-    rows = []
-    for k, (_, slopes) in enumerate(found):
-        beyond = np.zeros((len(slopes), len(found)))
-        beyond[:, k] = -unit[k]
-        rows.append(np.hstack([slopes[:, 1:], beyond]))
-    return np.vstack(rows)
+    slopes = np.vstack([slopes[:, 1:] for _, slopes in found])
+    owner = np.repeat(np.arange(len(found)), [len(values) for values, _ in found])
+    return np.hstack([slopes, -np.diag(unit)[owner]])
 
 
 def _curved(cost: Cost, phases: Array) -> Array:
@@ -159,15 +186,13 @@ def _curved(cost: Cost, phases: Array) -> Array:
         return [each.pieces(turned) for each in tops]
 
     def room(x: Array) -> Array:
-        largest = x[free:] * unit
-        found = zip(pieces(x), largest, unit, strict=True)
+        found = zip(pieces(x), x[free:] * unit, unit, strict=True)
         return np.concatenate([(most - values) / scale for (values, _), most, scale in found])
 
     def slopes(x: Array) -> Array:
         found = pieces(x)
-        scale = np.concatenate([np.full(len(v), u) for (v, _), u in zip(found, unit, strict=True)])
-        below: Array = -_below(found, unit) / scale[:, None]
-        return below
+        scale = np.repeat(unit, [len(values) for values, _ in found])
+        return np.asarray(-_below(found, unit) / scale[:, None])
 
     def total(x: Array) -> float:
         return float(cost.of(list(x[free:] * unit)))
@@ -192,4 +217,91 @@ def _weights(cost: Cost, now: Array) -> Array:
     if cost.combine == "sum":
         return cost.factors
     parts = cost.factors * now
-    return np.asarray(cost.factors * parts / max(float(np.linalg.norm(parts)), 1e-300))
+    return np.asarray(cost.factors * parts / max(float(np.linalg.norm(parts)), TINY))
+
+
+@dataclass(frozen=True, eq=False)
+class Tops:
+    """Tops of a term's signals, to be followed while the phases change a little.
+
+    places : speed -> crank angles (P,), rad, of tops and of bottoms, as far as the measure has use
+        for them.
+    """
+
+    term: Term
+    places: tuple[tuple[Array, Array], ...]
+
+    @classmethod
+    def of(cls, term: Term, phases: Array) -> Tops:
+        """All tops at phases (m,), rad."""
+        signals = [Periodic(one, term.signals.turns) for one in term.signals.total(phases)]
+        return cls(term, tuple((_looked_for(one, 1), _looked_for(one, -1)) for one in signals))
+
+    def pieces(self, phases: Array) -> Pieces:
+        """Values (P,) whose largest is the term's, and their slopes (P, m) by the phases (m,)."""
+        turned = self.term.signals.turned(phases)
+        found = [self._of_speed(*each) for each in zip(turned, self.places, strict=True)]
+        return np.concatenate([v for v, _ in found]), np.vstack([s for _, s in found])
+
+    def _of_speed(self, turned: Array, places: tuple[Array, Array]) -> Pieces:
+        """The same at one speed, from the amplitudes (m, C, K + 1) of all rows."""
+        term = self.term
+        slopes = 1j * term.signals.orders * turned
+        if by_orders(term.measure):
+            return _root(np.sum(turned, axis=0), slopes, term.shares)
+        total = Periodic(np.sum(turned, axis=0), term.signals.turns)
+        if term.measure == "area":
+            return _area(total, slopes)
+        high, rising = _tops_with_slopes(total, slopes, places[0], 1)
+        if term.measure == "peak" and len(total.amplitudes) > 1:
+            return high, rising
+        low, falling = _tops_with_slopes(total, slopes, places[1], -1)
+        if term.measure == "peak":
+            return np.concatenate([high, low]), np.vstack([rising, falling])
+        # The largest of all sums is that of the largest; low values come with their sign turned.
+        both = (high[:, None] + low).ravel()
+        return both, (rising[:, None] + falling).reshape(len(both), -1)
+
+
+def _root(total: Array, slopes: Array, shares: Array) -> Pieces:
+    root = np.sqrt(np.sum(np.abs(total) ** 2 * shares))
+    slope = np.sum((total.conj() * slopes * shares).real, axis=(1, 2)) / max(root, TINY)
+    return np.array([root]), slope[None]
+
+
+def _area(total: Periodic, slopes: Array) -> Pieces:
+    count = AREA_SAMPLES * total.turns
+    values = total.samples(count)[0]
+    change = np.sign(values) * Periodic(slopes[:, 0], total.turns).samples(count)
+    area = 2 * np.pi * np.mean(np.abs(values), keepdims=True)
+    return area, 2 * np.pi * np.mean(change, axis=1)[None]
+
+
+def _tops_with_slopes(total: Periodic, slopes: Array, start: Array, sign: int) -> Pieces:
+    """Tops (sign 1) of a signal, or its bottoms (-1) with their sign turned; of a vector's length.
+
+    total : amplitudes (C, K + 1).  slopes : (m, C, K + 1), its derivatives by the phases.
+    start : (P,) where they are nearly, rad.
+    """
+    theta = followed(_levelled(total, sign), np.zeros(len(start), int), start, REACH)
+    values = total.values(theta)
+    change = Periodic(slopes, total.turns).values(theta)
+    if len(values) == 1:
+        return sign * values[0], sign * change[:, 0].T
+    sizes = np.linalg.norm(values, axis=0)
+    return sign * sizes, sign * np.sum(change * values, axis=1).T / np.maximum(sizes, TINY)[:, None]
+
+
+def _levelled(total: Periodic, sign: int) -> Periodic:
+    """The one signal whose tops are looked for: the only component, or a vector's squared length;
+    turned over for bottoms (sign -1).
+    """
+    one = total if len(total.amplitudes) == 1 else squared(total)
+    return Periodic(sign * one.amplitudes.reshape(1, -1), total.turns)
+
+
+def _looked_for(total: Periodic, sign: int) -> Array:
+    """Crank angles (P,) of the tops (sign 1) or bottoms (-1) of a signal, rad."""
+    signal = _levelled(total, sign)
+    owner, start, _ = tops(signal, 1.0)
+    return followed(signal, owner, start, REACH)

@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.multi_row import Rows, RowSignals
-from equipoise.balancing.phase_cost import NOTHING, Combine, Cost, Term
+from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
 from equipoise.balancing.phase_grid import (
     BETTER,
     Grid,
@@ -29,13 +28,13 @@ from equipoise.balancing.phase_grid import (
 )
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.results.result import Result
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 """Is called with the arrangements looked at, and how many there are to look at."""
 
@@ -315,36 +314,24 @@ def _remaining(search: PhaseSearch, phases: Array) -> tuple[float, ...]:
 
 def _notes(search: PhaseSearch, found: Array) -> Iterator[Note]:
     if np.all(found == search.present):
-        yield Note(to_say("no phases were found that are better than the present ones"))
+        yield Note("no phases were found that are better than the present ones")
     grid = search.grid
     if grid is None:
-        yield (
-            Note(
-                to_say(
-                    "there are too many rows for a grid: random arrangements were "
-                    "polished instead, and better ones may exist"
-                )
-            )
+        yield Note(
+            "there are too many rows for a grid: random arrangements were "
+            "polished instead, and better ones may exist"
         )
     elif grid.levels < search.levels:
-        yield (
-            Note(
-                to_say(
-                    "a grid of {step} deg has too many arrangements: one of {coarse} deg "
-                    "was looked at as a whole, and the fine one about its best "
-                    "arrangements"
-                ),
-                step=f"{np.degrees(search.step):.4g}",
-                coarse=f"{np.degrees(grid.step):.4g}",
-            )
+        yield Note(
+            "a grid of {step} deg has too many arrangements: one of {coarse} deg "
+            "was looked at as a whole, and the fine one about its best "
+            "arrangements",
+            step=f"{np.degrees(search.step):.4g}",
+            coarse=f"{np.degrees(grid.step):.4g}",
         )
     for term in search.cost.terms:
         if search.vanishes(term):
-            yield (
-                Note(
-                    to_say(
-                        "{name} is 0 before, so it counts over the sum of what each row does alone"
-                    ),
-                    name=term.objective.name,
-                )
+            yield Note(
+                "{name} is 0 before, so it counts over the sum of what each row does alone",
+                name=term.objective.name,
             )

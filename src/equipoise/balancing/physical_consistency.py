@@ -25,8 +25,7 @@ from equipoise.balancing.linear_conditions import (
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import QUANTITIES
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MASS, X, Y, INERTIA = range(len(QUANTITIES))
 EXACT = (1e-10,)

@@ -5,29 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import (
     DesignVariables,
     FreeSpring,
     MovedCenter,
-    Square,
     with_parameters,
 )
-from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near, supports_more
-from equipoise.balancing.measures import Signal, bound_measure, measured
-from equipoise.balancing.multi_row import signals_of
+from equipoise.balancing.effects import Effects, Signal
+from equipoise.balancing.objectives import Near, bound_measure, measured, signals_of, supports_more
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 WITHOUT_EFFECT = 1e-9
 """Over the RMS of an output: change by a unit of every number that is taken for none."""

@@ -15,8 +15,8 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from equipoise.errors import EquipoiseError
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Cone = Literal["zero", "nonnegative", "second-order"]
 
 TOLERANCES = (1e-9, 1e-8)

@@ -10,22 +10,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from math import inf, isfinite
-from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.branch_and_bound import Best, minimise
-from equipoise.balancing.design_variables import Change, DesignVariables, MovedCenter
-from equipoise.balancing.measures import mean_square_rows, unit_of
+from equipoise.balancing.design_variables import DesignVariables, MovedCenter
+from equipoise.balancing.objectives import mean_square_rows, unit_of
 from equipoise.balancing.problem import ADDED, WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import Affine, NoSolutionError, Program, StalledError
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import Change
 from equipoise.errors import UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Progress = Callable[[int, int], None]
 
 SLACK, WORSE = 2e-9, 5e-9
@@ -125,7 +125,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     if numbers is not None:
         machine = problem.machine_with(numbers)
         best = as_best(problem, problem.cost_of(machine))
-        return Solution(problem, best, numbers, machine, Note(to_say("closed form")))
+        return Solution(problem, best, numbers, machine, Note("closed form"))
     built = problem.built
     try:
         best = minimise(built.program, built.squares, problem.whole, progress, above)
@@ -136,7 +136,7 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     numbers = problem.split(best.x) if above < inf else _lightest_numbers(problem, best)
     numbers = problem.lightened(numbers)
     one = best.nodes == 1
-    method = Note(to_say("cone program")) if one else Note(to_say("branch and bound"))
+    method = Note("cone program") if one else Note("branch and bound")
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)
 
 

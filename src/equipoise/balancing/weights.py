@@ -15,18 +15,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import asin, cos, isfinite, pi, sin, sqrt
-from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.design_variables import Bound, Change, DesignVariables, Square
-from equipoise.balancing.pieces import SPREAD, pieces_of
+from equipoise.balancing.branch_and_bound import Square
+from equipoise.balancing.design_variables import Bound, DesignVariables
 from equipoise.balancing.program import Affine, Block, Program, stacked
-from equipoise.i18n import Note, to_say
+from equipoise.balancing.workshop import SPREAD, Change, pieces_of
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 NAMES = {
     "any": ("m", "x", "y", "i"),
@@ -135,10 +134,8 @@ class AddedWeight(DesignVariables):
         if given or float(numbers[0]) * self.mass_unit <= self.cap * (1 - 1e-3):
             return None
         return Note(
-            to_say(
-                "the weight on {link} has come to ten times the mass of the links, "
-                "where it was stopped; more would do better still: give it at_most"
-            ),
+            "the weight on {link} has come to ten times the mass of the links, "
+            "where it was stopped; more would do better still: give it at_most",
             link=self.link,
         )
 

@@ -1,97 +1,189 @@
-"""Changes that balancing asks for, as sentences for a workshop."""
+"""Changes that balancing asks for, as a workshop needs them: figures, pieces and sentences."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import degrees
+from cmath import exp, phase, rect
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from math import acos, degrees, pi, sin, sqrt
 from typing import Any
 
-from equipoise.balancing.design_variables import Change
 from equipoise.i18n import say
+from equipoise.mechanism.balance import Weight
 from equipoise.quantities import number
 from equipoise.results.machine_blocks import place
+
+Piece = dict[str, Any]
+
+NOTHING = 1e-9
+"""kg: less than this is no piece."""
+SPREAD = 1e-7
+"""Over the squared distance: inertia beyond that of one point that is taken for rounding."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing to change.
+
+    kind : ``center of mass``, ``added mass``, ``spring``, ``gears``, ``phases``.
+    link : what is changed.  values : its figures in SI units and radians.
+    """
+
+    kind: str
+    link: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+    def to_dict(self) -> dict[str, Any]:
+        return {"kind": self.kind, "link": self.link, **self.values}
+
+
+# -- pieces that can be cut and screwed on ---------------------------------------------------------
+
+
+def pieces_of(
+    weight: Weight, mass: float, moment: complex, inertia: float, center: complex
+) -> list[Piece]:
+    """Pieces whose masses, places and inertia add up to what was found; SI units and radians.
+
+    Parameters
+    ----------
+    mass, moment, inertia : kg, kg m and kg m2, the last two about the centre of the room.
+    center : of the room in the link's axes, m.  Places are in the link's axes too.
+    """
+    if mass < NOTHING:
+        return []
+    plate = (weight.thickness or 0.0) * (weight.density or 0.0)
+    if weight.shape == "ring":
+        outer = sqrt(weight.inner_radius**2 + mass / (pi * plate))
+        sizes = {"outer_radius": outer, "inner_radius": weight.inner_radius}
+        return [_piece("ring", mass, center, **sizes, thickness=weight.thickness)]
+    if weight.shape == "sector":
+        return _sectors(weight, plate, mass, moment, center)
+    if weight.shape == "disc":
+        radius, there = sqrt(mass / (pi * plate)), center + moment / mass
+        return [_piece("disc", mass, there, radius=radius, thickness=weight.thickness)]
+    return _points(mass, moment / mass, inertia, center)
+
+
+def _points(mass: float, place: complex, inertia: float, center: complex) -> list[Piece]:
+    """One point, or two of equal mass on a line across the direction of their middle.
+
+    Two points at place +- d, with d across place, have the inertia m (|place|^2 + d^2).
+    """
+    beyond = inertia / mass - abs(place) ** 2
+    if beyond <= SPREAD * max(inertia / mass, abs(place) ** 2):
+        return [_piece("point", mass, center + place)]
+    across = 1j * exp(1j * phase(place)) * sqrt(beyond)
+    return [_piece("point", mass / 2, center + (place + sign * across)) for sign in (1, -1)]
+
+
+def _sectors(
+    weight: Weight, plate: float, mass: float, moment: complex, center: complex
+) -> list[Piece]:
+    """One sector; or two equal ones apart, where one would throw farther than is wanted.
+
+    A sector of half angle b has the moment c sin b; two of half angle b / 2 at +- g from their
+    middle have 2 c sin(b / 2) cos g.
+    """
+    outer, inner = weight.radius, weight.inner_radius
+    half = min(mass / (plate * (outer**2 - inner**2)), pi)
+    most = 2 / 3 * plate * (outer**3 - inner**3)
+    middle = phase(moment) if moment else 0.0
+    if abs(moment) >= most * sin(half) * (1 - SPREAD) - 1e-15:
+        return [_sector(weight, mass, half, middle, center)]
+    aside = acos(min(1.0, abs(moment) / (2 * most * sin(half / 2))))
+    return [_sector(weight, mass / 2, half / 2, middle + s * aside, center) for s in (1, -1)]
+
+
+def _sector(weight: Weight, mass: float, half: float, direction: float, center: complex) -> Piece:
+    outer, inner = weight.radius, weight.inner_radius
+    distance = 2 / 3 * sin(half) / half * (outer**3 - inner**3) / (outer**2 - inner**2)
+    return _piece(
+        "sector",
+        mass,
+        center + rect(distance, direction),
+        outer_radius=outer,
+        inner_radius=inner,
+        angle=2 * half,
+        direction=phase(rect(1.0, direction)),
+        thickness=weight.thickness,
+    )
+
+
+def _piece(shape: str, mass: float, there: complex, **sizes: float | None) -> Piece:
+    """A piece whose centre of mass is at a place in the link's axes."""
+    return {"shape": shape, "mass": mass, "place": (there.real, there.imag), **sizes}
+
+
+# -- sentences -------------------------------------------------------------------------------------
 
 
 def sentences(change: Change) -> Iterator[str]:
     """What to change; one sentence for the change, then one for each piece of an added mass."""
-    values = dict(change.values)
+    link, values = change.link, dict(change.values)
     if change.kind == "center of mass":
         yield say(
             "{link}: move the centre of mass from ({old}) mm to ({new}) mm, "
             "with a mass of {mass} g",
-            link=change.link,
+            link=link,
             old=place(values["from"]),
             new=place(values["to"]),
-            mass=_grams(values["mass"]),
+            mass=_milli(values["mass"]),
         )
     elif change.kind == "added mass":
-        yield from _added(change.link, values)
+        yield _added(link, values)
+        for piece in values["pieces"]:
+            yield say("{link}, made as: {piece}", link=link, piece=_made(piece, values["center"]))
     elif change.kind == "spring":
-        yield _spring(change.link, values)
+        yield _spring(link, values)
     elif change.kind == "gears":
-        yield _gears(change.link, values)
+        yield "; ".join(_gears(link, values))
     else:
-        yield say("Rows: set the phases to {phases}°", phases=_phases(values["phases"]))
+        phases = ", ".join(map(_direction, values["phases"]))
+        yield say("Rows: set the phases to {phases}°", phases=phases)
 
 
-def _added(link: str, values: dict[str, Any]) -> Iterator[str]:
+def _added(link: str, values: dict[str, Any]) -> str:
     if not values["pieces"]:
-        yield say("{link}: add nothing", link=link)
-    elif values["moment"]:
-        yield say(
-            "{link}: add a counterweight of {mass} g, its centre of mass {radius} mm from {point} "
-            "at {direction}° in the axes of the link ({moment} g mm)",
-            link=link,
-            mass=_grams(values["mass"]),
-            radius=_millimetres(values["radius"]),
-            point=values["at"],
-            direction=_direction(values["direction"]),
-            moment=number(1e6 * values["moment"]),
-        )
-    else:
-        yield say(
-            "{link}: add {mass} g about {point}",
-            link=link,
-            mass=_grams(values["mass"]),
-            point=values["at"],
-        )
-    for piece in values["pieces"]:
-        yield say("{link}, made as: {piece}", link=link, piece=_piece(piece, values["center"]))
+        return say("{link}: add nothing", link=link)
+    told = {"link": link, "mass": _milli(values["mass"]), "point": values["at"]}
+    if not values["moment"]:
+        return say("{link}: add {mass} g about {point}", **told)
+    return say(
+        "{link}: add a counterweight of {mass} g, its centre of mass {radius} mm from {point} "
+        "at {direction}° in the axes of the link ({moment} g mm)",
+        radius=_milli(values["radius"]),
+        direction=_direction(values["direction"]),
+        moment=number(1e6 * values["moment"]),
+        **told,
+    )
 
 
-def _piece(piece: dict[str, Any], center: tuple[float, float]) -> str:
-    mass = _grams(piece["mass"])
-    if piece["shape"] == "point":
-        place_of = place(piece["place"])
-        return say("point mass of {mass} g at ({at}) mm", mass=mass, at=place_of)
-    thickness = _millimetres(piece["thickness"])
-    if piece["shape"] in ("ring", "sector"):
-        told: dict[str, str] = {
-            "mass": mass,
-            "inner": _millimetres(piece["inner_radius"]),
-            "outer": _millimetres(piece["outer_radius"]),
-            "thickness": thickness,
-            "at": place(center),
-        }
-        if piece["shape"] == "ring":
-            return say(
-                "ring of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
-                "{thickness} mm thick",
-                **told,
-            )
+def _made(piece: Piece, center: tuple[float, float]) -> str:
+    """A piece in words; rings and sectors are told about the centre of their room."""
+    shape = piece["shape"]
+    sizes = ("mass", "radius", "outer_radius", "inner_radius", "thickness")
+    told = {name: _milli(piece[name]) for name in sizes if name in piece}
+    told["at"] = place(piece["place"])
+    if shape == "point":
+        return say("point mass of {mass} g at ({at}) mm", **told)
+    if shape == "disc":
         return say(
-            "sector of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
-            "{thickness} mm thick, {wide}° wide, its middle at {direction}°",
-            wide=_direction(piece["angle"]),
-            direction=_direction(piece["direction"]),
+            "disc of {mass} g, radius {radius} mm, {thickness} mm thick, its centre at ({at}) mm",
+            **told,
+        )
+    told |= {"at": place(center), "inner": told["inner_radius"], "outer": told["outer_radius"]}
+    if shape == "ring":
+        return say(
+            "ring of {mass} g about ({at}) mm, radius {inner} to {outer} mm, {thickness} mm thick",
             **told,
         )
     return say(
-        "disc of {mass} g, radius {radius} mm, {thickness} mm thick, its centre at ({at}) mm",
-        mass=mass,
-        radius=_millimetres(piece["radius"]),
-        thickness=thickness,
-        at=place(piece["place"]),
+        "sector of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
+        "{thickness} mm thick, {wide}° wide, its middle at {direction}°",
+        wide=_direction(piece["angle"]),
+        direction=_direction(piece["direction"]),
+        **told,
     )
 
 
@@ -103,45 +195,38 @@ def _spring(link: str, values: dict[str, Any]) -> str:
         "to {to}",
         link=link,
         stiffness=number(values["stiffness"]),
-        length=_millimetres(values["free_length"]),
+        length=_milli(values["free_length"]),
         point=values["point"],
         to=values["to"],
     )
 
 
-def _gears(link: str, values: dict[str, Any]) -> str:
-    radii = " / ".join(map(_millimetres, values["pitch_radii"]))
-    text = say(
+def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
+    yield say(
         "{link}: a shaft at ({at}) mm of the frame, geared to {driver} with the ratio {ratio}, "
         "pitch radii {radii} mm",
         link=link,
         at=place(values["axis"]),
         driver=values["driver"],
         ratio=number(values["ratio"]),
-        radii=radii,
+        radii=" / ".join(map(_milli, values["pitch_radii"])),
     )
     if "teeth" in values:
         first, second = values["teeth"]
-        module = _millimetres(values["module"])
-        text += "; " + say(
+        yield say(
             "{first} and {second} teeth of module {module} mm",
             first=first,
             second=second,
-            module=module,
+            module=_milli(values["module"]),
         )
     if "masses" in values:
-        on_driver, on_shaft = map(_grams, values["masses"])
-        text += "; " + say(
+        first, second = map(_milli, values["masses"])
+        yield say(
             "the gears add {first} g to {driver} and {second} g to the shaft",
-            first=on_driver,
+            first=first,
+            second=second,
             driver=values["driver"],
-            second=on_shaft,
         )
-    return text
-
-
-def _phases(phases: tuple[float, ...]) -> str:
-    return ", ".join(_direction(phase) for phase in phases)
 
 
 def _direction(radians: float) -> str:
@@ -149,9 +234,6 @@ def _direction(radians: float) -> str:
     return f"{shown if shown > -180 else shown + 360:.2f}".removesuffix(".00")
 
 
-def _grams(mass: float) -> str:
-    return number(1e3 * mass)
-
-
-def _millimetres(length: float) -> str:
-    return number(1e3 * length)
+def _milli(value: float) -> str:
+    """A mass in g, or a length in mm."""
+    return number(1e3 * value)

@@ -11,19 +11,45 @@ import os
 import sys
 from collections.abc import Sequence
 
-from cyclopts import CycloptsError
+from cyclopts import App, CycloptsError, Parameter
 
-from equipoise.cli.app import app, import_commands
+from equipoise import __version__
 from equipoise.errors import EquipoiseError
 
-__all__ = ["main", "run"]
+app = App(
+    name="equipoise",
+    help="How a planar linkage moves, what that does to its frame, drive and joints.",
+    version=__version__,
+    default_parameter=Parameter(negative=""),
+    suppress_keyboard_interrupt=False,
+)
+
+MODULES = {
+    "balance:app": ["balance"],
+    "designs": ["best", "export", "search"],
+    "files": ["check", "examples", "new", "schema", "serve"],
+    "handheld:app": ["tool"],
+    "linkage": ["analyze", "modes", "respond", "simulate"],
+    "measured": ["decay", "exposure"],
+    "pictures:app": ["plot"],
+    "planting:app": ["plant"],
+    "reports": ["animate", "report"],
+    "sweep": ["resume", "sweep", "tolerance"],
+}
+"""Module here, and what a command is called there if not like itself -> its commands."""
+COMMANDS = {name: place for place, names in MODULES.items() for name in names}
+
+for _name in sorted(COMMANDS):  # each is imported when it is run
+    _module, _, _what = COMMANDS[_name].partition(":")
+    app.command(f"equipoise.cli.{_module}:{_what or _name}", name=_name)
 
 
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
-    if not given or given[0].startswith("-"):
-        import_commands()
+    if not given or given[0].startswith("-"):  # the help has a line of each command
+        for name in COMMANDS:
+            _ = app[name]
     try:
         app(
             arguments,

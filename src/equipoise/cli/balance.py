@@ -7,29 +7,23 @@ from typing import TYPE_CHECKING, Annotated
 from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
-    Angle,
+    CrankZero,
     File,
     Many,
     Out,
     Speed,
     blaming,
-    check_new,
     count,
+    linkage_of,
     naming,
     size,
-    sources_of,
 )
-from equipoise.cli.outputs import Outputs, Printed, write_model
+from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.pareto import Front
-    from equipoise.figures import Picture
-    from equipoise.mechanism.model import Machine
 
 app = App(name="balance")
 MOST_POINTS, MOST_ROWS = 500, 64
@@ -37,7 +31,7 @@ MOST_POINTS, MOST_ROWS = 500, 64
 
 @app.default
 def balance(
-    file: File,
+    file: Annotated[str, Parameter(name="FILE")],
     /,
     *,
     objective: Many = None,
@@ -59,14 +53,12 @@ def balance(
     limit
         What must be kept: "peak joints.B <= 120 N", "rms drive_torque <= 90 %",
         "added_mass <= 500 g".  May be repeated.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
     out
         Write the balanced machine as a new model file.
     """
     from equipoise.balancing import optimisation as balancing
 
-    machine = _machine(file, speed)
+    machine = linkage_of(file, speed)
     outputs.check(sources_of(machine, file), [out])
     if out is not None:
         check_new(machine, out)
@@ -75,23 +67,10 @@ def balance(
         with counted("program") as progress:
             found = balancing.balance(machine, plan, progress)
         outputs.write(found.columns)
-        outputs.draw(lambda: _drawings(found))
+        outputs.draw_result(found)
         if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
         outputs.show(found)
-
-
-def _machine(file: str, speed: float | None) -> Machine:
-    from equipoise.schema.models import load_linkage
-
-    machine = load_linkage(file)
-    return machine if speed is None else machine.with_drive(speed=speed)
-
-
-def _drawings(found: Balanced | Front) -> Mapping[str, Picture]:
-    from equipoise.figures.pictures import balance_pictures
-
-    return balance_pictures(found)
 
 
 def _save(found: Balanced, out: str) -> None:
@@ -104,7 +83,7 @@ def _save(found: Balanced, out: str) -> None:
 
 @app.command
 def trade_off(
-    file: File,
+    file: Annotated[str, Parameter(name="FILE")],
     first: Annotated[str, Parameter(name="FIRST")],
     second: Annotated[str, Parameter(name="SECOND")],
     /,
@@ -130,49 +109,38 @@ def trade_off(
         Number of points.
     limit
         What must be kept: "peak joints.B <= 120 N".  May be repeated.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
     """
     from equipoise.balancing import pareto
 
-    machine = _machine(file, speed)
+    machine = linkage_of(file, speed)
     outputs.check(sources_of(machine, file))
     with naming(file):
         plan = plan_of(machine, freed, None, limit)
         one, other = read_objective("FIRST", first), read_objective("SECOND", second)
         with counted("point") as progress:
             found = pareto.trade_off(machine, one, other, plan, points, progress)
-        outputs.write(found.columns)
-        outputs.give_result(found)
+        outputs.give(found)
 
 
 @app.command
 def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed()) -> None:
-    """When the shaking force is zero or a pure sine, and whether mass can make it so.
-
-    Parameters
-    ----------
-    file
-        Path of a model file, or the name of a bundled example.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
-    """
+    """When the shaking force is zero or a pure sine, and whether mass can make it so."""
     from equipoise.balancing import linear_conditions as balancing
+    from equipoise.balancing.linear_conditions import conditions_blocks
     from equipoise.balancing.physical_consistency import feasibility
 
-    machine = _machine(file, speed)
+    machine = linkage_of(file, speed)
     with naming(file):
         found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
+        values = {kind: one.to_dict() for kind, one in found.items()}
         told = feasibility(machine)
-
-        def show() -> None:
-            from equipoise.balancing.condition_blocks import conditions_blocks
-            from equipoise.present import show_blocks
-
-            show_blocks(machine.title, conditions_blocks(*found.values(), verdict=told))
-
-        values = {name: one.to_dict() for name, one in found.items()}
-        outputs.print(lambda: values | {"verdict": told.to_dict()}, show)
+        outputs.print(
+            machine.title,
+            lambda: values | {"verdict": told.to_dict()},
+            lambda: conditions_blocks(
+                *found.values(), verdict=[one.reason for one in told.answers]
+            ),
+        )
 
 
 @app.command
@@ -181,7 +149,7 @@ def sensitivities(
     output: Annotated[str, Parameter(name="OUTPUT")],
     /,
     *,
-    crank_zero: Angle = None,
+    crank_zero: CrankZero = None,
     speed: Speed = None,
     outputs: Printed = Printed(),
 ) -> None:
@@ -189,19 +157,13 @@ def sensitivities(
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     output
         Such as shaking_force.y.
-    crank_zero
-        Direction from which crank angles count, such as "-83 deg"; else the x axis.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
     """
     from equipoise.balancing import sensitivity
     from equipoise.vibration.forced import check_moving
 
-    machine = _machine(file, speed)
+    machine = linkage_of(file, speed)
     with naming(file):
         check_moving(machine)
         with blaming("OUTPUT"):
@@ -225,28 +187,19 @@ def arrangements(
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     rows
         How many linkages stand side by side.
     spacing
         From row to row, 300 mm if not given.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
     """
-    from equipoise.balancing.patterns import patterns_for
+    from equipoise.balancing.patterns import pattern_blocks, patterns_for
     from equipoise.vibration.forced import check_moving
 
-    machine = _machine(file, speed)
+    machine = linkage_of(file, speed)
     with naming(file):
         check_moving(machine)
-
-    def show() -> None:
-        from equipoise.balancing.blocks import pattern_blocks
-        from equipoise.present import show_blocks
-
-        show_blocks(machine.title, pattern_blocks(machine, rows, spacing))
-
-    with naming(file):
-        values = {"patterns": [one.to_dict() for one in patterns_for(rows)]}
-        outputs.print(lambda: values, show)
+        outputs.print(
+            machine.title,
+            lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
+            lambda: pattern_blocks(machine, rows, spacing),
+        )

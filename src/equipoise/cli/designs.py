@@ -8,26 +8,21 @@ import sys
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
-from equipoise.cli.options import (
-    Many,
-    Out,
-    StorePath,
-    StudyFile,
+from equipoise.cli.options import Many, Out, StorePath, StudyFile, count, naming
+from equipoise.cli.outputs import (
+    Chosen,
+    Columns,
+    Outputs,
     check_new,
     check_result_file,
-    count,
-    naming,
+    write_model,
 )
-from equipoise.cli.outputs import Chosen, Columns, Outputs, write_model
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.figures import Picture
-    from equipoise.schema.study_units import Unit
-    from equipoise.studies.search import Searched
     from equipoise.studies.store import Store
     from equipoise.studies.study import Study
 
@@ -51,8 +46,6 @@ def best(
 
     Parameters
     ----------
-    store
-        Path of a store, as `equipoise sweep` makes it.
     by
         Name of an output or of a varied number to go by, instead of what the study makes small or
         large; small is good unless the study says otherwise.  May be repeated.
@@ -61,8 +54,10 @@ def best(
     most
         Most designs that are told.
     """
+    from equipoise.figures.studies import best_charts
     from equipoise.schema.study_units import machine_of, study_of, units_in
     from equipoise.studies import selection as of_stores
+    from equipoise.studies.blocks import columns_of
     from equipoise.studies.store import open_store
 
     opened = open_store(store)
@@ -76,25 +71,14 @@ def best(
     model = None if chosen.out is None else machine_of(opened, first)
     title, units = title_of(opened), units_in(opened)
 
-    def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures.studies import best_charts
-
-        return best_charts(found, title, units)
-
-    def show() -> None:
-        from equipoise.present import show_blocks
-
-        blocks = found.blocks(outputs=of_stores.outputs_of(opened), units=units)
-        show_blocks(title, blocks)
-
-    def columns() -> Columns:
-        from equipoise.studies.blocks import columns_of
-
-        values = columns_of(found.numbers, found.values, found.outputs, found.figures)
-        return _columns(found.designs.tolist(), values, opened.units)
-
-    outputs.write(columns)
-    outputs.give(drawings, lambda: {"title": title, **found.to_dict()}, show)
+    columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
+    outputs.write(lambda: _columns(found.designs, columns, opened.units))
+    outputs.draw(lambda: best_charts(found, title, units))
+    outputs.print(
+        title,
+        lambda: {"title": title, **found.to_dict()},
+        lambda: found.blocks(outputs=of_stores.outputs_of(opened), units=units),
+    )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
 
@@ -110,15 +94,13 @@ def export(
 
     Parameters
     ----------
-    store
-        Path of a store, as `equipoise sweep` makes it.
     out
         The file, which ends in .parquet or .csv.
     kept
         Only designs that keep every limit.
     """
     from equipoise.schema.files import printable
-    from equipoise.studies import table_files as of_stores
+    from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
     opened = open_store(store)
@@ -144,8 +126,6 @@ def search(
 
     Parameters
     ----------
-    study
-        Path of a study file, or the name of a bundled example.
     population
         Designs in a generation, 100 if not given.
     generations
@@ -153,55 +133,41 @@ def search(
     seed
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
+    from equipoise.figures.studies import searched_charts
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
+    from equipoise.studies.blocks import columns_of
+    from equipoise.studies.search import GENERATIONS, POPULATION, search_designs
 
     asked = load_study(study)
     outputs.check([study], [chosen.out])
     if chosen.out is not None:
         check_new(asked.model.base(), chosen.out)
     units = units_of(asked)
-    given = {"population": population, "generations": generations, "seed": seed}
+    size, turns = population or POPULATION, generations or GENERATIONS
     with naming(study):
-        found = _found(asked, units, {k: one for k, one in given.items() if one is not None})
+        with swept(units) as told:
+            watched = Watched(asked, told)
+            found = search_designs(
+                asked,
+                population=size,
+                generations=turns,
+                seed=seed,
+                progress=lambda *_: watched.tell(size * turns),
+                compute=watched,
+            )
         chosen.check(0, len(found.values) - 1)
         own = _own(found.study) if outputs.plot is not None or not outputs.json else None
 
-        def drawings() -> Mapping[str, Picture]:
-            from equipoise.figures.studies import searched_charts
-
-            return searched_charts(found, units, own)
-
-        def show() -> None:
-            from equipoise.present import show_blocks
-
-            show_blocks(found.study.title, found.blocks(units=units, own=own))
-
-        def columns() -> Columns:
-            from equipoise.studies.blocks import columns_of
-
-            study = found.study
-            values = columns_of(study.paths, found.values, study.names, found.figures)
-            return _columns(range(len(found.values)), values, _si_units(study))
-
-        outputs.write(columns)
-        outputs.give(drawings, found.to_dict, show)
+        designs, made_of = range(len(found.values)), found.study
+        columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
+        outputs.write(lambda: _columns(designs, columns, _si_units(made_of)))
+        outputs.draw(lambda: searched_charts(found, units, own))
+        outputs.print(made_of.title, found.to_dict, lambda: found.blocks(units=units, own=own))
     if chosen.out is not None:
         number = chosen.design or 0
         of = f'a search of the study "{found.study.title}", seed {found.seed}'
         _save(found.machine(number), chosen.out, number, of)
-
-
-def _found(study: Study, units: dict[str, Unit], options: dict[str, int]) -> Searched:
-    from equipoise.studies.search import GENERATIONS, POPULATION, search_designs
-
-    most = options.get("population", POPULATION) * options.get("generations", GENERATIONS)
-    given: Any = options
-    with swept(units) as told:
-        watched = Watched(study, told)
-        return search_designs(
-            study, progress=lambda *_: watched.tell(most), compute=watched, **given
-        )
 
 
 def _own(study: Study) -> tuple[Array, Array] | None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import File, count, naming
+from equipoise.cli.options import count, file_named, naming
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -30,25 +30,14 @@ def examples() -> None:
     from equipoise.schema import opening
 
     found = opening.examples()
-    width = 2 + max(map(len, found))
+    width, indent = get_terminal_size().columns, 2 + max(map(len, found))
     for name, title in found.items():
-        wrapped = fill(
-            title,
-            get_terminal_size().columns,
-            initial_indent=f"{name:<{width}}",
-            subsequent_indent=" " * width,
-        )
-        print(wrapped)
+        first = f"{name:<{indent}}"
+        print(fill(title, width, initial_indent=first, subsequent_indent=" " * indent))
 
 
-def check(file: File, /) -> None:
-    """Check a file and tell how the linkage or tool is built up, or what a study will compute.
-
-    Parameters
-    ----------
-    file
-        Path of a model file or a study file, or the name of a bundled example.
-    """
+def check(file: Annotated[str, file_named("Path of a model file or a study file")], /) -> None:
+    """Check a file and tell how the linkage or tool is built up, or what a study will compute."""
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.present import checks, show_blocks
@@ -56,17 +45,16 @@ def check(file: File, /) -> None:
     from equipoise.schema.files import printable
 
     found = load(file)
-    if isinstance(found, Tool):
-        show_blocks(found.title, checks.tool_blocks(found, printable(file)))
-        return
     with naming(file):
-        if isinstance(found, Machine):
-            blocks = [*checks.machine_blocks(found)]  # what is wrong is told before the title
-            show_blocks(found.title, blocks)
+        if isinstance(found, Tool):
+            blocks = checks.tool_blocks(found, printable(file))
+        elif isinstance(found, Machine):
+            blocks = checks.machine_blocks(found)
         else:
             from equipoise.schema.study_units import units_of
 
-            show_blocks(found.title, checks.study_blocks(found, units_of(found), file))
+            blocks = checks.study_blocks(found, units_of(found), file)
+        show_blocks(found.title, [*blocks])  # what is wrong is told before the title
 
 
 def schema(*, tool: bool = False, study: bool = False) -> None:
@@ -87,7 +75,7 @@ def schema(*, tool: bool = False, study: bool = False) -> None:
 
 
 def new(
-    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    file: Annotated[str | None, Parameter(name="FILE")] = None,
     /,
     *,
     tool: bool = False,
@@ -106,7 +94,7 @@ def new(
     """
     from importlib.resources import files
 
-    from equipoise.schema.output import write
+    from equipoise.schema.files import write
 
     name, usual, command = STARTS[_kind(tool, study)]
     start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
@@ -122,7 +110,7 @@ def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:
 
 
 def serve(
-    file: Annotated[str | None, Parameter(name="FILE", negative="")] = None,
+    file: Annotated[str | None, Parameter(name="FILE")] = None,
     /,
     *,
     port: Annotated[int | None, count(0, 65535)] = None,

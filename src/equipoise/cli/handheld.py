@@ -3,57 +3,67 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from typing import Annotated, Any
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
-    File,
     Out,
+    ShownIn,
+    ToolFile,
     blaming,
-    check_new,
+    check_belonging,
     count,
     ends_of_range,
+    file_named,
     naming,
     quantity,
     read_by,
-    sources_of,
+    sizes,
+    time_a_day,
 )
-from equipoise.cli.outputs import UNITS, Drawn, Outputs, Printed, write_model
+from equipoise.cli.outputs import (
+    Drawings,
+    Drawn,
+    Outputs,
+    Printed,
+    check_new,
+    sources_of,
+    write_model,
+)
 from equipoise.cli.progress import counted
-from equipoise.cli.tool_answers import RANGE, Asked, give, pictures_of, print_tool, tool_of
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from equipoise.figures import Picture
+    from equipoise.handheld.exposed import ToolExposure
+    from equipoise.handheld.model import Tool
+    from equipoise.handheld.modes import ToolModes
+    from equipoise.handheld.sweep import ToolSweep
+    from equipoise.present.cells import Units
 
 app = App(name="tool")
+RANGE = '"2000 rpm : 9000 rpm"'
 VARY = re.compile(r"(?P<station>\S.*?)\s+(?P<key>\S+)\s*=\s*(?P<low>[^:]*\S)\s*:\s*(?P<high>.*\S)")
 MOST_MODES, MOST_SPEEDS = 100, 5_000
 VALUES, BAND = 81, 201
 """Values of a number that is varied; speeds over which sensitivities are told."""
-DAY = 86_400.0
 
 
 def _range(option: str, text: str) -> tuple[float, float]:
     """Two speeds; a unit may stand after the second only."""
-    wrong = f"{option}: got {text!r}; give a range of speeds, the slower one first: {RANGE}"
-    parts = ends_of_range(text)
-    if len(parts) != 2:
-        raise UsageError(wrong)
-    low, high = (quantity(option, part, "angular speed") for part in parts)
-    if not 0 < low < high:
-        raise UsageError(wrong)
-    return low, high
-
-
-def _places(option: str, text: str) -> tuple[float, ...]:
-    return tuple(quantity(option, part.strip(), "length") for part in text.split(","))
-
-
-def _duration(option: str, text: str) -> float:
-    duration = quantity(option, text, "time")
-    if not 0 < duration <= DAY:
-        raise UsageError(f"{option}: got {text!r}; give more than 0 and at most 24 h a day")
-    return duration
+    ends = [quantity(option, part, "angular speed") for part in ends_of_range(text)]
+    if len(ends) != 2 or not 0 < ends[0] < ends[1]:
+        raise UsageError(
+            f"{option}: got {text!r}; give a range of speeds, the slower one first: {RANGE}"
+        )
+    return ends[0], ends[1]
 
 
 Speeds = Annotated[Any, read_by(_range)]
@@ -62,17 +72,17 @@ Number = Annotated[int | None, count(1, MOST_MODES)]
 
 @app.default
 def tool(
-    file: File,
+    file: ToolFile,
     /,
     *,
     modes: bool = False,
     number: Number = None,
     respond: Speeds = None,
     speeds: Annotated[int | None, count(2, MOST_SPEEDS)] = None,
-    at: Annotated[Any, read_by(_places)] = None,
+    at: Annotated[Any, sizes("length")] = None,
     exposure: bool = False,
-    duration: Annotated[Any, read_by(_duration)] = None,
-    units: Annotated[str, UNITS] = "",
+    duration: Annotated[Any, read_by(time_a_day)] = None,
+    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """A hand-held tool: how its shaft vibrates, and what the hands get.
@@ -81,8 +91,6 @@ def tool(
 
     Parameters
     ----------
-    file
-        Path of a tool's file, with a table [shaft], or the name of a bundled example.
     modes
         Natural frequencies, eigenvalues with damping, shapes and their nodes.
     number
@@ -98,25 +106,126 @@ def tool(
     duration
         Time a day at the working speed, "2 h", in the place of the file's [[work]].
     """
-    from equipoise.handheld.sweep import ToolSweep, default_answers
+    from equipoise.handheld.sweep import default_answers
 
-    loaded, shown_in = tool_of(file, units)
+    loaded = _tool_of(file)
     swept = any(one is not None for one in (respond, speeds, at, outputs.csv))
-    exposed = exposure or duration is not None
-    chosen = {"modes": modes, "respond": swept, "exposure": exposed}
+    chosen = {"modes": modes, "respond": swept, "exposure": exposure or duration is not None}
     names = [name for name, is_chosen in chosen.items() if is_chosen]
-    if number is not None and names and not modes:
-        raise UsageError("--number belongs to --modes; give both")
+    check_belonging("--modes", modes or not names, number=number)
     outputs.check(sources_of(loaded, file))
-    asked = Asked(loaded, file, shown_in, number, respond, speeds, tuple(at or ()), duration)
+    asked = Asked(loaded, number, respond, speeds, tuple(at or ()), duration)
+    names = names or default_answers(loaded)
     with naming(file):
-        answers = {"modes": "modes", "respond": "sweep", "exposure": "exposure"}
-        parts = [getattr(asked, answers[name]) for name in names or default_answers(loaded)]
-    for found in parts:
-        if isinstance(found, ToolSweep):
-            outputs.write(found.columns)
-    drawings = (lambda found=found: asked.pictures(found) for found in parts)
-    give(loaded, parts, drawings, shown_in, outputs)
+        parts = [getattr(asked, name) for name in names]
+    if outputs.csv is not None:
+        outputs.write(asked.respond.columns)
+    _give(loaded, parts, lambda: asked.pictures(names), units, outputs)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A tool and what the options say of it."""
+
+    tool: Tool
+    number: int | None = None
+    range: tuple[float, float] | None = None
+    count: int | None = None
+    places: tuple[float, ...] = ()
+    duration: float | None = None
+
+    @property
+    def ends(self) -> tuple[float, float]:
+        """Lowest and highest speed of the engine, rad/s."""
+        from equipoise.handheld.sweep import default_speeds
+
+        told = self.range or default_speeds(self.tool)
+        if told is None:
+            what = "missing, so that no speeds are told; add the table [operation], or give"
+            raise ModelError("operation", f"{what} --respond {RANGE}")
+        return told
+
+    @cached_property
+    def speeds(self) -> np.ndarray[Any, Any]:
+        """Speeds of the engine, rad/s."""
+        from equipoise.handheld.sweep import SPEEDS, speeds_between
+
+        return speeds_between(self.tool, *self.ends, self.count or SPEEDS)
+
+    @cached_property
+    def modes(self) -> ToolModes:
+        """Free vibration, which several pictures show too."""
+        from equipoise.handheld.modes import vibrate_tool
+        from equipoise.handheld.sweep import MODES
+
+        return vibrate_tool(self.tool, self.number or MODES)
+
+    @cached_property
+    def respond(self) -> ToolSweep:
+        """Transmission and response over speeds."""
+        from equipoise.handheld.sweep import sweep_tool
+
+        length = self.tool.shaft.length
+        off = [place for place in self.places if not 0 <= place <= length]
+        if off:
+            right = f"give places from 0 to {length:g} m"
+            raise UsageError(f"--at: got {off[0]:g} m, off the shaft; {right}")
+        return sweep_tool(self.tool, self.speeds, self.places)
+
+    @cached_property
+    def exposure(self) -> ToolExposure:
+        """What the hands get."""
+        from equipoise.handheld.exposed import expose_tool
+
+        return expose_tool(self.tool, self.speeds, self.duration)
+
+    def pictures(self, names: Sequence[str]) -> Mapping[str, Picture]:
+        """Pictures of answers; free vibration stands in those of others, too."""
+        from equipoise.figures import tool_designs, tool_shaft, tool_speeds
+        from equipoise.handheld.studies import determinant_chart
+
+        drawn: dict[str, Picture] = {}
+        if "modes" in names:
+            highest = float(self.modes.planes[0].parameter[-1])
+            drawn |= tool_shaft.mode_charts(self.modes)
+            chart = determinant_chart(self.tool, 1.1 * highest)
+            drawn |= tool_designs.determinant_charts(chart, self.modes)
+        if "respond" in names and self.respond.transmissions is not None:
+            drawn |= tool_speeds.transmission_charts(self.respond.transmissions, self.modes)
+        if "respond" in names and self.respond.response is not None:
+            drawn |= tool_shaft.response_charts(self.respond.response)
+        if "exposure" in names:
+            drawn |= tool_speeds.exposure_charts(self.exposure)
+        return drawn
+
+
+def _tool_of(file: str) -> Tool:
+    from equipoise.schema.models import load_tool
+
+    return load_tool(file)
+
+
+def _give(
+    tool: Tool,
+    parts: Sequence[Any],
+    drawings: Drawings,
+    units: Units | None,
+    outputs: Drawn,
+    key: str = "",
+) -> None:
+    """Draw what was found, then print it below what the tool is.
+
+    key : of the JSON object below which it stands, if not beside the title.
+    """
+    from equipoise.handheld.blocks import summary_blocks
+
+    def values() -> Mapping[str, Any]:
+        told = {name: one for part in parts for name, one in part.to_dict().items()}
+        return {"title": tool.title, **({key: told} if key else told)}
+
+    outputs.draw(drawings)
+    blocks = chain(summary_blocks(tool), *(part.blocks() for part in parts))
+    outputs.print(tool.title, values, lambda: blocks, units)
 
 
 # -- other questions -------------------------------------------------------------------------------
@@ -124,20 +233,18 @@ def tool(
 
 @app.command
 def vary(
-    file: File,
+    file: ToolFile,
     change: Annotated[str, Parameter(name="CHANGE")],
     /,
     *,
     number: Number = None,
-    units: Annotated[str, UNITS] = "",
+    units: ShownIn = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """Natural frequencies against a number of a station.
 
     Parameters
     ----------
-    file
-        Path of a tool's file, with a table [shaft], or the name of a bundled example.
     change
         A station, one of its numbers and a range: "harness position = 0 mm : 400 mm".
     number
@@ -145,67 +252,59 @@ def vary(
     """
     import numpy as np
 
+    from equipoise.figures.pictures import pictures_of
     from equipoise.handheld.design_plan import KEYS
     from equipoise.handheld.studies import check_key, vary_tool
     from equipoise.handheld.sweep import MODES
 
-    loaded, shown_in = tool_of(file, units)
+    loaded = _tool_of(file)
     match = VARY.fullmatch(change.strip())
     if match is None:
-        raise UsageError(
-            f"CHANGE: got {change!r}; give a station, one of its numbers and a range, such as "
-            '"harness position = 0 mm : 400 mm"'
-        )
+        right = 'one of its numbers and a range, such as "harness position = 0 mm : 400 mm"'
+        raise UsageError(f"CHANGE: got {change!r}; give a station, {right}")
     station, key = match["station"], match["key"]
     with blaming("CHANGE"):
         check_key(loaded.station(station), key)
     if key.endswith("damping"):
-        raise UsageError(
-            f"CHANGE: got {key!r}, which natural frequencies without damping do not feel; vary "
-            "another number"
-        )
+        what = "which natural frequencies without damping do not feel; vary another number"
+        raise UsageError(f"CHANGE: got {key!r}, {what}")
     low, high = (quantity("CHANGE", match[end], KEYS[key]) for end in ("low", "high"))
     if not low < high:
         raise UsageError(f"CHANGE: got {change!r}; give a range, the smaller value first")
     with naming(file), blaming("CHANGE"):
         values = np.linspace(low, high, VALUES)
         found = vary_tool(loaded, station, key, values, number or MODES)
-    give(loaded, [found], [lambda: pictures_of(found)], shown_in, outputs, "variation")
+    _give(loaded, [found], lambda: pictures_of(found), units, outputs, "variation")
 
 
 @app.command
 def sensitivities(
-    file: File,
+    file: ToolFile,
     /,
     *,
     speeds: Speeds = None,
-    units: Annotated[str, UNITS] = "",
+    units: ShownIn = None,
     outputs: Printed = Printed(),
 ) -> None:
     """What each number of a tool does to the hands.
 
     Parameters
     ----------
-    file
-        Path of a tool's file, with a table [shaft], or the name of a bundled example.
     speeds
         Speeds of the engine, "5000 rpm : 6000 rpm"; the band of [design] or of [operation] if not
         given.
     """
     import numpy as np
 
+    from equipoise.handheld.blocks import summary_blocks
     from equipoise.handheld.exposed import tool_sensitivities
+    from equipoise.handheld.hand_blocks import sensitivity_blocks
 
-    loaded, shown_in = tool_of(file, units)
+    loaded = _tool_of(file)
     band = loaded.design.speeds if speeds is None and loaded.design is not None else speeds
-    asked = Asked(loaded, file, shown_in, respond=band)
     with naming(file):
-        found = tool_sensitivities(loaded, np.linspace(*asked.ends, BAND))
-
-    def show() -> None:
-        from equipoise.handheld.hand_blocks import sensitivity_blocks
-
-        print_tool(loaded, shown_in, sensitivity_blocks(loaded, found, asked.ends))
+        ends = Asked(loaded, range=band).ends
+        found = tool_sensitivities(loaded, np.linspace(*ends, BAND))
 
     def values() -> Mapping[str, Any]:
         told: dict[str, dict[str, float]] = {}
@@ -213,34 +312,34 @@ def sensitivities(
             told.setdefault(station, {})[key] = slope
         return {"title": loaded.title, "sensitivities": told}
 
-    outputs.print(values, show)
+    blocks = chain(summary_blocks(loaded), sensitivity_blocks(loaded, found, ends))
+    outputs.print(loaded.title, values, lambda: blocks, units)
 
 
 @app.command
 def design(
-    file: File,
+    file: Annotated[str, file_named("Path of a tool's file, with a table [design]")],
     /,
     *,
     out: Out = None,
-    units: Annotated[str, UNITS] = "",
+    units: ShownIn = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """Change what [design] allows so that the hands feel least.
 
     Parameters
     ----------
-    file
-        Path of a tool's file, with a table [design], or the name of a bundled example.
     out
         Write the better tool to this new file.
     """
+    from equipoise.figures.pictures import pictures_of
     from equipoise.handheld.design import design_tool
 
-    loaded, shown_in = tool_of(file, units)
+    loaded = _tool_of(file)
     if out is not None:
         check_new(loaded, out)
     with naming(file), counted("search") as progress:
         found = design_tool(loaded, progress)
     if out is not None:
         write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
-    give(loaded, [found], [lambda: pictures_of(found)], shown_in, outputs, "design")
+    _give(loaded, [found], lambda: pictures_of(found), units, outputs, "design")

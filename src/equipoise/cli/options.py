@@ -5,9 +5,8 @@ Values are read where an option is declared: ``speed: Speed = None`` is a number
 
 from __future__ import annotations
 
-import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -24,22 +23,11 @@ from equipoise.errors import (
 )
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
-    from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
+    from equipoise.present.cells import Units
 
-SIGNED = Parameter(negative="", allow_leading_hyphen=True)
-"""Of an option whose value may begin with a minus sign."""
-
-File = Annotated[str, Parameter(name="FILE", negative="")]
-StudyFile = Annotated[str, Parameter(name="STUDY", negative="")]
-StorePath = Annotated[str, Parameter(name="STORE", negative="")]
-Out = Annotated[str | None, Parameter(name=["--out", "-o"], negative="")]
-Many = Annotated[list[str] | None, Parameter(negative="", consume_multiple=False)]
-Text = Annotated[str | None, SIGNED]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
-"""As in `structures.response`, which would bring NumPy into every start of the command line."""
+"""As in `vibration.response`, which would bring NumPy into every start of the command line."""
 
 
 # -- texts as values -------------------------------------------------------------------------------
@@ -52,9 +40,7 @@ def read_by(read: Callable[[str, str], Any], name: str | None = None) -> Paramet
         token = tokens[0]
         return read(token.keyword or name or "", token.value)
 
-    return Parameter(
-        name=name, negative="", allow_leading_hyphen=True, n_tokens=1, converter=convert
-    )
+    return Parameter(name=name, allow_leading_hyphen=True, n_tokens=1, converter=convert)
 
 
 def size(dimension: str, wanted: str = "", name: str | None = None) -> Parameter:
@@ -80,8 +66,9 @@ def count(least: int, most: int, name: str | None = None) -> Parameter:
     return read_by(read, name)
 
 
-Speed = Annotated[float | None, size("angular speed")]
-Angle = Annotated[float | None, size("angle")]
+def sizes(dimension: str) -> Parameter:
+    """Quantities with commas between, in SI units."""
+    return read_by(lambda option, text: quantities(option, text, dimension))
 
 
 def quantity(option: str, text: str, dimension: str) -> float:
@@ -90,6 +77,25 @@ def quantity(option: str, text: str, dimension: str) -> float:
 
     with blaming(option):
         return parse(text, dimension)  # type: ignore[arg-type]
+
+
+def quantities(option: str, text: str, dimension: str) -> list[float]:
+    """Sizes in SI units, with commas between."""
+    return [quantity(option, part.strip(), dimension) for part in text.split(",")]
+
+
+def _units(option: str, text: str) -> Units:
+    from equipoise.present.cells import read_units
+
+    return read_units(text)
+
+
+def time_a_day(option: str, text: str) -> float:
+    """Time of exposure a day, s."""
+    duration = quantity(option, text, "time")
+    if not 0 < duration <= 86_400.0:
+        raise UsageError(f"{option}: got {text!r}; give more than 0 and at most 24 h a day")
+    return duration
 
 
 def ends_of_range(text: str) -> list[str]:
@@ -103,6 +109,53 @@ def ends_of_range(text: str) -> list[str]:
     if len(parts) == 2 and " " not in parts[0] and " " in parts[1]:
         parts[0] = f"{parts[0]} {parts[1].split(' ', 1)[1]}"
     return parts
+
+
+# -- what many commands ask for --------------------------------------------------------------------
+
+
+def file_named(text: str, name: str = "FILE") -> Parameter:
+    """An argument that is a file; `text` says of what."""
+    return Parameter(name=name, help=f"{text}, or the name of a bundled example.")
+
+
+SIGNED = Parameter(allow_leading_hyphen=True)
+"""Of an option whose value may begin with a minus sign."""
+File = Annotated[str, file_named("Path of a model file")]
+PlantingFile = Annotated[str, file_named("Path of a model file with a table [planting]")]
+SupportFile = Annotated[str, file_named("Path of a model file with a table [support]")]
+ToolFile = Annotated[str, file_named("Path of a tool's file, with a table [shaft]")]
+StudyFile = Annotated[str, file_named("Path of a study file", "STUDY")]
+StorePath = Annotated[
+    str, Parameter(name="STORE", help="Path of a store, as `equipoise sweep` makes it.")
+]
+Out = Annotated[str | None, Parameter(name=["--out", "-o"])]
+Many = Annotated[list[str] | None, Parameter(consume_multiple=False)]
+Text = Annotated[str | None, SIGNED]
+Rate = Annotated[float | None, size("angular speed")]
+Speed = Annotated[
+    Rate, Parameter(help='Speed of the crank instead of the file\'s, such as "250 rpm".')
+]
+Angle = Annotated[float | None, size("angle")]
+CrankZero = Annotated[
+    Angle,
+    Parameter(help='Direction from which crank angles count, such as "-83 deg"; else the x axis.'),
+]
+ShownIn = Annotated[
+    Any,
+    read_by(_units),
+    Parameter(
+        help='Units of the printed tables where they are not to be the usual ones: "um, rad/s".'
+    ),
+]
+
+
+def linkage_of(file: str, speed: float | None = None) -> Machine:
+    """The machine of a file, whose crank turns at another speed where one is given, rad/s."""
+    from equipoise.schema.models import load_linkage
+
+    machine = load_linkage(file)
+    return machine if speed is None else machine.with_drive(speed=speed)
 
 
 # -- whose fault it is -----------------------------------------------------------------------------
@@ -151,71 +204,3 @@ def check_belonging(owner: str, given: object, **options: object) -> None:
     for name, value in options.items():
         if value is not None and not given:
             raise UsageError(f"--{name.replace('_', '-')} belongs to {owner}; give both")
-
-
-# -- where results may go --------------------------------------------------------------------------
-
-
-def check_folder(option: str, path: str) -> None:
-    """Pictures need a folder, or a place where one can be made."""
-    above = os.path.abspath(path)
-    while not os.path.lexists(above) and os.path.dirname(above) != above:
-        above = os.path.dirname(above)
-    if not path or not os.path.isdir(above):
-        raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
-
-
-def check_new(model: Machine | Tool, path: str) -> list[Path]:
-    """A new model file, and what is written beside it, must have a place to go and take no other's.
-
-    Returns the files.
-    """
-    from equipoise.schema.files import printable
-
-    if not path:
-        raise UsageError("--out: got an empty name; give the name of a file")
-    if os.path.isdir(path):
-        raise UsageError(f"--out: {printable(path)} is a directory; give the name of a file")
-    if not os.path.isdir(os.path.dirname(path) or "."):
-        raise UsageError(f"{printable(path)}: there is no such folder; make it, or choose another")
-    files = files_of(model, path)
-    for file in files:
-        if os.path.lexists(file):
-            raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
-    return files
-
-
-def files_of(model: Machine | Tool, path: str) -> list[Path]:
-    """The files in which a model is saved: its own, and tables beside it."""
-    from equipoise.schema import saving
-
-    return saving.files_of(model, path)
-
-
-def sources_of(model: Machine | Tool, file: str) -> list[str]:
-    """The files from which a model was read."""
-    from equipoise.schema.saving import parts_of
-
-    folder = os.path.dirname(file)
-    return [file, *(os.path.join(folder, part.file) for part in parts_of(model) if part.file)]
-
-
-def check_result_file(
-    option: str, path: str, sources: Sequence[str], others: Iterable[str | None] = ()
-) -> None:
-    """Results must not take the place of what they come from, and must have a place to go.
-
-    others : further files that are written.
-    """
-    if not path:
-        raise UsageError(f"{option}: got an empty name; give the name of a file")
-    if os.path.isdir(path):
-        raise UsageError(f"{option}: {path} is a directory; give the name of a file")
-    if not os.path.isdir(os.path.dirname(path) or "."):
-        raise UsageError(f"{option}: {path}: there is no such folder; make it, or choose another")
-    if os.path.abspath(path) in (os.path.abspath(other) for other in others if other):
-        raise UsageError(f"{option}: {path} has another part in this command; give another name")
-    if os.path.exists(path) and any(
-        os.path.exists(source) and os.path.samefile(source, path) for source in sources
-    ):
-        raise UsageError(f"{option}: {path} is what is to be analysed; give another name")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,14 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import (
-    Out,
-    check_belonging,
-    check_folder,
-    check_result_file,
-    count,
-    files_of,
-)
+from equipoise.cli.options import Out, check_belonging, count
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -26,15 +20,15 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
     from equipoise.present.cells import Units
+    from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
 
 Kind = Literal["svg", "png", "pdf"]
 Columns = Sequence[tuple[str, str, "np.ndarray[Any, Any]"]]
-
-UNITS = Parameter(
-    negative="",
-    help='Units of the printed tables where they are not to be the usual ones: "um, rad/s".',
-)
+Values = Callable[[], Mapping[str, Any]]
+Blocks = Callable[[], "Iterable[Block | Section]"]
+Drawings = Callable[[], "Mapping[str, Picture]"]
+"""Results are made when they are asked for: what is not wanted is not computed."""
 
 
 @Parameter(name="*")
@@ -45,20 +39,20 @@ class Printed:
     json: bool = False
     """Print one JSON object in SI units, and nothing else."""
 
-    def print(self, values: Callable[[], Mapping[str, Any]], show: Callable[[], None]) -> None:
-        """Print values or tables."""
+    def print(self, title: str, values: Values, blocks: Blocks, units: Units | None = None) -> None:
+        """Print values as JSON, or a title and blocks below it."""
         if self.json:
-            from equipoise.schema.output import json_text
+            from equipoise.schema.files import json_text
 
             print(json_text(dict(values())))
         else:
-            show()
+            from equipoise.present import show_blocks
+
+            show_blocks(title, blocks(), units=units)
 
     def show(self, found: Result, units: Units | None = None, **options: Any) -> None:
-        """Print a result, further arguments as of `present.show`."""
-        from equipoise.present import show
-
-        self.print(found.to_dict, lambda: show(found, units=units, **options))
+        """Print a result; further arguments as of its `blocks`."""
+        self.print(found.title, found.to_dict, lambda: found.blocks(**options), units)
 
 
 @Parameter(name="*")
@@ -76,27 +70,21 @@ class Drawn(Printed):
         if self.plot is not None:
             check_folder("--plot", self.plot)
 
-    def draw(self, drawings: Callable[[], Mapping[str, Picture]]) -> None:
+    def draw(self, drawings: Drawings) -> None:
         """Write pictures into the folder if there is to be one, and say so."""
         if self.plot is not None:
             write_pictures(drawings(), self.plot, self.format or "svg")
 
-    def give_result(self, found: Result, units: Units | None = None, **options: Any) -> None:
-        """Write the pictures that are wanted, then print; further arguments as of `show`."""
+    def draw_result(self, found: Result) -> None:
+        """Write the pictures of a result."""
         from equipoise.figures.pictures import pictures_of
 
         self.draw(lambda: pictures_of(found))
-        self.show(found, units, **options)
 
-    def give(
-        self,
-        drawings: Callable[[], Mapping[str, Picture]],
-        values: Callable[[], Mapping[str, Any]],
-        show: Callable[[], None],
-    ) -> None:
-        """Write the files that are wanted, then print; what is not wanted is not made."""
-        self.draw(drawings)
-        self.print(values, show)
+    def give(self, found: Result, units: Units | None = None, **options: Any) -> None:
+        """Write the files that are wanted, then print; further arguments as of `show`."""
+        self.draw_result(found)
+        self.show(found, units, **options)
 
 
 @Parameter(name="*")
@@ -115,9 +103,13 @@ class Outputs(Drawn):
     def write(self, columns: Callable[[], Columns]) -> None:
         """Write columns, as name, unit and values, if they are wanted."""
         if self.csv is not None:
-            from equipoise.schema.output import csv_text
+            from equipoise.schema.files import csv_text
 
             write_text(self.csv, csv_text(columns()))
+
+    def give(self, found: Result, units: Units | None = None, **options: Any) -> None:
+        self.write(found.columns)
+        super().give(found, units, **options)
 
 
 @Parameter(name="*")
@@ -141,10 +133,12 @@ class Chosen:
             )
 
 
+# -- writing ---------------------------------------------------------------------------------------
+
+
 def write_text(path: str, text: str) -> None:
     """Write a file, and say so."""
-    from equipoise.schema.files import printable
-    from equipoise.schema.output import write
+    from equipoise.schema.files import printable, write
 
     write(path, text)
     print(f"wrote {printable(path)}", file=sys.stderr)
@@ -153,7 +147,7 @@ def write_text(path: str, text: str) -> None:
 def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
     from equipoise.figures import render
-    from equipoise.schema.output import write_all
+    from equipoise.schema.files import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
     tell_pictures(len(figures), folder)
@@ -174,6 +168,7 @@ def write_model(
     """
     from equipoise.schema.documents import save
     from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of
 
     start = f"{origin} Started from: " if origin else ""
     description = f"{start}{model.description}".removesuffix(" Started from: ").strip()
@@ -182,3 +177,63 @@ def write_model(
     save(made, path)
     written = " and ".join(map(printable, files_of(made, path)))
     print(f"wrote {written}{what_next}", file=sys.stderr)
+
+
+# -- where results may go --------------------------------------------------------------------------
+
+
+def check_folder(option: str, path: str) -> None:
+    """Pictures need a folder, or a place where one can be made."""
+    above = os.path.abspath(path)
+    while not os.path.lexists(above) and os.path.dirname(above) != above:
+        above = os.path.dirname(above)
+    if not path or not os.path.isdir(above):
+        raise UsageError(f"{option}: got {path!r}; give the name of a folder that can be made")
+
+
+def _check_place(option: str, path: str) -> None:
+    """A file needs a name, and a folder that is there."""
+    from equipoise.schema.files import printable
+
+    if not path:
+        raise UsageError(f"{option}: got an empty name; give the name of a file")
+    shown = f"{option}: {printable(path)}"
+    if os.path.isdir(path):
+        raise UsageError(f"{shown} is a directory; give the name of a file")
+    if not os.path.isdir(os.path.dirname(path) or "."):
+        raise UsageError(f"{shown}: there is no such folder; make it, or choose another")
+
+
+def check_new(model: Machine | Tool, path: str) -> None:
+    """A new model file, and what lies beside it, must have a place to go and take no other's."""
+    from equipoise.schema.files import printable
+    from equipoise.schema.models import files_of
+
+    _check_place("--out", path)
+    for file in files_of(model, path):
+        if os.path.lexists(file):
+            raise UsageError(f"{printable(file)}: is there already; choose another name by --out")
+
+
+def sources_of(model: Machine | Tool, file: str) -> list[str]:
+    """The files from which a model was read."""
+    from equipoise.schema.models import parts_of
+
+    folder = os.path.dirname(file)
+    return [file, *(os.path.join(folder, part.file) for part in parts_of(model) if part.file)]
+
+
+def check_result_file(
+    option: str, path: str, sources: Sequence[str], others: Iterable[str | None] = ()
+) -> None:
+    """Results must not take the place of what they come from, and must have a place to go.
+
+    others : further files that are written.
+    """
+    _check_place(option, path)
+    if os.path.abspath(path) in (os.path.abspath(other) for other in others if other):
+        raise UsageError(f"{option}: {path} has another part in this command; give another name")
+    if os.path.exists(path) and any(
+        os.path.exists(source) and os.path.samefile(source, path) for source in sources
+    ):
+        raise UsageError(f"{option}: {path} is what is to be analysed; give another name")

@@ -14,15 +14,16 @@ from equipoise.cli.options import (
     File,
     Many,
     Out,
+    Rate,
     Speed,
-    check_folder,
     count,
     ends_of_range,
     naming,
+    quantities,
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, tell_pictures, write_pictures
+from equipoise.cli.outputs import Kind, check_folder, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
     from equipoise.present.pictures import Picture
     from equipoise.studies.design_space import Model
 
-plot_app = App(name="plot")
+app = App(name="plot")
+MOST_ANGLES = 12
 POINTS, MOST_POINTS = 51, 400
 """Values of each number of a map."""
 RANGE = '"links.crank.mass = 100 g : 500 g"'
@@ -51,13 +53,13 @@ def default_name(file: str, ending: str) -> str:
 
 
 def _crank_angles(option: str, text: str) -> list[float]:
-    parts = [part.strip() for part in text.split(",")]
-    if not 1 <= len(parts) <= 12:
-        raise UsageError(f"{option}: got {len(parts)} crank angles; give 1 to 12")
-    return [quantity(option, part, "angle") for part in parts]
+    count = text.count(",") + 1
+    if count > MOST_ANGLES:
+        raise UsageError(f"{option}: got {count} crank angles; give 1 to {MOST_ANGLES}")
+    return quantities(option, text, "angle")
 
 
-@plot_app.default
+@app.default
 def plot(
     file: File,
     /,
@@ -67,14 +69,12 @@ def plot(
     only: Many = None,
     output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
-    speed: Speed = None,
+    speed: Rate = None,
 ) -> None:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     out
         Folder for the pictures; FILE-pictures beside you if not given.
     format
@@ -91,7 +91,7 @@ def plot(
     from equipoise.figures import render
     from equipoise.present.findings import ToolFindings, find
     from equipoise.present.pictures import each
-    from equipoise.schema.output import write_all
+    from equipoise.schema.files import write_all
 
     folder = default_name(file, "-pictures") if out is None else out
     check_folder("--out", folder)
@@ -140,7 +140,7 @@ def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Pic
     raise UsageError(f"--only: {unknown(missing, found, 'picture')}")
 
 
-@plot_app.command(name="map")
+@app.command(name="map")
 def landscape(
     file: File,
     first: Annotated[str, Parameter(name="FIRST")],
@@ -158,8 +158,6 @@ def landscape(
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     first
         A number and its range, "links.crank.mass = 100 g : 500 g", or of a counterweight
         "counterweights.crank.radius = 0 mm : 60 mm".
@@ -171,8 +169,6 @@ def landscape(
         A number that is set first, "counterweights.crank.mass = 1 kg".  May be repeated.
     points
         Values of each number.
-    speed
-        Speed of the crank instead of the file's, such as "250 rpm".
     out
         Folder for the pictures; FILE-pictures beside you if not given.
     format

@@ -13,15 +13,15 @@ from equipoise.cli.options import (
     File,
     Many,
     Out,
-    Speed,
+    Rate,
     Text,
     blaming,
     check_belonging,
-    check_result_file,
+    linkage_of,
     naming,
     quantity,
-    sources_of,
 )
+from equipoise.cli.outputs import check_result_file, sources_of
 from equipoise.cli.pictures import default_name
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
@@ -47,15 +47,13 @@ def animate(
     width: Annotated[int, SIGNED] = 640,
     trace: Many = None,
     force: bool = False,
-    speed: Speed = None,
+    speed: Rate = None,
     dark: bool = False,
 ) -> None:
     """Show how a linkage moves: as SVG for a page, as GIF, or as a film in MP4.
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     out
         The animation: name of an .svg, .gif or .mp4 file; FILE.svg beside you if not given.
     seconds
@@ -74,8 +72,8 @@ def animate(
         With .gif and .mp4: light lines on a dark ground.  An SVG follows the reader's screen.
     """
     from equipoise.figures.stage import check_seconds, check_width
-    from equipoise.schema.models import load_linkage
-    from equipoise.schema.output import write
+    from equipoise.results.analysis import analyze
+    from equipoise.schema.files import write
 
     name = default_name(file, ".svg") if out is None else out
     kind = _kind(name)
@@ -86,17 +84,13 @@ def animate(
     check_belonging("--force", force, speed=speed)
     check_seconds(seconds)
     check_width(width)
-    machine = load_linkage(file)
+    machine = linkage_of(file, speed)
     check_result_file("--out", name, sources_of(machine, file))
-    if speed is not None:
-        machine = machine.with_drive(speed=speed)
     options: dict[str, Any] = {"seconds": seconds, "width": width, "traced": trace}
     if kind != "svg":
         options["dark"] = dark
     if kind == "mp4":
         options["turns"] = turns
-    from equipoise.results.analysis import analyze
-
     with naming(file):
         found = analyze(machine, _angles_of(kind, seconds))
         data = _animated(found, kind, force, options)
@@ -157,8 +151,6 @@ def report(
 
     Parameters
     ----------
-    file
-        Path of a model file, or the name of a bundled example.
     out
         Name of the report, which ends in .html or .pdf; NAME-report.html beside you if not given.
     language
@@ -170,12 +162,11 @@ def report(
     """
     paths = _paths(file, out, pdf)
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
-    from equipoise.present.composition import check, write_document
+    from equipoise.present.composition import build, check, write_document
+    from equipoise.present.findings import find
     from equipoise.schema.files import printable
 
     check(paths, language)
-    from equipoise.present.composition import build
-    from equipoise.present.findings import find
 
     found = find(file, speed=rate)
     with naming(file):

@@ -3,23 +3,30 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from functools import partial
 from shlex import quote
 from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import Out, StorePath, StudyFile, blaming_by_place, count, naming
+from equipoise.cli.options import (
+    Out,
+    StorePath,
+    StudyFile,
+    blaming_by_place,
+    count,
+    file_named,
+    naming,
+)
 from equipoise.cli.outputs import Drawn, Printed
 from equipoise.cli.progress import Watched, rate_told, swept, time_told
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.figures import Picture
-    from equipoise.schema.study_units import Unit
-    from equipoise.studies.blocks import Summary
+    from equipoise.studies.blocks import Summary, Unit
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
 
@@ -58,32 +65,19 @@ def sweep(
 
     Parameters
     ----------
-    study
-        Path of a study file, or the name of a bundled example.
     out
         The store, a new folder.
     """
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
-    from equipoise.studies import run
+    from equipoise.studies.run import run_study
 
     asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
-    units = units_of(asked)
     with naming(study):
-        _compute(
-            lambda told: run.run_study(
-                asked,
-                out,
-                workers=computers.workers,
-                cluster=computers.cluster,
-                progress=told,
-            ),
-            out,
-            units,
-            outputs,
-        )
+        work = partial(run_study, asked, out, **vars(computers))
+        _compute(work, out, units_of(asked), outputs)
 
 
 def resume(
@@ -93,38 +87,23 @@ def resume(
     computers: Computers = Computers(),
     outputs: Printed = Printed(),
 ) -> None:
-    """Compute what is missing in a store, as if nothing had ever stopped.
-
-    Parameters
-    ----------
-    store
-        Path of a store, as `equipoise sweep` makes it.
-    """
+    """Compute what is missing in a store, as if nothing had ever stopped."""
     from equipoise.schema import study_units
-    from equipoise.schema.study_units import units_in
     from equipoise.studies.store import open_store
 
-    units = units_in(open_store(store))
-    _compute(
-        lambda told: study_units.resume(
-            store, workers=computers.workers, cluster=computers.cluster, progress=told
-        ),
-        store,
-        units,
-        outputs,
-    )
+    units = study_units.units_in(open_store(store))
+    _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
 
 
 def _compute(
-    work: Callable[[Callable[[Progress], None]], Store],
-    path: str,
-    units: dict[str, Unit],
-    outputs: Printed,
+    work: Callable[..., Store], path: str, units: dict[str, Unit], outputs: Printed
 ) -> None:
     """Compute with progress on standard error, and give what came of it.
 
-    work : computes a store, which is at the `path`, and tells of its progress.
+    work : computes a store, which is at the `path`, and tells of its `progress`.
     """
+    from equipoise.studies.blocks import summary_blocks
+
     last: list[Progress] = []
     with _going_on(path):
         with swept(units) as told:
@@ -133,19 +112,16 @@ def _compute(
                 last[:] = [progress]
                 told(progress)
 
-            store = work(tell)
+            store = work(progress=tell)
         (end,) = last
         summary = _summary(store, end)
-
-        def show() -> None:
-            from equipoise.present import show_blocks
-            from equipoise.studies.blocks import summary_blocks
-
-            rate = rate_told(end.computed / max(end.seconds, 1e-9))
-            run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
-            show_blocks(summary.title, summary_blocks(summary, units, run))
-
-        outputs.print(lambda: _values(summary, end), show)
+        rate = rate_told(end.computed / max(end.seconds, 1e-9))
+        run = f", {time_told(end.seconds)}, {rate}" if end.computed else ", nothing was missing"
+        outputs.print(
+            summary.title,
+            lambda: _values(summary, end),
+            lambda: summary_blocks(summary, units, run),
+        )
 
 
 @contextmanager
@@ -197,7 +173,9 @@ def _values(summary: Summary, last: Progress) -> dict[str, Any]:
 
 
 def tolerance(
-    study: StudyFile,
+    study: Annotated[
+        str, file_named("Path of a study file whose numbers have tolerances", "STUDY")
+    ],
     /,
     *,
     designs: Annotated[int | None, count(1, MOST_DESIGNS)] = None,
@@ -207,35 +185,22 @@ def tolerance(
 
     Parameters
     ----------
-    study
-        Path of a study file whose numbers have tolerances, or the name of a bundled example.
     designs
         Machines that are drawn, instead of as many as the study has.
     """
+    from equipoise.figures.studies import tolerance_charts
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.tolerances import tolerance as of_study
 
     asked = load_study(study)
-    given: dict[tuple[str, ...], str] = {}
-    if designs is not None:
-        given = {("sampling", "designs"): "--designs"}
+    given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
     with naming(study):
         if designs is not None:
             asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
         units = units_of(asked)
-        with blaming_by_place(given), swept(units) as told:
+        with blaming_by_place({} if designs is None else given), swept(units) as told:
             watched = Watched(asked, told)
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
-
-    def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures.studies import tolerance_charts
-
-        return tolerance_charts(found, units)
-
-    def show() -> None:
-        from equipoise.present import show_blocks
-
-        show_blocks(found.study.title, found.blocks(units=units))
-
-    outputs.give(drawings, found.to_dict, show)
+    outputs.draw(lambda: tolerance_charts(found, units))
+    outputs.print(found.study.title, found.to_dict, lambda: found.blocks(units=units))

@@ -21,7 +21,7 @@ from equipoise.symbols.shapes import Shape, coils, zigzag
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.design_variables import Change
+    from equipoise.balancing.workshop import Change
     from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
 

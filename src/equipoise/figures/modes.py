@@ -24,7 +24,7 @@ from equipoise.vibration.linkages import rows_of
 if TYPE_CHECKING:
     from equipoise.mechanism.support import Support
     from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.mode_shapes import Mode
+    from equipoise.vibration.response import Mode
 
 View = Literal["side", "rear", "top"]
 

@@ -19,7 +19,8 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.outputs import FRAME, joint_named
+from equipoise.mechanism.checks import FRAME
+from equipoise.mechanism.outputs import joint_named
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 

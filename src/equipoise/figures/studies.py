@@ -19,7 +19,7 @@ from equipoise.quantities import Display
 from equipoise.results.charts import Array, Axis, Bars, Chart, Curve, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
-    from equipoise.schema.study_units import Unit
+    from equipoise.studies.blocks import Unit
     from equipoise.studies.design_space import Make
     from equipoise.studies.search import Searched
     from equipoise.studies.selection import Best

@@ -17,10 +17,10 @@ from equipoise.i18n import say, to_say
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
 
 if TYPE_CHECKING:
+    from equipoise.handheld.layout import Line as ShaftLine
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse
-    from equipoise.handheld.shapes import Line as ShaftLine
 
 
 MM = 1000.0

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.exposed import ToolExposure
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
-    from equipoise.handheld.transmission import Transmissions
+    from equipoise.handheld.sweep import Transmissions
 
 
 RATE = Display("m/s^2", 1.0)

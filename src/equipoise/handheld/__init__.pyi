@@ -19,12 +19,12 @@ from .modes import ToolModes as ToolModes
 from .modes import vibrate_tool as vibrate_tool
 from .response import ToolResponse as ToolResponse
 from .response import respond_tool as respond_tool
-from .section import Section as Section
-from .section import Tube as Tube
+from .shaft import Section as Section
 from .shaft import Segment as Segment
 from .shaft import Shaft as Shaft
+from .shaft import Tube as Tube
 from .studies import vary_tool as vary_tool
 from .sweep import ToolSweep as ToolSweep
+from .sweep import Transmissions as Transmissions
 from .sweep import sweep_tool as sweep_tool
-from .transmission import Transmissions as Transmissions
-from .transmission import transmit as transmit
+from .sweep import transmit as transmit

@@ -1,8 +1,20 @@
-"""A chain of segments and stations: what its ends and nodes answer, carried from left to right.
+"""The shaft as a chain of segments and stations, carried from left to right.
 
-At each node stand displacement and slope q = (w, theta), and what the right part exerts on the left
-one is f = (V, M) = Z q + g.  The dynamic stiffness Z of everything to the left, symmetric, and the
-load g are carried over a segment with transfer matrix T by
+A segment's transfer matrix, exact, as entire functions.  The state along the shaft is displacement
+w, slope angle theta, bending moment M and shear force V, both as the right part exerts them on the
+left part.  With s the complex frequency (i omega)
+
+    w' = theta + V / kGA,  theta' = M / EI,  M' = rho I s^2 theta - V,  V' = rho A s^2 w
+
+for Timoshenko's beam; without shear and rotary inertia it is (1) of Nagamine and Irie, and the
+matrix that of their (6).  The matrix of coefficients A of these equations satisfies
+A^4 = a A^2 + b, so exp(A l) = c0 + c1 A l + c2 (A l)^2 + c3 (A l)^3 with four functions of a l^2
+and b l^4 that are power series: no roots, no hyperbolic functions that cancel at low frequencies or
+overflow at high ones.  They converge at once because no segment is longer than `longest` says.
+
+The chain.  At each node stand displacement and slope q = (w, theta), and what the right part exerts
+on the left one is f = (V, M) = Z q + g.  The dynamic stiffness Z of everything to the left,
+symmetric, and the load g are carried over a segment with transfer matrix T by
 
     M = T11 + T12 Z,  Z' = (T21 + T22 Z) M^-1,  g' = T22 g - Z' T12 g
 
@@ -15,14 +27,119 @@ Only arithmetic is used, on arrays of any shape and on `duals.Dual`; numbers of 
 
 from __future__ import annotations
 
+from collections import namedtuple
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import factorial, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from equipoise.handheld.duals import value_of
-from equipoise.handheld.segment import Transfer
+
+SHORT = 0.9
+"""Share of the lowest natural frequency of a clamped segment up to which it is used, squared."""
+TERMS, PAIRS = 8, 16
+"""Terms of the series in b l^4, and of those in a l^2 and b l^4."""
+
+
+class Transfer(namedtuple("Transfer", "ww wt wv wm tw tt tv tm vw vt vv vm mw mt mv mm")):
+    """The state at the right end of a segment by that at its left end; named (to)(from)."""
+
+    __slots__ = ()
+
+    def carried(self, w: Any, t: Any, v: Any, m: Any) -> tuple[Any, Any, Any, Any]:
+        """Displacement, slope, shear force and moment at the right end, by those at the left."""
+        return (
+            self.ww * w + self.wt * t + self.wv * v + self.wm * m,
+            self.tw * w + self.tt * t + self.tv * v + self.tm * m,
+            self.vw * w + self.vt * t + self.vv * v + self.vm * m,
+            self.mw * w + self.mt * t + self.mv * v + self.mm * m,
+        )
+
+    def part(self, key: Any) -> Transfer:
+        """The same of some of many segments."""
+        return Transfer(*(entry[key] for entry in self))
+
+
+def longest(
+    frequency: float, flexibility: float, shear: float, mass: float, rotary: float
+) -> float:
+    """Length (m) of a segment without a natural frequency below this one, clamped at both ends.
+
+    frequency : rad/s.
+    flexibility, shear : 1 / EI (1/(N m2)) and 1 / kGA (1/N).
+    mass, rotary : rho A (kg/m) and rho I (kg m).
+
+    By Friedrichs' and Cauchy's inequalities 1 / omega_1^2 is at most
+    rho A (l / pi)^4 / EI + rho A (l / pi)^2 / kGA + rho I (l / pi)^2 / EI.
+    """
+    linear = mass * shear + rotary * flexibility
+    square = mass * flexibility
+    room = SHORT / frequency**2
+    return pi * sqrt(2 * room / (linear + sqrt(linear**2 + 4 * square * room)))
+
+
+def transfer(length: Any, flexibility: Any, mass: Any) -> Transfer:
+    """Transfer matrix of a segment without shear and rotary inertia.
+
+    length : m.
+    flexibility : 1 / EI, 1/(N m2).
+    mass : rho A s^2, kg/(m s2).
+    """
+    square = length * length
+    quartic = -mass * flexibility * square * square
+    c0, c1, c2, c3 = (_series(quartic, k) for k in range(4))
+    along, cubic = c1 * length, c3 * square * length
+    bent, fallen = c2 * square * flexibility, cubic * flexibility
+    pushed = c2 * square * mass
+    to_w = (c0, along, -fallen, bent)
+    to_t = (-fallen * mass, c0, -bent, along * flexibility)
+    to_v = (along * mass, pushed, c0, fallen * mass)
+    to_m = (-pushed, -cubic * mass, -along, c0)
+    return Transfer(*to_w, *to_t, *to_v, *to_m)
+
+
+def _series(quartic: Any, first: int) -> Any:
+    """Sum of b^k / (4 k + first)!, by Horner."""
+    total: Any = 1 / factorial(4 * TERMS - 4 + first)
+    for k in range(TERMS - 2, -1, -1):
+        total = quartic * total + 1 / factorial(4 * k + first)
+    return total
+
+
+def shear_transfer(length: Any, flexibility: Any, shear: Any, mass: Any, rotary: Any) -> Transfer:
+    """Transfer matrix of a segment of Timoshenko's beam.
+
+    length, flexibility, mass : as in `transfer`.
+    shear : 1 / kGA, 1/N.
+    rotary : rho I s^2, kg m/s2.
+    """
+    e, s, m, r = flexibility, shear, mass, rotary
+    square = length * length
+    yielding, turning = m * s, r * e
+    both = yielding + turning
+    quadratic = both * square
+    quartic = -(m * e + yielding * turning) * square * square
+    c0, c1, c2, c3 = _paired_series(quadratic, quartic)
+    c1, c2, c3 = c1 * length, c2 * square, c3 * square * length
+    to_w = (c0 + c2 * yielding, c1 + c3 * both, c1 * s + c3 * (s * yielding - e), c2 * e)
+    to_t = (-c3 * e * m, c0 + c2 * turning, -c2 * e, c1 * e + c3 * e * turning)
+    to_v = (c1 * m + c3 * m * yielding, c2 * m, c0 + c2 * yielding, c3 * m * e)
+    to_m = (-c2 * m, c1 * r + c3 * (r * turning - m), -c1 - c3 * both, c0 + c2 * turning)
+    return Transfer(*to_w, *to_t, *to_v, *to_m)
+
+
+def _paired_series(quadratic: Any, quartic: Any) -> tuple[Any, Any, Any, Any]:
+    """c0 to c3, from A^(2 n) = p A^2 + q with p, q by recurrence."""
+    p, q = 0.0 * quartic, 0.0 * quartic + 1.0
+    c0 = c1 = c2 = c3 = 0.0 * quartic
+    for n in range(PAIRS):
+        even, odd = 1 / factorial(2 * n), 1 / factorial(2 * n + 1)
+        c0, c1, c2, c3 = c0 + q * even, c1 + q * odd, c2 + p * even, c3 + p * odd
+        p, q = quadratic * p + q, quartic * p
+    return c0, c1, c2, c3
+
 
 Array = np.ndarray[Any, Any]
 
@@ -43,7 +160,7 @@ class Symmetric(NamedTuple):
 
 
 class Step(NamedTuple):
-    """A segment that was crossed: its transfer matrix, M and its determinant, Z at its left end."""
+    """A segment that was crossed: its transfer matrix, M and its determinant."""
 
     over: Transfer
     aa: Any
@@ -86,17 +203,17 @@ class States:
     force: Sequence[Pair]
 
 
+@np.errstate(all="ignore")  # whoever asks looks whether the answer is finite
 def carry(chain: Chain) -> Carried:
     """Carry the dynamic stiffness from the left end, which is free, to the right one."""
     first = chain.stations[0]
     z = Symmetric(first.across, 0.0, first.turning)
     stiffness, steps = [z], []
-    with np.errstate(all="ignore"):  # whoever asks looks whether the answer is finite
-        for over, station in zip(chain.segments, chain.stations[1:], strict=True):
-            step, z = _cross(over, z)
-            z = Symmetric(z.aa + station.across, z.at, z.tt + station.turning)
-            steps.append(step)
-            stiffness.append(z)
+    for over, station in zip(chain.segments, chain.stations[1:], strict=True):
+        step, z = _cross(over, z)
+        z = Symmetric(z.aa + station.across, z.at, z.tt + station.turning)
+        steps.append(step)
+        stiffness.append(z)
     return Carried(chain, stiffness, steps)
 
 
@@ -119,16 +236,12 @@ def _cross(over: Transfer, z: Symmetric) -> tuple[Step, Symmetric]:
     return Step(over, m_aa, m_at, m_ta, m_tt, determinant), after
 
 
+@np.errstate(all="ignore")
 def solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
     """The motion under harmonic forces and couples on the nodes; None for no load there.
 
     At a resonance without damping it is not finite.
     """
-    with np.errstate(all="ignore"):
-        return _solve(carried, loads)
-
-
-def _solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
     z, chain = carried.stiffness, carried.chain
     g = _less(Pair(0.0, 0.0), loads[0])
     held = [g]
@@ -139,22 +252,14 @@ def _solve(carried: Carried, loads: Sequence[Pair | None]) -> States:
         held.append(g)
     last = z[-1]
     determinant = last.aa * last.tt - last.at * last.at
-    motion = [
-        Pair(
-            (last.at * g.turning - last.tt * g.across) / determinant,
-            (last.at * g.across - last.aa * g.turning) / determinant,
-        )
-    ]
+    across = (last.at * g.turning - last.tt * g.across) / determinant
+    motion = [Pair(across, (last.at * g.across - last.aa * g.turning) / determinant)]
     force = [Pair(0.0 * g.across, 0.0 * g.turning)]
     for step, before, g in zip(carried.steps[::-1], z[-2::-1], held[-2::-1], strict=True):
         q = _back(step, motion[-1], g)
         motion.append(q)
-        force.append(
-            Pair(
-                before.aa * q.across + before.at * q.turning + g.across,
-                before.at * q.across + before.tt * q.turning + g.turning,
-            )
-        )
+        across = before.aa * q.across + before.at * q.turning + g.across
+        force.append(Pair(across, before.at * q.across + before.tt * q.turning + g.turning))
     return States(motion[::-1], force[::-1])
 
 

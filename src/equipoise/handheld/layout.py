@@ -1,4 +1,4 @@
-"""From a tool to its chain: nodes, hands, and what sits there at a complex frequency."""
+"""From a tool to its chain: nodes, hands, what sits there at a complex frequency; its answer."""
 
 from __future__ import annotations
 
@@ -10,12 +10,19 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from equipoise.errors import ModelError
-from equipoise.handheld.chain import Chain, Pair
+from equipoise.errors import ModelError, UsageError
+from equipoise.handheld.chain import (
+    Chain,
+    Pair,
+    States,
+    Transfer,
+    longest,
+    shear_transfer,
+    transfer,
+)
 from equipoise.handheld.duals import Dual, stacked, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
-from equipoise.handheld.section import Section
-from equipoise.handheld.segment import Transfer, longest, shear_transfer, transfer
+from equipoise.handheld.shaft import Section
 
 Array = np.ndarray[Any, Any]
 TOUCHING = 1e-9
@@ -26,13 +33,11 @@ def impedance(tables: Sequence[Impedance], s: Any) -> Array:
     """Force over velocity (2, F), N s/m, of both planes at s = i omega, 1/s."""
     frequency = np.abs(np.imag(value_of(s))) / (2 * pi)
     rows = np.broadcast_to(frequency, (2, frequency.shape[-1]))
-    both = tables if len(tables) == 2 else (tables[0], tables[0])
-    return np.array([_between(table, row) for table, row in zip(both, rows, strict=True)])
-
-
-def _between(table: Impedance, frequency: Array) -> Array:
-    real = np.interp(frequency, table.frequency, table.resistance)
-    return np.asarray(real + 1j * np.interp(frequency, table.frequency, table.reactance))
+    found = []
+    for table, row in zip((tables[0], tables[-1]), rows, strict=True):
+        values = np.array(table.resistance) + 1j * np.array(table.reactance)
+        found.append(np.interp(row, table.frequency, values))
+    return np.array(found)
 
 
 def check_coverage(tool: Tool, lowest: float, highest: float) -> None:
@@ -118,7 +123,8 @@ class Layout:
     def _cells(self, start: Any, gap: Any) -> list[Cell]:
         """Segments of one section, none of which is too long."""
         left, length = (float(np.squeeze(value_of(number))) for number in (start, gap))
-        section = self._section(left + length / 2)
+        pieces, middle = self.tool.shaft.pieces, left + length / 2
+        section = next((one for _, stop, one in pieces if middle <= stop), pieces[-1][2])
         flexibility, shear = 1 / section.bending_stiffness, 1 / section.shear_stiffness
         most = longest(
             self.highest, flexibility, shear, section.mass_per_length, section.rotary_inertia
@@ -132,10 +138,6 @@ class Layout:
                 "mass, and the speeds",
             )
         return [Cell(left + k * length / parts, gap / parts, section) for k in range(parts)]
-
-    def _section(self, place: float) -> Section:
-        pieces = self.tool.shaft.pieces
-        return next((section for _, stop, section in pieces if place <= stop), pieces[-1][2])
 
     @property
     def nodes(self) -> list[list[Station]]:
@@ -159,27 +161,21 @@ class Layout:
         """
         square = np.real(s * s) if kind == "undamped" else s * s
         stations = [self._station(stations, s, square, kind) for stations in self.nodes]
-        whole = self._transfers(square, kind)
+        if isinstance(square, Dual):  # the cells come before the planes
+            square = Dual(square.value[None], square.slopes[:, None])
+        lengths = stacked([cell.length for cell in self.cells])
+        whole = self._transfers(self.cells, lengths, square, kind)
         return Chain([whole.part(k) for k in range(len(self.cells))], stations)
 
     def part(self, which: Array, length: Array, s: Array, kind: Kind) -> Transfer:
         """Transfer matrices (X, 1 or 2, F) from the left end of some cells (X) over a length, m."""
         square = np.real(s * s) if kind == "undamped" else s * s
-        sections = [self.cells[k].section for k in which]
-        return self._over(length.reshape(-1, 1, 1), sections, square, self._loss(kind))
+        return self._transfers([self.cells[k] for k in which], length[:, None, None], square, kind)
 
-    def _loss(self, kind: Kind) -> complex:
-        loss = self.tool.shaft.loss_factor
-        return 1 + 1j * loss if loss and kind != "undamped" else 1.0
-
-    def _transfers(self, square: Any, kind: Kind) -> Transfer:
-        """Transfer matrices of all cells, (N - 1, 1 or 2, F)."""
-        if isinstance(square, Dual):  # the cells come before the planes
-            square = Dual(square.value[None], square.slopes[:, None])
-        length = stacked([cell.length for cell in self.cells])
-        return self._over(length, [cell.section for cell in self.cells], square, self._loss(kind))
-
-    def _over(self, length: Any, sections: list[Section], square: Any, loss: complex) -> Transfer:
+    def _transfers(self, cells: list[Cell], length: Any, square: Any, kind: Kind) -> Transfer:
+        """Transfer matrices (C, 1 or 2, F) from the left end of cells over lengths (C, 1, 1), m."""
+        sections, factor = [cell.section for cell in cells], self.tool.shaft.loss_factor
+        loss = 1 + 1j * factor if factor and kind != "undamped" else 1.0
         flexibility = _column([1 / one.bending_stiffness for one in sections]) / loss
         mass = _column([one.mass_per_length for one in sections]) * square
         if self.tool.shaft.theory != "timoshenko":
@@ -192,7 +188,7 @@ class Layout:
         across: Any = np.zeros((2, 1))
         turning: Any = np.zeros((2, 1))
         for one in stations:
-            across = across + sum(self.holding(one, s, kind).values(), start=np.zeros((2, 1)))
+            across = sum(self.holding(one, s, kind).values(), start=across)
             across = across + self.mass_at(one) * square
             turning = turning + self._spring(one, "rotational_", s, kind)
             turning = turning + self.of(one, "inertia") * square
@@ -226,9 +222,9 @@ class Layout:
 
     def _spring(self, station: Station, owner: str, s: Any, kind: Kind) -> Any:
         stiffness = self.of(station, f"{owner}stiffness")
-        return (
-            stiffness if kind == "undamped" else stiffness + self.of(station, f"{owner}damping") * s
-        )
+        if kind == "undamped":
+            return stiffness
+        return stiffness + self.of(station, f"{owner}damping") * s
 
     def absorber(self, station: Station, s: Any, square: Any, kind: Kind) -> Any:
         """A mass behind a spring: m s^2 k / (k + m s^2)."""
@@ -256,3 +252,44 @@ def _order(point: tuple[Any, Station | None]) -> tuple[float, bool]:
 
 def _column(numbers: list[float]) -> Array:
     return np.array(numbers)[:, None, None]
+
+
+class Line(NamedTuple):
+    """Of some places (X) of the shaft, in both planes: arrays (X, 2, F).
+
+    displacement (m) and slope (rad); moment (N m) and shear (N), just right of a station.
+    """
+
+    displacement: Array
+    slope: Array
+    moment: Array
+    shear: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Field:
+    """The answer of a layout at complex frequencies s (1 or 2, F)."""
+
+    layout: Layout
+    s: Array
+    states: States
+    kind: Kind = "forced"
+
+    def at(self, places: Array) -> Line:
+        """Shape at some places (X), m from the left end.
+
+        Raises
+        ------
+        UsageError : a place is off the shaft.
+        """
+        places = np.asarray(places, dtype=float)
+        length = self.layout.tool.shaft.length
+        if np.any((places < 0) | (places > length)):
+            raise UsageError(f"got a place off the shaft; give places from 0 to {length:g} m")
+        starts = np.array([cell.start for cell in self.layout.cells])
+        which = np.clip(np.searchsorted(starts, places, "right") - 1, 0, len(starts) - 1)
+        over = self.layout.part(which, places - starts[which], self.s, self.kind)
+        w, t = (np.array(part)[which] for part in zip(*self.states.motion, strict=True))
+        v, m = (np.array(part)[which] for part in zip(*self.states.force, strict=True))
+        displacement, slope, shear, moment = over.carried(w, t, v, m)
+        return Line(displacement, slope, moment, shear)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.handheld.chain import Pair, carry, solve
 from equipoise.handheld.frequencies import (
     eigenvalues,
     floating,
@@ -17,11 +18,11 @@ from equipoise.handheld.frequencies import (
     rigid_modes,
     scale_of,
 )
-from equipoise.handheld.layout import Layout
-from equipoise.handheld.model import PLANES, Tool
-from equipoise.handheld.shapes import scaled, shapes_beside, still_shapes, zeros_of
+from equipoise.handheld.layout import Field, Kind, Layout
+from equipoise.handheld.model import PLANES, Station, Tool
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
+from equipoise.signals import highest_at
 
 Array = np.ndarray[Any, Any]
 
@@ -30,7 +31,13 @@ POINTS = 401
 NUDGE = 1e-3
 """Share of the radius at which the search for what moves without a spring begins."""
 SLOWEST = 1e-4
-"""Smallest eigenvalue looked for that does not swing, over the frequency of the bare shaft."""
+"""Smallest eigenvalue looked for, over the lowest natural frequency and that of the bare shaft."""
+
+BESIDE, ASIDE, LOUDER = 1e-9, 1e-3, 100.0
+"""Shares of an eigenvalue by which a load shakes beside it to bring out the shape, and further off;
+how many times as loud it must be at the first."""
+SAME = 1e-9
+"""Share of each other within which two natural frequencies are one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,6 +86,24 @@ class PlaneModes:
         """Natural frequencies (K,), Hz."""
         return self.frequency / (2 * pi)
 
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units; natural frequencies in Hz."""
+        return {
+            "natural_frequencies": self.cycles_per_second,
+            "eigenvalues": self.parameter,
+            "rigid": list(self.rigid),
+            "shapes": self.shapes,
+            "nodes": [nodes.tolist() for nodes in self.nodes],
+            "damped": [
+                {
+                    "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+                    "frequency": mode.cycles_per_second,
+                    "damping_ratio": mode.damping_ratio,
+                }
+                for mode in self.damped
+            ],
+        }
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ToolModes(Result):
@@ -100,34 +125,14 @@ class ToolModes(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units; natural frequencies in Hz."""
-        first = self.planes[0]
+        first, *_ = planes = [plane.to_dict() for plane in self.planes]
         return {
-            "natural_frequencies": first.cycles_per_second,
-            "eigenvalues": first.parameter,
+            "natural_frequencies": first["natural_frequencies"],
+            "eigenvalues": first["eigenvalues"],
             "places": self.places,
-            "planes": {
-                name: _plane_dict(plane) for name, plane in zip(PLANES, self.planes, strict=True)
-            },
+            "planes": dict(zip(PLANES, planes, strict=True)),
             "notes": list(map(str, self.notes)),
         }
-
-
-def _plane_dict(plane: PlaneModes) -> dict[str, Any]:
-    return {
-        "natural_frequencies": plane.cycles_per_second,
-        "eigenvalues": plane.parameter,
-        "rigid": list(plane.rigid),
-        "shapes": plane.shapes,
-        "nodes": [nodes.tolist() for nodes in plane.nodes],
-        "damped": [
-            {
-                "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-                "frequency": mode.cycles_per_second,
-                "damping_ratio": mode.damping_ratio,
-            }
-            for mode in plane.damped
-        ],
-    }
 
 
 def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
@@ -158,7 +163,7 @@ def vibrate_tool(tool: Tool, number: int = 6) -> ToolModes:
         )
         for plane in range(1 if tool.alike else 2)
     ]
-    return ToolModes(tool, places, (planes[0], planes[-1]), tuple(_notes(tool, lacking)))
+    return ToolModes(tool, places, (planes[0], planes[-1]), (*_notes(tool, lacking),))
 
 
 def _damped_modes(
@@ -180,13 +185,8 @@ def _damped_modes(
 def _eigenvalues(layout: Layout, frequency: Array, radius: Array) -> tuple[list[Array], list[int]]:
     """As `eigenvalues`, from the natural frequencies (2, K); rigid motions begin beside 0."""
     starts = np.maximum(frequency, NUDGE * radius[:, None])
-    return eigenvalues(layout, starts, (_slowest(layout.tool, frequency), radius))
-
-
-def _slowest(tool: Tool, frequency: Array) -> float:
-    """Smallest size of an eigenvalue that is looked for, 1/s, by the natural frequencies, rad/s."""
-    least = SLOWEST * scale_of(tool)
-    return min(least, SLOWEST * float(np.min(frequency[frequency > 0], initial=least / SLOWEST)))
+    least = SLOWEST * float(np.min(frequency[frequency > 0], initial=scale_of(layout.tool)))
+    return eigenvalues(layout, starts, (least, radius))
 
 
 def swinging_below(tool: Tool, highest: float) -> Array:
@@ -212,22 +212,130 @@ def rigid_names(free: Array) -> tuple[str, ...]:
     return tuple(names)
 
 
-def _notes(tool: Tool, lacking: Sequence[int]) -> list[Note]:
-    notes = [
-        Note(
-            to_say(
-                "the hand at {name} is known by its impedance at real frequencies only; "
-                "the modes are those of the tool without it"
-            ),
-            name=one.name,
-        )
-        for one in tool.stations
-        if one.hand is not None and one.hand.impedance
-    ]
+def _notes(tool: Tool, lacking: Sequence[int]) -> Iterator[Note]:
+    template = to_say(
+        "the hand at {name} is known by its impedance at real frequencies only; "
+        "the modes are those of the tool without it"
+    )
+    for station in tool.grips:
+        if station.hand is not None and station.hand.impedance:
+            yield Note(template, name=station.name)
+    one, many = to_say("1 eigenvalue"), to_say("{count} eigenvalues")
+    template = to_say("{many} with damping of the {name} plane could not be found")
     for name, count in zip(PLANES, lacking, strict=True):
         if count > 0:
-            one, many = to_say("1 eigenvalue"), to_say("{count} eigenvalues")
             told = Note(one) if count == 1 else Note(many, count=count)
-            template = to_say("{many} with damping of the {name} plane could not be found")
-            notes.append(Note(template, many=told, name=name))
-    return notes
+            yield Note(template, many=told, name=name)
+
+
+# -- shapes ----------------------------------------------------------------------------------------
+
+
+def still_shapes(layout: Layout, frequency: Array, places: Array) -> Array:
+    """Shapes (2, K, X) without damping; of equal frequencies such that they share no momentum."""
+    swing = 1j * np.where(frequency > 0, frequency, 1.0)
+    found = shapes_beside(layout, swing, places, "undamped")
+    shapes, slopes = (np.moveaxis(part, 0, -1).real.copy() for part in found)
+    for plane, free in enumerate(rigid_modes(layout.tool)):
+        floats = len(floating(layout.tool)[plane])
+        for k, (across, slope) in enumerate(free[: frequency.shape[1]]):
+            shapes[plane, k], slopes[plane, k] = across + slope * places, slope
+        shapes[plane, len(free) : len(free) + floats] = 0.0
+        for k in range(1, shapes.shape[1]):
+            earlier, later = frequency[plane, k - 1 : k + 1]
+            if later - earlier <= SAME * later and later > 0:
+                pairs = [(shapes[plane, one], slopes[plane, one]) for one in (k - 1, k)]
+                share = _share(layout, plane, later, places, *pairs)
+                shapes[plane, k] -= share * shapes[plane, k - 1]
+    return np.asarray(scaled(shapes).real)
+
+
+Shape = tuple[Array, Array]
+"""Displacement and slope at the places, (X,) each."""
+
+
+def _share(
+    layout: Layout, plane: int, frequency: float, places: Array, one: Shape, other: Shape
+) -> float:
+    """How much of one shape is in another, by the momentum that they share."""
+
+    def momentum(shape: Shape) -> float:
+        total = 0.0
+        for start, stop, section in layout.tool.shaft.pieces:
+            inside = (places >= start) & (places <= stop)
+            for kind, density in ((0, section.mass_per_length), (1, section.rotary_inertia)):
+                along = np.trapezoid((one[kind] * shape[kind])[inside], places[inside])
+                total += density * float(along)
+        for station in layout.tool.stations:
+            here, there = (
+                [float(np.interp(station.position, places, part)) for part in each]
+                for each in (one, shape)
+            )
+            total += _mass(layout, station, plane, frequency) * here[0] * there[0]
+            total += station.inertia[plane] * here[1] * there[1]
+        return total
+
+    own = momentum(one)
+    return momentum(other) / own if own else 0.0
+
+
+def _mass(layout: Layout, station: Station, plane: int, frequency: float) -> float:
+    """What moves with a station, kg, with its absorber, which swings further than it."""
+    total = float(layout.mass_at(station))
+    absorber = station.absorber
+    if absorber is not None:
+        stiffness = absorber.stiffness[plane]
+        below = stiffness - absorber.mass * frequency**2
+        total += absorber.mass * (stiffness / below) ** 2 if below else 0.0
+    return total
+
+
+def shapes_beside(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+    """Displacement and slope (X, 2, K) of the shaft for each eigenvalue (1 or 2, K), 1/s.
+
+    Its answer close beside each to a load that knows no symmetry; nothing where that is no louder
+    than far beside, as the shaft then is at rest while something on it swings.
+    """
+    near, far = (_loaded(layout, s * (1 + share), places, kind) for share in (BESIDE, ASIDE))
+    still = np.max(np.abs(near[0]), axis=0) < LOUDER * np.max(np.abs(far[0]), axis=0)
+    return np.where(still, 0.0, near[0]), np.where(still, 0.0, near[1])
+
+
+def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array, Array]:
+    """Displacement and slope (X, 2, K) under that load."""
+    numbers = np.arange(s.shape[-1])
+    loads = [
+        Pair(1 + np.cos(2.4 * k + 0.7 * numbers), np.sin(1.3 * k + 0.3 + 1.1 * numbers))
+        for k in range(len(layout.nodes))
+    ]
+    states = solve(carry(layout.chain(s, kind)), loads)
+    line = Field(layout, np.broadcast_to(s, (2, s.shape[-1])), states, kind).at(places)
+    return line.displacement, line.slope
+
+
+def scaled(shapes: Array) -> Array:
+    """Shapes (..., X), each 1 where it is largest."""
+    at = highest_at(np.abs(shapes), smooth=False)[..., None]
+    largest = np.take_along_axis(shapes, at, -1)
+    return np.asarray(shapes / np.where(largest == 0, 1.0, largest))
+
+
+def zeros_of(places: Array, shape: Array) -> Array:
+    """Places at which a shape changes its sign, by a cubic through the four points about each."""
+    before = np.flatnonzero(np.signbit(shape[1:]) != np.signbit(shape[:-1]))
+    return np.array([_zero(places, shape, int(k)) for k in before])
+
+
+def _zero(places: Array, shape: Array, k: int) -> float:
+    """The place between two points, as a cubic of the displacement; on a line across a kink."""
+    first = min(max(k - 1, 0), len(places) - 4)
+    x, y = places[first : first + 4], shape[first : first + 4]
+    cubic = 0.0
+    with np.errstate(all="ignore"):
+        for i in range(4):
+            others = np.delete(y, i)
+            cubic += float(x[i] * np.prod(others / (others - y[i])))
+    if places[k] <= cubic <= places[k + 1]:
+        return cubic
+    share = shape[k] / (shape[k] - shape[k + 1])
+    return float(places[k] + share * (places[k + 1] - places[k]))

@@ -1,23 +1,18 @@
-"""The shaft of a tool and its cross-sections: frozen values in SI units, and their checks."""
+"""The shaft of a tool and its cross-sections: frozen values in SI units, and their checks.
+
+A section is given by stiffness and mass, or by the measures of a tube.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from functools import cached_property
 from itertools import pairwise
-from typing import Any, ClassVar
+from math import inf, pi
+from typing import Any, ClassVar, Literal, NamedTuple, Self, get_args
 
 from equipoise.errors import ModelError
-from equipoise.handheld.section import (
-    PROFILE,
-    Section,
-    Theory,
-    Tube,
-    profile_conditions,
-    profile_of,
-    profile_table,
-    without_profile,
-)
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -32,13 +27,220 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import numbered
+from equipoise.mechanism.balance import MATERIALS as DENSITIES
+from equipoise.mechanism.checks import numbered, unknown
+from equipoise.quantities import Dimension
 
-THEORIES = ("euler-bernoulli", "timoshenko")
+Theory = Literal["euler-bernoulli", "timoshenko"]
 
 
 @declared
-class Segment(Frozen):
+class Section(Frozen):
+    """Cross-section by its stiffness and mass, EI and rho A.
+
+    shear_stiffness : kGA, N; infinite where shear does not count.
+    rotary_inertia : rho I, kg m; 0 where it does not count.
+    """
+
+    bending_stiffness: float = inside("bending stiffness", above=0)
+    mass_per_length: float = inside("mass per length", above=0)
+    shear_stiffness: float = inside("force", default=inf, above=0, endless=True)
+    rotary_inertia: float = inside(Number(), default=0.0, at_least=0)
+
+    def section(self, theory: Theory) -> Section:
+        """The section as a theory sees it."""
+        if theory == "timoshenko":
+            return self
+        return replace(self, shear_stiffness=inf, rotary_inertia=0.0)
+
+
+@declared
+class Tube(Frozen):
+    """Cross-section by its measures and material; 0 inside for a rod.
+
+    poisson_ratio : for shear.
+    carried : mass per length of what runs in it and does not stiffen it.
+    """
+
+    outer_diameter: float = inside("length", above=0)
+    inner_diameter: float = inside("length", at_least=0)
+    youngs_modulus: float = inside("modulus", above=0)
+    density: float = inside("density", above=0)
+    poisson_ratio: float = inside(Number(), default=0.3)
+    carried: float = inside("mass per length", default=0.0, at_least=0)
+
+    def section(self, theory: Theory) -> Section:
+        """The section as a theory sees it; shear by the coefficient of Cowper (1966)."""
+        area = pi / 4 * (self.outer_diameter**2 - self.inner_diameter**2)
+        second = pi / 64 * (self.outer_diameter**4 - self.inner_diameter**4)
+        plain = Section(self.youngs_modulus * second, self.density * area + self.carried)
+        if theory != "timoshenko":
+            return plain
+        nu, ratio = self.poisson_ratio, self.inner_diameter / self.outer_diameter
+        square = (1 + ratio**2) ** 2
+        coefficient = 6 * (1 + nu) * square / ((7 + 6 * nu) * square + (20 + 12 * nu) * ratio**2)
+        shear = coefficient * self.youngs_modulus / (2 * (1 + nu)) * area
+        return replace(plain, shear_stiffness=shear, rotary_inertia=self.density * second)
+
+
+class Material(NamedTuple):
+    """Of a tube: youngs_modulus, Pa; density, kg/m3; poisson_ratio."""
+
+    youngs_modulus: float
+    density: float
+    poisson_ratio: float = 0.3
+
+
+MATERIALS = {
+    "aluminium": Material(70e9, DENSITIES["aluminium"], 0.33),
+    "steel": Material(210e9, DENSITIES["steel"], 0.3),
+    "titanium": Material(110e9, 4500.0, 0.34),
+    "magnesium": Material(45e9, 1780.0, 0.35),
+}
+"""The usual values of their alloys."""
+
+
+def _key(kind: Dimension | Number | Text, text: str, default: Any = None, **more: Any) -> Key:
+    of = Quantity(dimension=kind) if isinstance(kind, str) else kind
+    return Key("", of, text, default=default, **more)
+
+
+PROFILE: Keys = {
+    "mass_per_length": _key("mass per length", "goes with `bending_stiffness`"),
+    "bending_stiffness": _key(
+        "bending stiffness", "modulus of elasticity times second moment of area"
+    ),
+    "outer_diameter": _key(
+        "length", "of a tube, instead of `bending_stiffness` and the mass", example="26 mm"
+    ),
+    "inner_diameter": _key("length", "of a tube; 0 for a rod", 0.0),
+    "material": _key(Text(suggested=(*MATERIALS,)), "of a tube", example="aluminium"),
+    "youngs_modulus": _key("modulus", "modulus of elasticity of a tube, instead of `material`"),
+    "density": _key("density", "goes with `youngs_modulus`"),
+    "poisson_ratio": _key(Number(), "goes with `youngs_modulus`", shown=0.3),
+    "carried": _key("mass per length", "of what runs in a tube and does not stiffen it", 0.0),
+}
+"""Keys of a table that has a cross-section."""
+OF_MATERIAL = ("youngs_modulus", "density", "poisson_ratio")
+OF_TUBE = ("outer_diameter", "inner_diameter", "material", *OF_MATERIAL, "carried")
+OF_SECTION = ("bending_stiffness", "mass_per_length", "mass")
+EITHER = "give either bending_stiffness and mass_per_length, or outer_diameter and material"
+
+
+def profile_conditions(*masses: str) -> dict[str, Any]:
+    """JSON Schema of a table with a section; `masses` are the keys that tell its mass."""
+    by_stiffness = {
+        "required": ["bending_stiffness"],
+        "properties": dict.fromkeys(OF_TUBE, False),
+        "oneOf": [{"required": [mass]} for mass in masses],
+    }
+    by_measures = {
+        "required": ["outer_diameter"],
+        "properties": dict.fromkeys(("bending_stiffness", *masses), False),
+        "oneOf": [
+            {"required": ["material"], "properties": dict.fromkeys(OF_MATERIAL, False)},
+            {"required": ["youngs_modulus", "density"], "properties": {"material": False}},
+        ],
+    }
+    return {"oneOf": [by_stiffness, by_measures]}
+
+
+def profile_of(given: Mapping[str, Any], linear: float | None = None) -> Section | Tube:
+    """The section of a table; `linear` is its mass per length (kg/m) where that follows from more.
+
+    Raises
+    ------
+    ModelError : keys are missing, or do not go together.
+    """
+    if "bending_stiffness" not in given:
+        return _tube(given)
+    for name in OF_TUBE:
+        if name in given:
+            raise ModelError(name, "has no place beside bending_stiffness; leave it out")
+    mass_per_length = given.get("mass_per_length") if linear is None else linear
+    if mass_per_length is None:
+        raise ModelError("mass_per_length", "missing; give it together with bending_stiffness")
+    return Section(given["bending_stiffness"], mass_per_length)
+
+
+def _linear(given: dict[str, Any]) -> float | None:
+    """Mass per length, kg/m, where the mass of the whole shaft is given."""
+    if "mass" not in given:
+        return None
+    if "mass_per_length" in given:
+        raise ModelError("mass", "has no place beside mass_per_length; give one of both")
+    if given.get("segments"):
+        raise ModelError("mass", "does not tell that of each part; give mass_per_length")
+    length, mass = given["length"], given["mass"]
+    return mass / length if length > 0 else 0.0  # told by the checks of the tool
+
+
+def _tube(given: Mapping[str, Any]) -> Tube:
+    if "outer_diameter" not in given:
+        raise ModelError("", EITHER)
+    for name in OF_SECTION:
+        if name in given:
+            raise ModelError(name, "has no place beside outer_diameter; carried adds to a tube")
+    measures = (given["outer_diameter"], given.get("inner_diameter", 0.0))
+    return Tube(*measures, *_material(given), carried=given.get("carried", 0.0))
+
+
+def _material(given: Mapping[str, Any]) -> Material:
+    own = [name for name in OF_MATERIAL if name in given]
+    if "material" not in given:
+        for name, other in (("density", "youngs_modulus"), ("youngs_modulus", "density")):
+            if name not in given and other in given:
+                raise ModelError(name, f"missing; give it together with {own[0]}")
+        if "density" not in given:
+            sentence = 'missing; give one such as "aluminium", or youngs_modulus and density'
+            raise ModelError("material", sentence)
+        return Material(**{name: given[name] for name in own})
+    if own:
+        raise ModelError(own[0], "has no place beside material; give one of both")
+    if given["material"] not in MATERIALS:
+        sentence = unknown(given["material"], MATERIALS, "material")
+        others = "youngs_modulus and density stand for any other"
+        raise ModelError("material", f"{sentence} ({others})")
+    return MATERIALS[given["material"]]
+
+
+def profile_table(profile: Section | Tube) -> dict[str, Any]:
+    """What the file says of a section.
+
+    Raises
+    ------
+    ModelError : it has what no file can tell.
+    """
+    if isinstance(profile, Section):
+        if profile != profile.section("euler-bernoulli"):
+            sentence = "a file cannot tell shear_stiffness and rotary_inertia; give a Tube instead"
+            raise ModelError("", sentence)
+        return {name: getattr(profile, name) for name in ("mass_per_length", "bending_stiffness")}
+    material = Material(profile.youngs_modulus, profile.density, profile.poisson_ratio)
+    name = next((name for name, values in MATERIALS.items() if values == material), "")
+    made_of = {"material": name} if name else material._asdict()
+    if made_of.get("poisson_ratio") == Material._field_defaults["poisson_ratio"]:
+        del made_of["poisson_ratio"]
+    table = {"outer_diameter": profile.outer_diameter, **made_of}
+    rest = {"inner_diameter": profile.inner_diameter, "carried": profile.carried}
+    return table | {name: value for name, value in rest.items() if value}
+
+
+class Profiled(Frozen):
+    """What has a cross-section, whose keys stand beside its own in a file."""
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Self:
+        own = {name: value for name, value in given.items() if name not in {*PROFILE, "mass"}}
+        return cls(**own | {"profile": profile_of(given, _linear(given))})
+
+    @classmethod
+    def to_table(cls, value: Any) -> dict[str, Any]:
+        return {**super().to_table(value), **profile_table(value.profile)}
+
+
+@declared
+class Segment(Profiled):
     """A part of the shaft with another section, from one place to another."""
 
     beside: ClassVar[Keys] = PROFILE
@@ -48,17 +250,9 @@ class Segment(Frozen):
     stop: float = key("length", "where it ends", name="to", example="1.35 m")
     profile: Section | Tube = inside(Table(Frozen, flat=True))
 
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> Segment:
-        return cls(**without_profile(given), profile=profile_of(given))
-
-    @classmethod
-    def to_table(cls, value: Segment) -> dict[str, Any]:
-        return {**super().to_table(value), **profile_table(value.profile)}
-
 
 @declared
-class Shaft(Frozen):
+class Shaft(Profiled):
     """The shaft, free at both ends; what holds it are its stations.
 
     profile : its section, but where `segments` say otherwise.
@@ -89,26 +283,14 @@ class Shaft(Frozen):
         below=1,
     )
     theory: Theory = key(
-        Text(THEORIES),
+        Text(get_args(Theory)),
         "`timoshenko`: with shear and rotary inertia; needs the measures of tubes",
         default="euler-bernoulli",
     )
 
-    @classmethod
-    def from_table(cls, given: dict[str, Any]) -> Shaft:
-        return cls(**without_profile(given), profile=profile_of(given, _linear(given)))
-
-    @classmethod
-    def to_table(cls, value: Shaft) -> dict[str, Any]:
-        return {**super().to_table(value), **profile_table(value.profile)}
-
-    @property
+    @cached_property
     def pieces(self) -> tuple[tuple[float, float, Section], ...]:
         """Start, stop and section of each part, from end to end."""
-        return self._pieces
-
-    @cached_property
-    def _pieces(self) -> tuple[tuple[float, float, Section], ...]:
         found, at = [], 0.0
         for segment in sorted(self.segments, key=lambda one: one.start):
             if segment.start > at:
@@ -126,18 +308,6 @@ class Shaft(Frozen):
 
 
 # -- checks ----------------------------------------------------------------------------------------
-
-
-def _linear(given: dict[str, Any]) -> float | None:
-    """Mass per length, kg/m, where the mass of the whole shaft is given."""
-    if "mass" not in given:
-        return None
-    if "mass_per_length" in given:
-        raise ModelError("mass", "has no place beside mass_per_length; give one of both")
-    if given.get("segments"):
-        raise ModelError("mass", "does not tell that of each part; give mass_per_length")
-    length, mass = given["length"], given["mass"]
-    return mass / length if length > 0 else 0.0  # told by the checks of the tool
 
 
 def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
@@ -162,25 +332,17 @@ def wrong_shaft(shaft: Shaft) -> Iterator[ModelError]:
 
 
 def _wrong_profile(where: str, profile: Section | Tube, shaft: Shaft) -> Iterator[ModelError]:
-    if isinstance(profile, Tube):
-        yield from _wrong_tube(where, profile)
+    if isinstance(profile, Section):
+        if shaft.theory == "timoshenko" and profile == profile.section("euler-bernoulli"):
+            yield ModelError(
+                f"{where}.bending_stiffness",
+                "does not tell what shear does; with theory timoshenko give the measures of a "
+                "tube, outer_diameter and material",
+            )
         return
-    if shaft.theory == "timoshenko" and profile == profile.section("euler-bernoulli"):
-        yield ModelError(
-            f"{where}.bending_stiffness",
-            "does not tell what shear does; with theory timoshenko give the measures of a tube, "
-            "outer_diameter and material",
-        )
-
-
-def _wrong_tube(where: str, tube: Tube) -> Iterator[ModelError]:
-    if tube.inner_diameter >= tube.outer_diameter:
-        yield ModelError(
-            f"{where}.inner_diameter",
-            f"got {1e3 * tube.inner_diameter:g} mm inside of {1e3 * tube.outer_diameter:g} mm; "
-            "give less than that",
-        )
-    if not 0 <= tube.poisson_ratio <= 0.5:
-        yield ModelError(
-            f"{where}.poisson_ratio", f"got {tube.poisson_ratio:g}; give a number from 0 to 0.5"
-        )
+    inner, outer, ratio = profile.inner_diameter, profile.outer_diameter, profile.poisson_ratio
+    if inner >= outer:
+        sentence = f"got {1e3 * inner:g} mm inside of {1e3 * outer:g} mm; give less than that"
+        yield ModelError(f"{where}.inner_diameter", sentence)
+    if not 0 <= ratio <= 0.5:
+        yield ModelError(f"{where}.poisson_ratio", f"got {ratio:g}; give a number from 0 to 0.5")

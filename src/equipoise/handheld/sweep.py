@@ -1,55 +1,35 @@
-"""What is told of a tool where nothing in particular is asked: which answers, at which speeds."""
+"""A tool over speeds: force on what holds it under a unit force, and what its engine shakes."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.handheld.model import PLANES, Tool
+from equipoise.handheld.model import PLANES, Excitation, Station, Tool
 from equipoise.handheld.modes import swinging_below
 from equipoise.handheld.response import (
     NOTHING,
     ToolResponse,
+    checked_speeds,
     loud,
     respond_tool,
     rms_over_time,
     shakes,
 )
-from equipoise.handheld.transmission import Transmissions, held, transmit
 from equipoise.results.result import Result
 from equipoise.signals import highest_at
+
+Array = np.ndarray[Any, Any]
 
 MODES = 6
 """Natural frequencies."""
 AROUND = (0.5, 1.25)
 """Range about the working speed, as shares of it, where the tool tells none."""
-
-
-def default_answers(tool: Tool) -> list[str]:
-    """Those of ``modes``, ``respond`` and ``exposure`` that the tool has what is needed for."""
-    if tool.operation is None or not tool.stations:
-        return ["modes"]
-    shaken = ["exposure"] if tool.excitations and tool.grips else []
-    return ["modes", "respond", *shaken]
-
-
-def default_speeds(tool: Tool) -> tuple[float, float] | None:
-    """Lowest and highest speed of the engine, rad/s; None where the tool tells none."""
-    operation = tool.operation
-    if operation is None:
-        return None
-    if operation.speeds:
-        return operation.speeds[0], operation.speeds[1]
-    return AROUND[0] * operation.speed, AROUND[1] * operation.speed
-
-
-Array = np.ndarray[Any, Any]
-
 SPEEDS = 400
 """Equally spaced speeds in a range, if not told otherwise."""
 BESIDE = np.array([-0.03, -0.01, -0.003, 0.003, 0.01, 0.03])
@@ -65,10 +45,136 @@ LARGEST = 200_000
 """Frequencies times places that are computed at once."""
 LOUD = 0.01
 """Share of the largest force from which an order's resonances are looked at."""
+QUIET = 0.8
+"""A dip is quiet where it lies below so much of the tops beside it, or of the ends of the range."""
+ZOOMS, ACROSS = 6, 33
+"""How often a lowest place is looked at more closely, and at how many speeds each time."""
 
 
 @dataclass(frozen=True, eq=False)
-class Places:
+class Transmission:
+    """Force on the body at a station over the force that shakes, against speed.
+
+    ratio : complex (2, S): vertical by a vertical force, lateral by a lateral one.
+    quiet : speeds (rad/s) of each plane at which it is lowest between two resonances.
+    lowest : amplitude of the ratio at these.
+    """
+
+    ratio: Array
+    quiet: tuple[Array, Array]
+    lowest: tuple[Array, Array]
+
+    @property
+    def size(self) -> Array:
+        """Amplitude of the force over that of the force that shakes, (2, S)."""
+        return np.abs(self.ratio)
+
+    @property
+    def phase(self) -> Array:
+        """By which the force is ahead of that which shakes, rad, (2, S)."""
+        return np.angle(self.ratio)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Transmissions(Result):
+    """Of all stations where hands, a harness or the ground hold the tool.
+
+    source : station at which a unit force shakes, once in a turn.
+    speed : (S,), rad/s.
+    stations : by name; hand, harness and ground there together.
+    """
+
+    tool: Tool
+    source: str
+    speed: Array
+    stations: Mapping[str, Transmission]
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain values in SI units; speeds in rad/s."""
+        return {
+            "source": self.source,
+            "speed": self.speed,
+            "transmission": {
+                name: {
+                    f"{key}{suffix}": both[plane]
+                    for key, both in (
+                        ("ratio", one.size),
+                        ("phase", one.phase),
+                        ("quiet_speeds", one.quiet),
+                    )
+                    for plane, suffix in enumerate(("", "_lateral"))
+                }
+                for name, one in self.stations.items()
+            },
+        }
+
+
+def source_of(tool: Tool) -> str:
+    """The station at which the first excitation acts; the left end's where there is none."""
+    if tool.excitations:
+        return tool.excitations[0].station
+    if not tool.stations:
+        raise ModelError("shaft.stations", "there is none; add what sits on the shaft and holds it")
+    return min(tool.stations, key=lambda one: one.position).name
+
+
+def held(tool: Tool) -> list[Station]:
+    """Stations at which the body or the ground holds the tool."""
+    return [one for one in tool.stations if one.hand or one.harness or one.grounded]
+
+
+def transmit(tool: Tool, speed: Array, source: str | None = None) -> Transmissions:
+    """Transmission of a unit force to hands, harness and ground, at speeds (S,), rad/s.
+
+    source : station of the force; that of the first excitation if None.
+    """
+    speed = checked_speeds(speed)
+    source = source_of(tool) if source is None else tool.station(source).name
+    names = [one.name for one in held(tool)]
+    if not names:
+        raise ModelError("shaft.stations", "nothing holds the tool; give a hand or a harness")
+
+    forces = tuple(  # 1 N in each plane; the planes know nothing of each other
+        Excitation(f"unit {plane}", source, force=1.0, direction=plane)  # type: ignore[arg-type]
+        for plane in PLANES
+    )
+    unit = replace(tool, excitations=forces, design=None)
+    response = respond_tool(unit, speed)
+    found = {}
+    for name in names:
+
+        def again(speeds: Array, name: str = name) -> Array:
+            return respond_tool(unit, speeds).whole_force(name)[:, 0]
+
+        ratio = response.whole_force(name)[:, 0]
+        dips = [lowest_places(speed, np.abs(row), k, again) for k, row in enumerate(ratio)]
+        found[name] = Transmission(ratio, *zip(*dips, strict=True))
+    return Transmissions(tool, source, speed, found)
+
+
+def lowest_places(
+    speed: Array, size: Array, plane: int, again: Callable[[Array], Array]
+) -> tuple[Array, Array]:
+    """Speeds at which a curve (S,) is lowest between higher ones, and how low it is there.
+
+    again : computes the curve (2, S') at other speeds.
+    """
+    inner = np.flatnonzero((size[1:-1] < size[:-2]) & (size[1:-1] <= size[2:])) + 1
+    tops = np.maximum.reduceat(size, [0, *inner])  # before, between and after the dips
+    inner = inner[size[inner] < QUIET * np.minimum(tops[:-1], tops[1:])]
+    low, high = speed[inner - 1], speed[inner + 1]
+    lowest = size[inner]
+    for _ in range(ZOOMS if inner.size else 0):
+        across = low[:, None] + (high - low)[:, None] * np.linspace(0, 1, ACROSS)
+        sizes = np.abs(again(across.ravel())[plane]).reshape(across.shape)
+        best = np.clip(np.argmin(sizes, axis=1), 1, ACROSS - 2)[:, None]
+        lowest = np.take_along_axis(sizes, best, 1)[:, 0]
+        low = np.take_along_axis(across, best - 1, 1)[:, 0]
+        high = np.take_along_axis(across, best + 1, 1)[:, 0]
+    return (low + high) / 2, lowest
+
+
+class Places(NamedTuple):
     """What some places (X) of the shaft do at some speeds, RMS over time, planes together, (X, S).
 
     displacement : m.  velocity : m/s.  acceleration : m/s2.  moment : of bending, N m.
@@ -97,18 +203,14 @@ class ToolSweep(Result):
 
     def places(self, places: Sequence[float] | Array) -> Places:
         """What places (X), m, do at every speed; a `ModelError` where nothing shakes the tool."""
-        frequency = self.shaken.frequency
-        block = max(1, LARGEST // frequency.size)
-        parts = [self._some(places[k : k + block]) for k in range(0, max(1, len(places)), block)]
+        frequency, parts = self.shaken.frequency, []
+        block = max(1, LARGEST // frequency.size)  # a few at once, so that memory lasts
+        for k in range(0, max(1, len(places)), block):
+            line = self.shaken.line(places[k : k + block])
+            moved = line.displacement
+            told = (moved, moved * frequency, moved * frequency**2, line.moment)
+            parts.append(list(map(rms_over_time, told)))
         return Places(*map(np.concatenate, zip(*parts, strict=True)))
-
-    def _some(self, places: Sequence[float] | Array) -> tuple[Array, ...]:
-        """The same of a few places, so that memory lasts."""
-        line, frequency = self.shaken.line(places), self.shaken.frequency
-        moved = line.displacement
-        return tuple(
-            map(rms_over_time, (moved, moved * frequency, moved * frequency**2, line.moment))
-        )
 
     @property
     def shaken(self) -> ToolResponse:
@@ -152,31 +254,24 @@ class ToolSweep(Result):
         if wanted is None or "largest_moment" in wanted:
             moment, place = self.largest_moment
             found["largest_moment"] = {"moment": moment, "place": place}
-        found["further"] = self._further()
+        found["further"] = self._told(self.further)
         return found
 
-    def _stations(self) -> dict[str, Any]:
-        positions = [one.position for one in self.tool.stations]
-        at = self.places(positions)
-        return {
-            one.name: {
-                "position": one.position,
-                "displacement": at.displacement[k],
-                "velocity": at.velocity[k],
-                "acceleration": at.acceleration[k],
-                "moment": at.moment[k],
-                "forces": self.force(one.name),
-                "power": self.power(one.name),
-            }
-            for k, one in enumerate(self.tool.stations)
-        }
-
-    def _further(self) -> list[dict[str, Any]]:
-        at = self.places(self.further)
+    def _told(self, places: Sequence[float]) -> list[dict[str, Any]]:
+        """What each of some places does, by name of the figure."""
+        at = self.places(places)._asdict()
         return [
-            {"position": place, **{key: getattr(at, key)[k] for key in UNITS}}
-            for k, place in enumerate(self.further)
+            {"position": place, **{key: rows[k] for key, rows in at.items()}}
+            for k, place in enumerate(places)
         ]
+
+    def _stations(self) -> dict[str, Any]:
+        stations = self.tool.stations
+        told = zip(stations, self._told([one.position for one in stations]), strict=True)
+        return {
+            one.name: {**row, "forces": self.force(one.name), "power": self.power(one.name)}
+            for one, row in told
+        }
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Figures against speed, as name, unit and values (S,)."""
@@ -187,18 +282,13 @@ class ToolSweep(Result):
                     found.append((f"{name}.transmission_{label}", "1", one.size[plane]))
                     found.append((f"{name}.phase_{label}", "rad", one.phase[plane]))
         if self.response is not None:
-            for name, station in self._stations().items():
-                for key, unit in UNITS.items():
-                    found.append((f"{name}.{key}", unit, station[key]))
-                found += [
-                    (f"{name}.force_{part}", "N", each) for part, each in station["forces"].items()
-                ]
-                found += [
-                    (f"{name}.power_{part}", "W", each) for part, each in station["power"].items()
-                ]
-            for row in self._further():
-                name = f"{row['position']:.6g} m"
+            rows = self._stations()
+            rows |= {f"{row['position']:.6g} m": row for row in self._told(self.further)}
+            for name, row in rows.items():
                 found += [(f"{name}.{key}", unit, row[key]) for key, unit in UNITS.items()]
+                for key, label, unit in (("forces", "force", "N"), ("power", "power", "W")):
+                    parts = row.get(key, {}).items()
+                    found += [(f"{name}.{label}_{part}", unit, each) for part, each in parts]
         return found
 
 
@@ -222,6 +312,24 @@ def sweep_tool(tool: Tool, speed: Array, further: Sequence[float] = ()) -> ToolS
     if further:
         found.places(further)  # a place off the shaft is told at once
     return found
+
+
+def default_answers(tool: Tool) -> list[str]:
+    """Those of ``modes``, ``respond`` and ``exposure`` that the tool has what is needed for."""
+    if tool.operation is None or not tool.stations:
+        return ["modes"]
+    shaken = ["exposure"] if tool.excitations and tool.grips else []
+    return ["modes", "respond", *shaken]
+
+
+def default_speeds(tool: Tool) -> tuple[float, float] | None:
+    """Lowest and highest speed of the engine, rad/s; None where the tool tells none."""
+    operation = tool.operation
+    if operation is None:
+        return None
+    if operation.speeds:
+        return operation.speeds[0], operation.speeds[1]
+    return AROUND[0] * operation.speed, AROUND[1] * operation.speed
 
 
 def speeds_between(tool: Tool, low: float, high: float, count: int = SPEEDS) -> Array:

@@ -12,92 +12,44 @@ the tables of the documentation and access by path (`equipoise.schema`).  Rules 
 plain functions beside the class.
 """
 
-from __future__ import annotations
-
-from equipoise.keys.declaring import (
-    REQUIRED,
-    ROW,
-    SCHEMA_VERSION,
-    VERSION,
-    Conditions,
-    Frozen,
-    Key,
-    Keys,
-    all_keys,
-    declared,
-    inside,
-    key,
-    keys_of,
-    told_by,
-)
-from equipoise.keys.kinds import (
-    MOST_WHOLE,
-    NO_INERTIA,
-    PLANES,
-    Anything,
-    Direction,
-    File,
-    Flag,
-    Kind,
-    Listing,
-    Named,
-    Number,
-    OneOr,
-    Planes,
-    Point,
-    Quantity,
-    Record,
-    Table,
-    Tables,
-    Text,
-    Told,
-    Whole,
-    choice,
-    innermost,
-    items_of,
-)
-from equipoise.keys.values import changed, quantities_of, wrong_values
-
-__all__ = [
-    "MOST_WHOLE",
-    "NO_INERTIA",
-    "PLANES",
-    "REQUIRED",
-    "ROW",
-    "SCHEMA_VERSION",
-    "VERSION",
-    "Anything",
-    "Conditions",
-    "Direction",
-    "File",
-    "Flag",
-    "Frozen",
-    "Key",
-    "Keys",
-    "Kind",
-    "Listing",
-    "Named",
-    "Number",
-    "OneOr",
-    "Planes",
-    "Point",
-    "Quantity",
-    "Record",
-    "Table",
-    "Tables",
-    "Text",
-    "Told",
-    "Whole",
-    "all_keys",
-    "changed",
-    "choice",
-    "declared",
-    "innermost",
-    "inside",
-    "items_of",
-    "key",
-    "keys_of",
-    "quantities_of",
-    "told_by",
-    "wrong_values",
-]
+from equipoise.keys.declaring import REQUIRED as REQUIRED
+from equipoise.keys.declaring import ROW as ROW
+from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION
+from equipoise.keys.declaring import VERSION as VERSION
+from equipoise.keys.declaring import Conditions as Conditions
+from equipoise.keys.declaring import Frozen as Frozen
+from equipoise.keys.declaring import Key as Key
+from equipoise.keys.declaring import Keys as Keys
+from equipoise.keys.declaring import all_keys as all_keys
+from equipoise.keys.declaring import changed as changed
+from equipoise.keys.declaring import declared as declared
+from equipoise.keys.declaring import inside as inside
+from equipoise.keys.declaring import key as key
+from equipoise.keys.declaring import keys_of as keys_of
+from equipoise.keys.declaring import quantities_of as quantities_of
+from equipoise.keys.declaring import told_by as told_by
+from equipoise.keys.declaring import wrong_values as wrong_values
+from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE
+from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA
+from equipoise.keys.kinds import PLANES as PLANES
+from equipoise.keys.kinds import Anything as Anything
+from equipoise.keys.kinds import Direction as Direction
+from equipoise.keys.kinds import File as File
+from equipoise.keys.kinds import Flag as Flag
+from equipoise.keys.kinds import Kind as Kind
+from equipoise.keys.kinds import Listing as Listing
+from equipoise.keys.kinds import Named as Named
+from equipoise.keys.kinds import Number as Number
+from equipoise.keys.kinds import OneOr as OneOr
+from equipoise.keys.kinds import Planes as Planes
+from equipoise.keys.kinds import Point as Point
+from equipoise.keys.kinds import Quantity as Quantity
+from equipoise.keys.kinds import Record as Record
+from equipoise.keys.kinds import Table as Table
+from equipoise.keys.kinds import Tables as Tables
+from equipoise.keys.kinds import Text as Text
+from equipoise.keys.kinds import Told as Told
+from equipoise.keys.kinds import Whole as Whole
+from equipoise.keys.kinds import choice as choice
+from equipoise.keys.kinds import innermost as innermost
+from equipoise.keys.kinds import items_of as items_of

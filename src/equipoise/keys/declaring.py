@@ -1,16 +1,31 @@
-"""Declaring keys: the fields of frozen dataclasses, with what each is in its file."""
+"""Declaring keys: fields of frozen dataclasses, what each is in its file, and checks of values."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cache
+from functools import cache, reduce
+from math import inf, isfinite
+from operator import and_, ge, gt, lt
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
-from equipoise.keys.kinds import Kind, Listing, Number, Quantity, Record, Table, Whole, innermost
-from equipoise.quantities import SI, Dimension, pattern
+from equipoise.keys.kinds import (
+    PLANES,
+    Kind,
+    Listing,
+    Number,
+    OneOr,
+    Planes,
+    Quantity,
+    Record,
+    Table,
+    Whole,
+    choice,
+    innermost,
+)
+from equipoise.quantities import HUGE, SI, TINY, Dimension, pattern
 
 Class = TypeVar("Class", bound=type)
 Result = TypeVar("Result")
@@ -30,8 +45,7 @@ class Key:
     text : what it means, in words that go on after its name.
     example : as it would stand in the file.  default : in Python; `shown` if the file's reader is
         better told otherwise.
-    at_least, above, below : limits in SI units; `why` is said
-        instead of words made of them.
+    at_least, above, below : limits in SI units; `why` is said instead of words made of them.
     endless : it may be infinite, for no limit.  inside : no file has it.
     """
 
@@ -55,14 +69,9 @@ class Key:
 
     def allows(self, value: Any) -> Any:
         """Whether a number, or each of an array, is within the limits."""
-        right: Any = True
-        if self.at_least is not None:
-            right = right & (value >= self.at_least)
-        if self.above is not None:
-            right = right & (value > self.above)
-        if self.below is not None:
-            right = right & (value < self.below)
-        return right
+        limits = ((ge, self.at_least), (gt, self.above), (lt, self.below))
+        held = [within(value, limit) for within, limit in limits if limit is not None]
+        return reduce(and_, held, True)
 
     @property
     def unit(self) -> str:
@@ -76,10 +85,9 @@ class Key:
             return self.why
         if self.below is not None and value >= self.below:
             return f"give less than {self.below:g}"
-        least = (
-            f"more than {self.above:g}" if self.above is not None else f"{self.at_least:g} or more"
-        )
-        return f"give {least}"
+        if self.above is not None:
+            return f"give more than {self.above:g}"
+        return f"give {self.at_least:g} or more"
 
 
 Keys = Mapping[str, Key]
@@ -130,9 +138,7 @@ def declared(cls: Class) -> Class:
 
 def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:
     """Compute something of each class when it is first asked for."""
-    kept: Any = cache(compute)
-    found: Callable[[type[Frozen]], Result] = kept
-    return found
+    return cache(compute)  # type: ignore[return-value]
 
 
 class Frozen(Record):
@@ -150,14 +156,16 @@ class Frozen(Record):
     __dataclass_fields__: ClassVar[dict[str, Any]]
 
     def __post_init__(self) -> None:
-        for name, kind, without in _checked(type(self)):
-            value = getattr(self, name)
-            if value is without and without in (None, ()):  # there is one empty tuple only
+        for one in declarations(type(self)):
+            value = getattr(self, one.field)
+            if value is one.default and value in (None, ()):  # there is one empty tuple only
                 continue
             try:
-                object.__setattr__(self, name, kind.check(value))
+                object.__setattr__(self, one.field, one.kind.check(value))
             except (TypeError, ValueError, OverflowError):
-                raise ModelError(name, f"got {_shown(value)}; give {kind.wanted}") from None
+                text = repr(value)
+                shown = text if len(text) <= 60 else f"{text[:57]}..."
+                raise ModelError(one.field, f"got {shown}; give {one.kind.wanted}") from None
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Any:
@@ -185,11 +193,6 @@ class Frozen(Record):
     def __setstate__(self, state: dict[str, Any]) -> None:
         for key, value in state.items():
             self.__dict__[key] = MappingProxyType(value) if isinstance(value, dict) else value
-
-
-def _shown(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 ROW = Listing(Number())
@@ -224,11 +227,8 @@ def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]
 @once
 def keys_of(cls: type[Frozen]) -> Mapping[str, Key]:
     """Keys of a class in the order of the file, by name; a flat table is one of them."""
-    found = {name: replace(one, name=name) for name, one in cls.beside.items()}
-    for one in declarations(cls):
-        if one.name:
-            found[one.name] = one
-    own = [name for name in found if name not in cls.beside]
+    own = {one.name: one for one in declarations(cls) if one.name}
+    found = {name: replace(one, name=name) for name, one in cls.beside.items()} | own
     return {name: found[name] for name in dict.fromkeys((*cls.file_order, *own, *cls.beside))}
 
 
@@ -249,16 +249,102 @@ def all_keys(cls: type[Frozen]) -> Mapping[str, Key]:
 @once
 def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     """What is declared of the fields of a class; without a name where no file has it."""
-    found: list[Key] = []
-    for one in fields(cls):
-        declared: Key | None = one.metadata.get(_KEY)
-        if declared is not None:
-            name = declared.name if declared.inside else declared.name or one.name
-            found.append(replace(declared, name=name, field=one.name))
-    return tuple(found)
+    found = [(one.name, one.metadata[_KEY]) for one in fields(cls) if _KEY in one.metadata]
+    return tuple(
+        replace(one, field=field, name=one.name or ("" if one.inside else field))
+        for field, one in found
+    )
 
 
-@once
-def _checked(cls: type[Frozen]) -> tuple[tuple[str, Kind, Any], ...]:
-    """Fields of a class with what they have to be, and their defaults."""
-    return tuple((one.field, one.kind, one.default) for one in declarations(cls))
+Value = TypeVar("Value")
+XYZ = ("x", "y", "z")
+
+# -- values ----------------------------------------------------------------------------------------
+
+
+def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
+    """Complain of every number below a value that is not finite, of no usual size, or beyond its
+    limits, and of every text that is none of those that there are.
+    """
+    leaves = list(_leaves(where, value, None))
+    for place, leaf, _ in leaves:
+        if isinstance(leaf, str):
+            continue
+        if not isfinite(leaf):
+            yield ModelError(place, f"got {leaf}; give a finite number")
+        elif abs(leaf) > HUGE or 0 < abs(leaf) < TINY:
+            text = f"{leaf:g} in SI units"
+            yield ModelError(place, f"got {text}, which no machine can have").about(leaf, text)
+    for place, leaf, one in leaves:
+        if one is None:
+            continue
+        names = getattr(innermost(one.kind), "names", ())
+        if names and leaf not in names:
+            yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
+        elif not isinstance(leaf, str) and not one.allows(leaf):
+            text = f"{leaf:g}{one.unit}"
+            yield ModelError(place, f"got {text}; {one.right(leaf)}").about(leaf, text)
+
+
+def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, Key | None]]:
+    """Numbers and texts below a value, each with its place and its declaration."""
+    if isinstance(value, bool) or value is None:
+        return
+    if isinstance(value, int | float | str):
+        if of is None or not of.endless or value != inf:
+            yield where, value, of
+    elif isinstance(value, Mapping):
+        for name, item in value.items():
+            yield from _leaves(f"{where}.{name}".lstrip("."), item, of)
+    elif isinstance(value, tuple | list):
+        several = of is not None and isinstance(of.kind, OneOr | Planes)
+        alike = several and all(item == value[0] for item in value)
+        planes = of is not None and isinstance(of.kind, Planes) and len(value) == len(PLANES)
+        for number, item in enumerate(value, 1):
+            part = f".{PLANES[number - 1]}" if planes else f"[{number}]"
+            yield from _leaves(where if alike else where + part, item, of)
+    else:
+        for one in declarations(type(value)):
+            flat = isinstance(one.kind, Table) and one.kind.flat
+            place = where if flat else f"{where}.{one.name or one.field}".lstrip(".")
+            yield from _leaves(place, getattr(value, one.field), one)
+
+
+# -- by path ---------------------------------------------------------------------------------------
+
+
+def quantities_of(value: Frozen) -> Mapping[str, Key]:
+    """Keys of an object that are one quantity each, by name."""
+    found = keys_of(type(value)).items()
+    return {name: one for name, one in found if isinstance(one.kind, Quantity) and one.field}
+
+
+def changed(
+    value: Any,
+    steps: Sequence[str],
+    change: Callable[[Any], Any],
+    make: Callable[..., Any] = replace,
+) -> Any:
+    """An object with something else at a place.
+
+    steps : keys of the file and names; of lists the number from 1, of points ``x``, ``y`` or ``z``.
+    change : from what is there to what is to be there.  make : as `dataclasses.replace`.
+
+    Raises
+    ------
+    KeyError, IndexError : there is no such place.
+    """
+    if not steps:
+        return change(value)
+    step, rest = steps[0], steps[1:]
+    if isinstance(value, tuple):
+        index = XYZ.index(step) if step in XYZ else int(step) - 1
+        inner = changed(value[index], rest, change, make)
+        return (*value[:index], inner, *value[index + 1 :])
+    if isinstance(value, Mapping):
+        return {**value, step: changed(value[step], rest, change, make)}
+    one = keys_of(type(value))[step]
+    held = getattr(value, one.field)
+    if isinstance(one.kind, Table) and not isinstance(held, Frozen):
+        rest = rest[1:]  # a table with one key, which the object has without it
+    return make(value, **{one.field: changed(held, rest, change, make)})

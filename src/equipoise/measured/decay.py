@@ -4,18 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from math import floor, log10
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.measured.estimate import Quantity
-from equipoise.measured.fits import WholeFit, fit_whole, line_of_swings
+from equipoise.i18n import say, to_say
+from equipoise.measured.fits import Quantity, WholeFit, fit_whole, line_of_swings
 from equipoise.measured.record import Kind, Record, positive
 from equipoise.measured.turning import Turns, find_turns
+from equipoise.quantities import in_unit, number
+from equipoise.results.blocks import Block, Cell, Column, Notes, Span, Table, Text, Value
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
+Quantities = dict[str, Quantity]
 
 MUCH_CORRELATED = 3.0
 """Points over which a residual is correlated, from where on it is told."""
@@ -25,6 +29,32 @@ POOR = 2.0
 """Residual over the noise of the samples, from where on the model is doubted."""
 MOST_ROUNDING = 1e-6
 """A residual below this share of the first half-swing is rounding, not noise."""
+WHOLE = "whole record"
+TERMS = {"viscous damping": "decay_rate", "Coulomb friction": "coulomb_displacement"}
+SHOWN: dict[Kind, str] = {"length": "mm", "angle": "deg"}
+"""Unit of displacements."""
+ALWAYS = {
+    "damped_frequency": (to_say("damped frequency"), "Hz"),
+    "natural_frequency": (to_say("natural frequency"), "Hz"),
+    "natural_angular_frequency": (to_say("natural angular frequency"), "rad/s"),
+    "damping_ratio": (to_say("damping ratio"), ""),
+    "logarithmic_decrement": (to_say("logarithmic decrement"), ""),
+}
+BY_STIFFNESS: dict[Kind, dict[str, tuple[str, str]]] = {
+    "length": {
+        "mass": (to_say("mass"), "kg"),
+        "viscous_damping": (to_say("viscous damping"), "N s/m"),
+        "coulomb_force": (to_say("Coulomb friction"), "N"),
+    },
+    "angle": {
+        "inertia": (to_say("moment of inertia"), "kg m^2"),
+        "viscous_damping": (to_say("viscous damping"), "N m s/rad"),
+        "coulomb_torque": (to_say("Coulomb friction"), "N m"),
+    },
+}
+"""What a stiffness adds: text and unit by name."""
+MOST_DIGITS = 7
+"""Behind the decimal point."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -41,13 +71,15 @@ class Decay(Result):
     notes : what deserves a second look, as sentences.
     """
 
+    shown_in = "measured.decay"
+
     record: Record
     confidence: float
     stiffness: float | None
     turns: Turns
-    line: dict[str, Quantity]
-    by_line: dict[str, Quantity]
-    by_record: dict[str, Quantity]
+    line: Quantities
+    by_line: Quantities
+    by_record: Quantities
     whole: WholeFit
     notes: tuple[str, ...]
 
@@ -63,6 +95,10 @@ class Decay(Result):
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units."""
         turns = self.turns
+        line, by_line, by_record = (
+            {name: quantity.to_dict() for name, quantity in part.items()}
+            for part in (self.line, self.by_line, self.by_record)
+        )
         return {
             "kind": self.kind,
             "samples": len(self.record.time),
@@ -71,16 +107,16 @@ class Decay(Result):
             "stiffness": self.stiffness,
             "noise": turns.noise,
             "half_swings": {
-                **{name: quantity.to_dict() for name, quantity in self.line.items()},
+                **line,
                 "heights": turns.heights.tolist(),
                 "turning_points": {
                     "time": turns.time.tolist(),
                     "displacement": turns.displacement.tolist(),
                 },
             },
-            "by_line": {name: quantity.to_dict() for name, quantity in self.by_line.items()},
+            "by_line": by_line,
             "by_record": {
-                **{name: quantity.to_dict() for name, quantity in self.by_record.items()},
+                **by_record,
                 "center": self.whole.motion.center,
                 "residual": self.whole.rms,
             },
@@ -122,10 +158,8 @@ def identify_decay(
     by_line = line.quantities(record.kind, stiffness)
     by_record = whole.constants.quantities(record.kind, stiffness)
     notes = (
-        *_on_arm(record, arm),
-        *_on_window(record, turns),
-        *_on_terms(by_line, by_record),
-        *_on_both(by_record, turns),
+        *_on_record(record, turns, arm),
+        *_on_terms(by_line, by_record, turns),
         *_on_methods(by_line, by_record),
         *_on_fit(turns, whole),
     )
@@ -153,18 +187,14 @@ def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) ->
 # -- notes -----------------------------------------------------------------------------------------
 
 
-def _on_arm(record: Record, arm: float | None) -> Iterator[str]:
-    """Whether a displacement over its arm is still an angle."""
+def _on_record(record: Record, turns: Turns, arm: float | None) -> Iterator[str]:
+    """Whether a displacement over its arm is still an angle; what is left out of the record."""
     largest = float(np.ptp(record.displacement)) / 2
     if arm is not None and largest > FAR:
         yield (
             f"the record swings by {np.degrees(largest):.0f} deg to either side, where the "
             "displacement over the arm is no longer the angle"
         )
-
-
-def _on_window(record: Record, turns: Turns) -> Iterator[str]:
-    """What is left out of the record."""
     half = float(np.median(np.diff(turns.time)))
     before = turns.time[0] - record.time[0]
     after = record.time[-1] - turns.time[-1]
@@ -179,15 +209,8 @@ def _on_window(record: Record, turns: Turns) -> Iterator[str]:
         yield "three half-swings have exactly one line, so that it has no confidence intervals"
 
 
-WHOLE = "whole record"
-TERMS = {
-    "viscous damping": "decay_rate",
-    "Coulomb friction": "coulomb_displacement",
-}
-
-
-def _on_terms(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
-    """Which terms cannot be told from noise, or have the wrong sign."""
+def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Iterator[str]:
+    """Which terms cannot be told from noise or from each other, or have the wrong sign."""
     for term, name in TERMS.items():
         line, record = by_line[name], by_record[name]
         if record.includes_zero:
@@ -202,10 +225,6 @@ def _on_terms(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> I
                 f"the line alone cannot tell {term} from noise; its interval ({WHOLE}) does not "
                 "include zero"
             )
-
-
-def _on_both(by_record: dict[str, Quantity], turns: Turns) -> Iterator[str]:
-    """Whether it is only the two terms that cannot be told from each other."""
     lost = turns.heights[0] - turns.heights[-1]
     sure = 4 * turns.noise * float(np.max(turns.spread)) + MOST_ROUNDING * turns.heights[0]
     if lost > sure and all(by_record[name].includes_zero for name in TERMS.values()):
@@ -215,7 +234,7 @@ def _on_both(by_record: dict[str, Quantity], turns: Turns) -> Iterator[str]:
         )
 
 
-def _on_methods(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
+def _on_methods(by_line: Quantities, by_record: Quantities) -> Iterator[str]:
     """Whether the line decays, and where the methods contradict each other."""
     if by_line["decay_rate"].value <= 0:
         yield (
@@ -252,3 +271,67 @@ def _on_fit(turns: Turns, whole: WholeFit) -> Iterator[str]:
             f"what the fit of the whole record leaves is correlated over {whole.correlated:.0f} "
             "points; its intervals are widened for that"
         )
+
+
+# -- shown -----------------------------------------------------------------------------------------
+
+
+def decay_blocks(decay: Decay) -> Iterator[Block]:
+    """The record, the line of half-swings, and every figure by both methods."""
+    unit = SHOWN[decay.kind]
+    scale = in_unit(unit).factor
+    record, turns = decay.record, decay.turns
+    yield Text(
+        say(
+            "{count} samples over {time} s, noise {noise} {unit}; {swings} half-swings from "
+            "{first} to {last} {unit}",
+            count=len(record.time),
+            time=number(record.duration),
+            noise=number(scale * turns.noise),
+            unit=unit,
+            swings=len(turns.heights),
+            first=number(scale * turns.heights[0]),
+            last=number(scale * turns.heights[-1]),
+        )
+    )
+    cut = decay.line["intercept"].value * scale
+    yield Text(
+        say(
+            "line of half-swings: next = {slope} height {sign} {cut} {unit}",
+            slope=number(decay.line["slope"].value),
+            sign="-" if cut < 0 else "+",
+            cut=number(abs(cut)),
+            unit=unit,
+        )
+    )
+    interval = say("{share} % interval", share=f"{100 * decay.confidence:g}")
+    labels = ("", say("half-swings"), interval, say("whole record"), interval)
+    title = say("Free decay, by the line of half-swings and by a fit of the record")
+    yield Table(title, tuple(map(Column, labels)), tuple(_rows(decay, unit, scale)))
+    if decay.notes:
+        yield Notes(decay.notes)
+
+
+def _rows(decay: Decay, unit: str, scale: float) -> Iterator[tuple[Cell, ...]]:
+    rows = {name: (*row, 1.0) for name, row in ALWAYS.items()}
+    rows["coulomb_displacement"] = (to_say("Coulomb friction over stiffness"), unit, scale)
+    if decay.stiffness is not None:
+        rows |= {name: (*row, 1.0) for name, row in BY_STIFFNESS[decay.kind].items()}
+    for name, (text, own, factor) in rows.items():
+        label = say(", ").join(filter(None, (say(text), own)))
+        yield label, *_cells(decay.by_line[name], factor), *_cells(decay.by_record[name], factor)
+
+
+def _cells(quantity: Quantity, scale: float) -> tuple[Cell, Cell]:
+    """A value and its interval, with as many digits as make two of half the interval."""
+    value, low, high = quantity.value, quantity.low, quantity.high
+    if low is None or high is None:
+        return Value(scale * value), say("none")
+    half, largest = scale * (high - low) / 2, scale * max(abs(low), abs(high))
+    digits = 1 - floor(log10(half)) if half > 0 else MOST_DIGITS + 1
+    after = None if digits > MOST_DIGITS or largest >= 1e6 else max(digits, 0)
+    interval = Span(scale * low, scale * high, largest, after=after)
+    return Value(scale * value, largest, after=after), interval
+
+
+SHOWS: dict[str, Any] = {"Decay": decay_blocks}

@@ -1,28 +1,134 @@
-"""Constants of a decay, by the line of half-swings and by least squares on the whole record.
-
-The line of half-swings: each height against the one before it.
-
-Heights h_k of successive half-swings, peak to valley and valley to peak, lie on h_(k+1) = n h_k + m
-with n = exp(-sigma pi / beta) and m = -2 d (1 + n).  Two heights share the turning point between
-them, so an error there shows in both, and in the abscissa as well as in the ordinate; a plain
-regression of ordinates would find n too small.  So the heights are not the measured values here:
-the turning points are, each with an error of its own, and the line is the one whose exact turning
-points come closest to them in least squares.
-"""
+"""What the constants of a decay amount to, with confidence intervals by propagated covariance."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
+from math import pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.measured.estimate import Constants, student
-from equipoise.measured.record import Record, Swinging, reaches
+from equipoise.measured.record import Kind, Record, Swinging, reaches
 from equipoise.measured.turning import Turns
 
 Array = np.ndarray[Any, Any]
+
+STEP = 1e-30
+"""Of complex differences, which do not cancel."""
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A value with the ends of its confidence interval, None where nothing is known of them."""
+
+    value: float
+    low: float | None = None
+    high: float | None = None
+
+    @property
+    def includes_zero(self) -> bool:
+        """Whether it cannot be told from zero; false where the interval is not known."""
+        return self.low is not None and self.high is not None and self.low <= 0 <= self.high
+
+    def apart_from(self, other: Quantity) -> bool:
+        """Whether the two intervals have nothing in common; false where one is not known."""
+        if self.low is None or self.high is None or other.low is None or other.high is None:
+            return False
+        return self.high < other.low or other.high < self.low
+
+    def to_dict(self) -> dict[str, float | None]:
+        """Plain data."""
+        return asdict(self)
+
+
+@dataclass(frozen=True, eq=False)
+class Constants:
+    """Constants of a decay as a method finds them.
+
+    damped : beta, damped angular frequency, rad/s.
+    loss : -ln n, where n is the slope of the line of half-swings.
+    friction : Coulomb friction over stiffness, m or rad.
+    covariance : (3, 3) of the three, or None.
+    factor : half-width of a confidence interval over the standard error, Student's t.
+    """
+
+    damped: float
+    loss: float
+    friction: float
+    covariance: Array | None
+    factor: float
+
+    def quantities(self, kind: Kind, stiffness: float | None) -> dict[str, Quantity]:
+        """Every quantity by name, in SI units; see `_quantities`."""
+        point = np.array([self.damped, self.loss, self.friction])
+        values = _quantities(point.astype(complex), kind, stiffness)
+        slopes = [_quantities(point + 1j * STEP * row, kind, stiffness) for row in np.eye(3)]
+        found = {}
+        for name, value in values.items():
+            gradient = np.array([slope[name].imag for slope in slopes]) / STEP
+            found[name] = self._interval(value.real, gradient)
+        return found
+
+    def line(self) -> dict[str, Quantity]:
+        """Slope n and intercept m of the line of half-swings."""
+        n = float(np.exp(-self.loss))
+        slope = self._interval(n, np.array([0.0, -n, 0.0]))
+        rise = np.array([0.0, 2 * self.friction * n, -2 * (1 + n)])
+        return {"slope": slope, "intercept": self._interval(-2 * self.friction * (1 + n), rise)}
+
+    def _interval(self, value: float, gradient: Array) -> Quantity:
+        value = float(value)
+        if self.covariance is None:
+            return Quantity(value)
+        variance = float(gradient @ self.covariance @ gradient)
+        half = self.factor * max(0.0, variance) ** 0.5
+        return Quantity(value, value - half, value + half)
+
+
+def _quantities(point: Array, kind: Kind, stiffness: float | None) -> dict[str, Any]:
+    """(60) to (62) of Yamashita, Ichikawa and Mori; complex numbers carry derivatives.
+
+    point : beta (rad/s), -ln n, d (m or rad).
+    """
+    damped, loss, friction = point
+    natural = damped * np.sqrt(1 + (loss / pi) ** 2)
+    rate = damped * loss / pi
+    found = {
+        "damped_angular_frequency": damped,
+        "natural_angular_frequency": natural,
+        "damped_frequency": damped / (2 * pi),
+        "natural_frequency": natural / (2 * pi),
+        "damping_ratio": rate / natural,
+        "logarithmic_decrement": 2 * loss,
+        "decay_rate": rate,
+        "coulomb_displacement": friction,
+    }
+    if stiffness is not None:
+        inertia = stiffness / natural**2
+        names = NAMES[kind]
+        found |= {
+            names[0]: inertia,
+            "viscous_damping": 2 * rate * inertia,
+            names[1]: stiffness * friction,
+        }
+    return found
+
+
+NAMES: dict[Kind, tuple[str, str]] = {
+    "length": ("mass", "coulomb_force"),
+    "angle": ("inertia", "coulomb_torque"),
+}
+"""What inertia and friction are called."""
+
+
+def student(confidence: float, free: float) -> float:
+    """Half-width of a two-sided interval over the standard error."""
+    from scipy.stats import t
+
+    return float(t.ppf(0.5 + confidence / 2, free))
+
 
 LEAST_SCATTER = 1e-4
 """Of the first half-swing, and of the half-period: what the polynomials may miss without noise."""
@@ -75,9 +181,9 @@ def _line(turns: Turns) -> tuple[Array, Array]:
         return np.asarray((turns.displacement / scale - expected) / spread)
 
     unit = np.array([scale, scale, 1.0, scale])
-    tried = [
+    tried = (
         least_squares(left, guess / unit, "3-point", x_scale="jac") for guess in _guesses(turns)
-    ]
+    )
     done = min(tried, key=lambda one: one.cost)
     free = len(number) - 4
     scatter = max(2 * done.cost / free, LEAST_SCATTER**2) if free else 0.0
@@ -85,21 +191,29 @@ def _line(turns: Turns) -> tuple[Array, Array]:
     return np.array(done.x * unit), np.array(covariance * np.outer(unit, unit))
 
 
-def _guesses(turns: Turns) -> list[Array]:
+def _guesses(turns: Turns) -> Iterator[Array]:
     """The same with all of the decay viscous, with all of it Coulomb friction, with half of each.
 
     One of them leads to the line even where noise hides which of the two it is.
     """
-    heights = turns.heights
-    loss = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+    heights, loss = turns.heights, _viscous(turns)
     friction = float(heights[0] - heights[-1]) / (len(heights) - 1) / 4
-    guesses = []
     for share in (1.0, 0.0, 0.5):
-        ratio = np.exp(-share * loss)
-        amplitude = float(heights[0]) / (1 + ratio) + (1 - share) * friction
-        center = turns.displacement[0] - turns.side * amplitude
-        guesses.append(np.array([center, amplitude, share * loss, (1 - share) * friction]))
-    return guesses
+        parts = share * loss, (1 - share) * friction
+        yield np.array([*_begun(turns, 0, *parts), *parts])
+
+
+def _viscous(turns: Turns) -> float:
+    """-ln n with all of the decay viscous."""
+    heights = turns.heights
+    return float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+
+
+def _begun(turns: Turns, first: int, loss: float, friction: float) -> tuple[float, float]:
+    """Centre, and amplitude at a turning point, by the half-swing that begins there."""
+    amplitude = float(turns.heights[first]) / (1 + np.exp(-loss)) + friction
+    side = turns.side * (-1) ** first
+    return turns.displacement[first] - side * amplitude, amplitude
 
 
 MOST, PER_HALF_SWING = 20_000, 64
@@ -169,33 +283,23 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     free = len(time) / correlated - UNKNOWNS
     covariance = correlated * 2 * done.cost / max(len(time) - UNKNOWNS, 1)
     matrix = covariance * np.linalg.pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
-    constants = _constants(found, matrix, student(confidence, max(free, 1.0)))
+    change = np.zeros((3, UNKNOWNS))  # -ln n = pi sigma / beta in place of sigma
+    change[0, 3] = change[2, 5] = 1.0
+    change[1, 3], change[1, 4] = -found.loss / found.damped, np.pi / found.damped
+    factor, three = student(confidence, max(free, 1.0)), change @ matrix @ change.T
+    constants = Constants(found.damped, found.loss, found.friction, three, factor)
     return WholeFit(constants, found, time, residual, per_point, correlated)
 
 
-def _first_guesses(turns: Turns, line: Constants) -> list[Array]:
+def _first_guesses(turns: Turns, line: Constants) -> Iterator[Array]:
     """Turning point 1: its time since that found, amplitude, centre; beta, sigma, d.
 
     From the line, and with all of the decay viscous, should noise have led the line astray.
     """
-    heights = turns.heights
-    viscous = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
-    guesses = []
-    for loss, friction in ((line.loss, line.friction), (viscous, 0.0)):
-        amplitude = float(heights[1]) / (1 + np.exp(-loss)) + friction
-        center = turns.displacement[1] + turns.side * amplitude
+    for loss, friction in ((line.loss, line.friction), (_viscous(turns), 0.0)):
+        center, amplitude = _begun(turns, 1, loss, friction)
         rate = line.damped * loss / np.pi
-        guesses.append(np.array([0.0, amplitude, center, line.damped, rate, friction]))
-    return guesses
-
-
-def _constants(motion: Swinging, covariance: Array, factor: float) -> Constants:
-    """With -ln n = pi sigma / beta in place of sigma."""
-    change = np.zeros((3, UNKNOWNS))
-    change[0, 3] = change[2, 5] = 1.0
-    change[1, 3], change[1, 4] = -motion.loss / motion.damped, np.pi / motion.damped
-    three = change @ covariance @ change.T
-    return Constants(motion.damped, motion.loss, motion.friction, three, factor)
+        yield np.array([0.0, amplitude, center, line.damped, rate, friction])
 
 
 def _window(record: Record, turns: Turns) -> tuple[Array, Array, int]:

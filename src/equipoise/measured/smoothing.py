@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 Array = np.ndarray[Any, Any]
 
+ORDERS = ((9, (0, 1, 2, 3, 4)), (4, (0, 1, 2)), (2, (0, 1)), (1, (0,)))
+STILL = ((8, (0, 2, 3, 4)), (5, (0, 2, 3)), (3, (0, 2)))
+"""From how many samples on which powers of time are fitted; without slope for a place at rest."""
 
-def means(time: Array, values: Array, starts: Array) -> tuple[Array, Array]:
+
+class Samples(NamedTuple):
+    """Values (N,) at rising times (N,), s."""
+
+    time: Array
+    values: Array
+
+
+def means(samples: Samples, starts: Array) -> Samples:
     """Means of groups of samples that begin at `starts`."""
-    counts = np.diff(np.append(starts, len(time)))
-    return np.add.reduceat(time, starts) / counts, np.add.reduceat(values, starts) / counts
+    counts = np.diff(np.append(starts, len(samples.time)))
+    return Samples(*(np.add.reduceat(row, starts) / counts for row in samples))
 
 
 def zigzag(values: Array, threshold: float, last: bool = False) -> list[int]:
@@ -41,19 +51,13 @@ def zigzag(values: Array, threshold: float, last: bool = False) -> list[int]:
     return found
 
 
-ORDERS = ((9, (0, 1, 2, 3, 4)), (4, (0, 1, 2)), (2, (0, 1)), (1, (0,)))
-STILL = ((8, (0, 2, 3, 4)), (5, (0, 2, 3)), (3, (0, 2)))
-"""From how many samples on which powers of time are fitted; without slope for a place at rest."""
-
-
-@dataclass(frozen=True, eq=False)
-class Local:
+class Local(NamedTuple):
     """A smooth curve through the samples about one time.
 
     at : that time, s.  value : of the curve there.
     spread : standard error of the value over that of one sample.
     noise : standard deviation of the samples about the curve; None where they are too few.
-    powers : coefficients of time since `at` over `width`, from power 0 on.
+    powers : coefficients of time since `at` over `width`, s, from power 0 on.
     """
 
     at: float
@@ -63,21 +67,19 @@ class Local:
     powers: Array
     width: float
 
+    @property
+    def slope(self) -> float:
+        """At that time, 1/s."""
+        return float(self.powers[1] / self.width)
 
-def fitted(
-    time: Array,
-    values: Array,
-    at: float,
-    width: float,
-    *,
-    window: tuple[float, float] | None = None,
-    still: bool = False,
-) -> Local:
-    """Curve through the samples within `width` of a time, or within a window.
+
+def fitted(samples: Samples, at: float, width: float, still: bool = False, side: int = 0) -> Local:
+    """Curve through the samples within `width` of a time; only those after (1) or before (-1) it.
 
     still : the curve has no slope at that time.
     """
-    low, high = window or (at - width, at + width)
+    time, values = samples
+    low, high = at - width * (side <= 0), at + width * (side >= 0)
     part = slice(np.searchsorted(time, low), np.searchsorted(time, high, "right"))
     u, y = (time[part] - at) / width, values[part]
     powers = next((row for least, row in (STILL if still else ORDERS) if len(u) >= least), None)
@@ -85,8 +87,7 @@ def fitted(
         return Local(at, np.nan, inf, None, np.zeros(5), width)
     design = u[:, None] ** np.array(powers)
     inverse = np.linalg.pinv(design.T @ design, hermitian=True)
-    # Values about their mean: a large offset must not cost digits.
-    mean = float(np.mean(y))
+    mean = float(np.mean(y))  # values about it: a large offset must not cost digits
     found = inverse @ (design.T @ (y - mean))
     left = y - mean - design @ found
     free = len(u) - len(powers)
@@ -94,17 +95,16 @@ def fitted(
     coefficients = np.zeros(5)
     coefficients[list(powers)] = found
     coefficients[0] += mean
-    return Local(
-        at, float(coefficients[0]), float(np.sqrt(inverse[0, 0])), noise, coefficients, width
-    )
+    spread = float(np.sqrt(inverse[0, 0]))
+    return Local(at, float(coefficients[0]), spread, noise, coefficients, width)
 
 
-def top(time: Array, values: Array, near: float, half: float) -> Local:
+def top(samples: Samples, near: float, half: float) -> Local:
     """The turning point near a time; half : a half-period, s."""
     width = half / 3
-    place = fitted(time, values, near, width)
+    place = fitted(samples, near, width)
     for _ in range(2):
-        place = fitted(time, values, place.at + width * _level(place.powers), width)
+        place = fitted(samples, place.at + width * _level(place.powers), width)
     return place
 
 
@@ -118,7 +118,7 @@ def _level(powers: Array) -> float:
 
 
 def steepest_time(
-    time: Array, values: Array, before: Local, after: Local, half: float
+    samples: Samples, before: Local, after: Local, half: float
 ) -> tuple[float, float]:
     """When a half-swing is half done, s, and the standard error of that over noise.
 
@@ -126,16 +126,12 @@ def steepest_time(
     with any damping and friction.
     """
     level = (before.value + after.value) / 2
-    width = half / 4
-    at = (before.at + after.at) / 2
-    curve = fitted(time, values, at, width)
+    curve = fitted(samples, (before.at + after.at) / 2, half / 4)
     for _ in range(3):
-        slope = curve.powers[1] / width
-        if slope == 0 or not np.isfinite(curve.value):
+        if curve.slope == 0 or not np.isfinite(curve.value):
             break
-        step = (level - curve.value) / slope
-        at = float(np.clip(at + step, before.at + 0.2 * half, after.at - 0.2 * half))
-        curve = fitted(time, values, at, width)
-    slope = abs(curve.powers[1]) / width
+        at = curve.at + (level - curve.value) / curve.slope
+        at = float(np.clip(at, before.at + 0.2 * half, after.at - 0.2 * half))
+        curve = fitted(samples, at, half / 4)
     spread = np.hypot(curve.spread, np.hypot(before.spread, after.spread) / 2)
-    return at, float(spread / slope) if slope > 0 else inf
+    return curve.at, float(spread / abs(curve.slope)) if curve.slope else inf

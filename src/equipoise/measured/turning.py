@@ -16,7 +16,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.measured.record import Record
-from equipoise.measured.smoothing import Local, fitted, means, steepest_time, top, zigzag
+from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
 
 Array = np.ndarray[Any, Any]
 
@@ -76,27 +76,21 @@ def find_turns(record: Record) -> Turns:
     UsageError
         The displacement does not change, swings grow, too few half-swings or samples in each.
     """
-    time, values = record.time, record.displacement
-    if np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
+    whole = Samples(record.time, record.displacement)
+    if np.ptp(whole.values) <= 1e-9 * np.max(np.abs(whole.values)):
         raise UsageError("the displacement does not change; give a record of a free decay")
-    half = _half_swing(time, values)
-    places = _seen([top(time, values, at, half) for at in _swings(time, values, half)])
-    half, places = _even(time, values, places)
+    half = _half_swing(whole)
+    places = _seen([top(whole, at, half) for at in _swings(whole, half)])
+    half, places = _even(whole, places)
     places = _seen(places)
-    ends = (_end(record, places, half, -1), _end(record, places, half, 1))
-    places = [place for place in (ends[0], *places, ends[1]) if place is not None]
+    first, last = (_end(whole, places, half, sense) for sense in (-1, 1))
+    places = [place for place in (first, *places, last) if place is not None]
     if len(places) <= NEEDED:
         raise _too_few(len(places) - 1)
-    rows = _half_done(time, values, places, half)
-    noise = _noise(time, values, half)
-    return Turns(
-        np.array([place.at for place in places]),
-        np.array([place.value for place in places]),
-        np.array([place.spread for place in places]),
-        np.array([row[0] for row in rows]),
-        np.array([row[1] for row in rows]),
-        noise,
-    )
+    time, displacement, spread = np.array([(one.at, one.value, one.spread) for one in places]).T
+    halves = [steepest_time(whole, *ends, half) for ends in pairwise(places)]
+    passed, passed_spread = np.array(halves).T
+    return Turns(time, displacement, spread, passed, passed_spread, _noise(whole, half))
 
 
 def _seen(places: list[Local]) -> list[Local]:
@@ -108,7 +102,7 @@ def _seen(places: list[Local]) -> list[Local]:
     return places[:kept]
 
 
-def _even(time: Array, values: Array, tops: list[Local]) -> tuple[float, list[Local]]:
+def _even(whole: Samples, tops: list[Local]) -> tuple[float, list[Local]]:
     """The half-period, s, and the turning points at evenly spaced times instead of at tops.
 
     Free turning points are evenly spaced whatever the friction; tops are not, since the noise moves
@@ -118,12 +112,18 @@ def _even(time: Array, values: Array, tops: list[Local]) -> tuple[float, list[Lo
     heights = np.abs(np.diff([place.value for place in tops]))
     half = float(np.median(np.diff(times)))
     if len(heights) > 1:  # friction moves the steepest places less than the tops of small swings
-        passed = [at for at, _ in _half_done(time, values, tops, half)]
+        passed = [steepest_time(whole, *ends, half)[0] for ends in pairwise(tops)]
         half = float(np.polyfit(np.arange(len(heights)), passed, 1, w=heights)[0])
     size = np.minimum(np.append(heights, heights[-1]), np.append(heights[0], heights))
     number = np.arange(len(tops))
     first = _first(times - half * number, size)
-    return half, [_near(time, values, first + k * half, half) for k in number]
+    places = []
+    for at in first + number * half:
+        place = fitted(whole, at, half / 3)
+        if not place.spread < 1:  # a gap in the record leaves little: without slope
+            place = fitted(whole, at, half / 2, still=True)
+        places.append(place)
+    return half, places
 
 
 def _first(times: Array, size: Array) -> float:
@@ -138,18 +138,6 @@ def _first(times: Array, size: Array) -> float:
     return float(np.average(times, weights=size**2))
 
 
-def _near(time: Array, values: Array, at: float, half: float) -> Local:
-    """The turning point at a time; where a gap in the record leaves little, without slope."""
-    place = fitted(time, values, at, half / 3)
-    return place if place.spread < 1 else fitted(time, values, at, half / 2, still=True)
-
-
-def _half_done(
-    time: Array, values: Array, places: list[Local], half: float
-) -> list[tuple[float, float]]:
-    return [steepest_time(time, values, before, after, half) for before, after in pairwise(places)]
-
-
 def _too_few(count: int) -> UsageError:
     return UsageError(
         f"found {max(count, 0)} of at least {NEEDED} free half-swings above the noise, each from a "
@@ -160,13 +148,14 @@ def _too_few(count: int) -> UsageError:
 # -- first pass ------------------------------------------------------------------------------------
 
 
-def _half_swing(time: Array, values: Array) -> float:
+def _half_swing(whole: Samples) -> float:
     """Half a period, s: three times what the largest swings need for the middle half of their way.
 
     A cosine takes a third of the half-swing for it, and neither a hold before the release nor the
     rest at the end change that.
     """
-    time, values = means(time, values, _even_edges(time))
+    step = -(-len(whole.time) // MOST_BINS)
+    time, values = means(whole, np.arange(0, len(whole.time), step))
     turns = zigzag(values, ROUGH * float(np.ptp(values)), last=True)
     heights = np.abs(np.diff(values[turns]))
     spans = [
@@ -175,11 +164,11 @@ def _half_swing(time: Array, values: Array) -> float:
         if height >= 0.5 * np.max(heights)
     ]
     half = 3 * float(np.median(spans))
-    if half < PER_HALF_SWING * float(np.median(np.diff(time))):
+    samples = half / float(np.median(np.diff(time)))
+    if samples < PER_HALF_SWING:
         raise UsageError(
-            f"the largest swings take about {half / float(np.median(np.diff(time))):.0f} samples "
-            f"each; take {PER_HALF_SWING} or more in a half-swing, and swings that stand out of "
-            "the noise"
+            f"the largest swings take about {samples:.0f} samples each; take {PER_HALF_SWING} or "
+            "more in a half-swing, and swings that stand out of the noise"
         )
     return half
 
@@ -196,42 +185,34 @@ def _middle(time: Array, values: Array) -> float:
     return float(crossed[1] - crossed[0])
 
 
-def _even_edges(time: Array) -> Array:
-    """Starts of groups of samples, as many as the first pass can take."""
-    step = -(-len(time) // MOST_BINS)
-    return np.arange(0, len(time), step)
-
-
 # -- second pass -----------------------------------------------------------------------------------
 
 
-def _noise(time: Array, values: Array, half: float) -> float:
+def _noise(samples: Samples, half: float) -> float:
     """Standard deviation of the samples about smooth curves, the median over the record."""
     width = half / 3
-    centers = np.arange(time[0] + width, time[-1] - width, 2 * width)
+    centers = np.arange(samples.time[0] + width, samples.time[-1] - width, 2 * width)
     step = max(1, len(centers) // 200)
-    found = [fitted(time, values, at, width).noise for at in centers[::step]]
+    found = [fitted(samples, at, width).noise for at in centers[::step]]
     known = [noise for noise in found if noise is not None]
     return float(np.median(known)) if known else 0.0
 
 
-def _swings(time: Array, values: Array, half: float) -> list[float]:
+def _swings(whole: Samples, half: float) -> list[float]:
     """Times of the inner turning points of the decay, s: the second to the last that is sure."""
-    bins = np.floor((time - time[0]) / (half / BINS)).astype(int)
-    starts = np.flatnonzero(np.diff(bins, prepend=-1))
-    rough_time, rough = means(time, values, starts)
-    least = max(ABOVE_NOISE * _noise(rough_time, rough, half), LEAST * float(np.ptp(rough)))
-    turns = zigzag(rough, least)
-    heights = np.abs(np.diff(rough[turns]))
+    bins = np.floor((whole.time - whole.time[0]) / (half / BINS)).astype(int)
+    rough = means(whole, np.flatnonzero(np.diff(bins, prepend=-1)))
+    least = max(ABOVE_NOISE * _noise(rough, half), LEAST * float(np.ptp(rough.values)))
+    turns = zigzag(rough.values, least)
+    heights = np.abs(np.diff(rough.values[turns]))
     if not len(heights):
         raise _too_few(len(turns))
     first = int(np.argmax(heights >= AS_LARGE * np.max(heights) - least))
-    places = rough_time[turns[first + 1 :]]
-    spacing = np.diff(places) / half
-    uneven = (spacing < UNEVEN[0]) | (spacing > UNEVEN[1])
+    places = rough.time[turns[first + 1 :]]
+    uneven = _uneven(places, half)
     kept = int(np.argmax(uneven)) + 1 if uneven.any() else len(places)
     if kept < 2:
-        if first >= 2 and _regular(rough_time[turns], half):
+        if first >= 2 and not _uneven(rough.time[turns[1:]], half).any():
             raise UsageError(
                 "the swings grow from the first to the last; give a record of a decay, in which "
                 "they become smaller"
@@ -240,29 +221,27 @@ def _swings(time: Array, values: Array, half: float) -> list[float]:
     return [float(at) for at in places[:kept]]
 
 
-def _regular(times: Array, half: float) -> bool:
-    spacing = np.diff(times[1:]) / half
-    return bool(np.all((spacing > UNEVEN[0]) & (spacing < UNEVEN[1])))
+def _uneven(times: Array, half: float) -> Array:
+    """Which spacings of turning points no free swing has."""
+    spacing = np.diff(times) / half
+    return np.asarray((spacing < UNEVEN[0]) | (spacing > UNEVEN[1]))
 
 
 # -- the first and the last turning point ----------------------------------------------------------
 
 
-def _end(record: Record, inner: list[Local], half: float, sense: int) -> Local | None:
+def _end(whole: Samples, inner: list[Local], half: float, sense: int) -> Local | None:
     """The turning point before the first inner one (sense -1) or after the last (1), if any.
 
     It may be a release or a stop, so only the samples on the side of the swing are used, and the
     swing has to be half done at half its time, as a free one is.
     """
-    time, values = record.time, record.displacement
-    neighbour = inner[0] if sense < 0 else inner[-1]
+    neighbour, end = (inner[0], whole.time[0]) if sense < 0 else (inner[-1], whole.time[-1])
     at = neighbour.at + sense * half
-    outside = (time[0] - at) if sense < 0 else (at - time[-1])
-    if outside > 0.1 * half:
+    if sense * (at - end) > 0.1 * half:
         return None
-    window = (at, at + 0.5 * half) if sense < 0 else (at - 0.5 * half, at)
-    place = fitted(time, values, at, 0.5 * half, window=window, still=True)
-    middle = fitted(time, values, at - sense * 0.5 * half, half / 4)
+    place = fitted(whole, at, 0.5 * half, still=True, side=-sense)
+    middle = fitted(whole, at - sense * 0.5 * half, half / 4)
     height = abs(place.value - neighbour.value)
     least = max(ABOVE_NOISE * (place.noise or 0.0) * place.spread, 1e-9 * abs(neighbour.value))
     if not np.isfinite(height) or height <= least or place.spread == inf:

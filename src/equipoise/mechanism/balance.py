@@ -6,20 +6,12 @@ the link that they belong to.
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import degrees, hypot, pi, radians
-from typing import Literal
+from typing import Any, Literal
 
 from equipoise.errors import ModelError
-from equipoise.keys import (
-    Frozen,
-    Table,
-    Tables,
-    Text,
-    declared,
-    key,
-)
+from equipoise.keys import Frozen, Table, Tables, Text, declared, key
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
 from equipoise.mechanism.counterweights import (
     BalanceShafts,
@@ -29,13 +21,7 @@ from equipoise.mechanism.counterweights import (
 )
 from equipoise.mechanism.declaring import Measure
 from equipoise.mechanism.force_elements import wrong_ends
-from equipoise.mechanism.objectives import (
-    MEASURES,
-    Limit,
-    Objective,
-    wrong_limit,
-    wrong_objective,
-)
+from equipoise.mechanism.objectives import MEASURES, Limit, Objective, wrong_limit, wrong_objective
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     CUT,
@@ -81,7 +67,6 @@ __all__ = [
     "plate_mass",
 ]
 
-LISTS = ("moves", "masses", "geared", "shafts", "springs", "objectives", "limits")
 MOST = 200
 """Far beyond any machine, as in `mechanism.model`."""
 
@@ -165,30 +150,18 @@ class Balance(Frozen):
 
     def problems(self, machine: Mechanism) -> Iterator[ModelError]:
         """Everything that is wrong with what a machine says about its balancing."""
-        for name in LISTS:
+        for name, wrong in LISTS.items():
             yield from too_many(f"balance.{name}", getattr(self, name), MOST)
-        seen: set[str] = set()
-        for where, move in numbered("balance.moves", self.moves):
-            yield from wrong_move(where, move, machine.links)
-            if move.link in seen:
-                yield ModelError(f"{where}.link", f"{move.link!r} is given twice; give one of both")
-            seen.add(move.link)
-        for where, added in numbered("balance.masses", self.masses):
-            yield from wrong_added(where, added, machine.links)
-        for where, geared in numbered("balance.geared", self.geared):
-            yield from wrong_geared(where, geared, machine)
-        for where, shafts in numbered("balance.shafts", self.shafts):
-            yield from wrong_shafts(where, shafts)
+            for where, item in numbered(f"balance.{name}", getattr(self, name)):
+                yield from wrong(where, item, machine)
+        moved = [move.link for move in self.moves]
+        for place, link in enumerate(moved):
+            if link in moved[:place]:
+                where = f"balance.moves[{place + 1}].link"
+                yield ModelError(where, f"{link!r} is given twice; give one of both")
         yield from _wrong_names(self, machine.bodies)
-        for where, spring in numbered("balance.springs", self.springs):
-            yield from wrong_ends(where, spring, machine.bodies)
-            yield from wrong_range(f"{where}.free_length", spring.free_length, 1e3, " mm")
         if self.phases is not None:
-            yield from _wrong_phases(self.phases, len(machine.rows))
-        for where, objective in numbered("balance.objectives", self.objectives):
-            yield from wrong_objective(where, objective, machine)
-        for where, limit in numbered("balance.limits", self.limits):
-            yield from wrong_limit(where, limit, machine)
+            yield from _wrong_phases(self.phases.step, len(machine.rows))
 
 
 # -- checks ----------------------------------------------------------------------------------------
@@ -196,34 +169,42 @@ class Balance(Frozen):
 
 def _wrong_names(balance: Balance, bodies: Bodies) -> Iterator[ModelError]:
     """Names of new links, which must be free."""
-    new = [
-        *((f"balance.geared[{n}].name", item.name) for n, item in enumerate(balance.geared, 1)),
-        *(
-            (f"balance.shafts[{n}].name", f"{item.name}-{shaft}")
-            for n, item in enumerate(balance.shafts, 1)
-            for shaft in (1, 2)
-        ),
-    ]
-    seen: Counter[str] = Counter()
-    for where, name in new:
-        seen[name] += 1
+    new = [(place, geared.name) for place, geared in numbered("balance.geared", balance.geared)]
+    for place, shafts in numbered("balance.shafts", balance.shafts):
+        new += [(place, f"{shafts.name}-1"), (place, f"{shafts.name}-2")]
+    seen: set[str] = set()
+    for place, name in new:
+        where = f"{place}.name"
         if not name.strip() or not name.isprintable() or len(name) > LONGEST_NAME:
             yield ModelError(where, f"got {name[:60]!r}; give another name")
         elif name in bodies:
             yield ModelError(where, f"{name!r} is taken already; give another name")
-        elif seen[name] > 1:
+        elif name in seen:
             yield ModelError(where, f"{name!r} is given twice; give each its own name")
+        seen.add(name)
 
 
-def _wrong_phases(phases: Phases, rows: int) -> Iterator[ModelError]:
-    step = phases.step
+def _wrong_phases(step: float, rows: int) -> Iterator[ModelError]:
     if not 0 < step <= pi / 2 * (1 + 1e-12):
-        yield ModelError(
-            "balance.phases.step",
-            f"got {degrees(step):g} deg; give more than 0 deg and at most 90 deg",
-        )
+        sentence = f"got {degrees(step):g} deg; give more than 0 deg and at most 90 deg"
+        yield ModelError("balance.phases.step", sentence)
     if rows < 2:
-        yield ModelError(
-            "balance.phases",
-            f"got {rows} rows, which leaves no phase to choose; give two at least",
-        )
+        sentence = f"got {rows} rows, which leaves no phase to choose; give two at least"
+        yield ModelError("balance.phases", sentence)
+
+
+def _wrong_spring(where: str, spring: SpringChoice, machine: Mechanism) -> Iterator[ModelError]:
+    yield from wrong_ends(where, spring, machine.bodies)
+    yield from wrong_range(f"{where}.free_length", spring.free_length, 1e3, " mm")
+
+
+LISTS: Mapping[str, Callable[[str, Any, Mechanism], Iterator[ModelError]]] = {
+    "moves": wrong_move,
+    "masses": wrong_added,
+    "geared": wrong_geared,
+    "shafts": wrong_shafts,
+    "springs": _wrong_spring,
+    "objectives": wrong_objective,
+    "limits": wrong_limit,
+}
+"""What is wrong with each of the lists."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import Any, TypeVar
 
 from equipoise.errors import ModelError
 
@@ -13,6 +13,8 @@ Vector = tuple[float, float]
 """Components along x (forward) and y (up)."""
 Bodies = Mapping[str, Mapping[str, Vector]]
 """Points by name of the frame and of every link, in their own axes."""
+
+Value = TypeVar("Value")
 
 MOST_SHOWN = 20
 """Names in an error."""
@@ -33,6 +35,26 @@ def unknown(given: str, known: Iterable[str], kind: str) -> str:
 def _listed(names: list[str]) -> str:
     shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
     return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
+
+
+class Named(dict[str, Value]):
+    """A dict that says which names there are when one is asked for that is not."""
+
+    def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:
+        super().__init__(items)
+        self.kind = kind
+
+    def __missing__(self, name: str) -> Value:
+        raise KeyError(unknown(name, self, self.kind))
+
+
+def bodies_at(bodies: Bodies) -> dict[str, list[str]]:
+    """The bodies that have a point, by its name: two and more are pinned together there."""
+    found: dict[str, list[str]] = {}
+    for body, points in bodies.items():
+        for point in points:
+            found.setdefault(point, []).append(body)
+    return found
 
 
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:

@@ -22,7 +22,7 @@ from equipoise.keys import (
     declared,
     key,
 )
-from equipoise.mechanism.checks import unknown, wrong_range
+from equipoise.mechanism.checks import numbered, unknown, wrong_range
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     WEIGHT,
@@ -126,10 +126,7 @@ class GearedWeight(Frozen):
         example="0 deg",
     )
     gear_thickness: float | None = key(
-        "length",
-        "of both gears, solid discs; if left out they have no mass",
-        default=None,
-        above=0,
+        "length", "of both gears, solid discs; if left out they have no mass", default=None, above=0
     )
     gear_density: float | None = key(
         "density", "of both gears, instead of `gear_material`", default=None, above=0
@@ -178,35 +175,32 @@ class BalanceShafts(Frozen):
 # -- checks ----------------------------------------------------------------------------------------
 
 
-def _frame_pins(link: str, machine: Mechanism) -> list[str]:
-    return [point for point in machine.links[link].points if point in machine.frame]
-
-
 def wrong_geared(where: str, geared: GearedWeight, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with a geared counterweight."""
     sliding = {slider.link for slider in machine.sliders}
-    turning = [
-        link
-        for link in machine.links
-        if len(_frame_pins(link, machine)) == 1 and link not in sliding
-    ]
-    if geared.driver not in machine.links:
-        yield ModelError(f"{where}.driver", unknown(geared.driver, machine.links, "link"))
+    pins = {
+        name: [point for point in link.points if point in machine.frame]
+        for name, link in machine.links.items()
+    }
+    turning = [name for name in pins if len(pins[name]) == 1 and name not in sliding]
+    driver = geared.driver
+    if driver not in pins:
+        yield ModelError(f"{where}.driver", unknown(driver, pins, "link"))
         return
-    if geared.driver not in turning:
+    if driver not in turning:
         known = ", ".join(map(repr, turning)) or "none"
-        yield ModelError(
-            f"{where}.driver",
-            f"{geared.driver!r} does not turn about a pin in the frame; those that do are {known}",
-        )
+        sentence = f"{driver!r} does not turn about a pin in the frame; those that do are {known}"
+        yield ModelError(f"{where}.driver", sentence)
         return
     yield from _wrong_sizes(where, geared)
-    yield from _wrong_axis(where, geared, _frame_pins(geared.driver, machine)[0], machine)
-    yield from _wrong_plates(where, geared)
-    for number, link in enumerate(geared.clear_of, 1):
+    yield from _wrong_axis(where, geared, pins[driver][0], machine)
+    if (geared.gear_thickness is None) != (geared.gear_density is None):
+        yield ModelError(
+            where, "give both gear_thickness and gear_material (or gear_density), or neither"
+        )
+    for place, link in numbered(f"{where}.clear_of", geared.clear_of):
         if link not in machine.links:
-            sentence = unknown(link, machine.links, "link")
-            yield ModelError(f"{where}.clear_of[{number}]", sentence)
+            yield ModelError(place, unknown(link, machine.links, "link"))
     yield from wrong_weight(where, geared.weight)
 
 
@@ -283,14 +277,7 @@ def _wrong_axis(
             )
 
 
-def _wrong_plates(where: str, geared: GearedWeight) -> Iterator[ModelError]:
-    if (geared.gear_thickness is None) != (geared.gear_density is None):
-        yield ModelError(
-            where, "give both gear_thickness and gear_material (or gear_density), or neither"
-        )
-
-
-def wrong_shafts(where: str, shafts: BalanceShafts) -> Iterator[ModelError]:
+def wrong_shafts(where: str, shafts: BalanceShafts, _: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with a pair of balance shafts."""
     if shafts.axes[0] == shafts.axes[1]:
         yield ModelError(f"{where}.axes", "both lie at the same place; set them apart")

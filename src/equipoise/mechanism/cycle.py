@@ -11,16 +11,20 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import degrees, pi
-from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ChangePointError, MotionError, RangeError
 from equipoise.mechanism.model import FRAME, Machine
-from equipoise.mechanism.steps import Group, initial_state, needed_references, run, running_angle
+from equipoise.mechanism.steps import (
+    Array,
+    Group,
+    initial_state,
+    needed_references,
+    run,
+    running_angle,
+)
 from equipoise.signals import EQUAL, highest_at
-
-Array = np.ndarray[Any, Any]
 
 POINTS_PER_TURN, FEWER_POINTS, MANY_TURNS = 720, 144, 100
 """Crank angles of the grid in a turn, and in each of more than so many turns."""

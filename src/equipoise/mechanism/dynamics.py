@@ -9,7 +9,7 @@ stack of them.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from math import hypot
 from typing import Any
@@ -18,11 +18,9 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.applied import load_demands, spring_demands
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.reactions import (
-    Array,
     Demand,
     JointForce,
     MeshForce,
@@ -30,23 +28,11 @@ from equipoise.mechanism.reactions import (
     SliderForce,
     VectorSignal,
     full,
+    load_demands,
     reactions,
+    spring_demands,
 )
-from equipoise.mechanism.steps import p, planar, u
-
-__all__ = [
-    "CAUSES",
-    "Forces",
-    "JointForce",
-    "MeshForce",
-    "SliderForce",
-    "Split",
-    "VectorSignal",
-    "forces",
-    "massless",
-    "place_of",
-    "split",
-]
+from equipoise.mechanism.steps import Array, p, planar, u
 
 CAUSES = ("translation", "rotation", "weight", "load", "spring")
 """Inertia of the centres of mass, inertia of rotation about them, weight, loads from outside, and
@@ -73,9 +59,7 @@ class Forces:
     @cached_property
     def shaking_force(self) -> VectorSignal:
         """Minus the rate of change of momentum, N."""
-        return VectorSignal(
-            full(self.motion, -sum(force for force, _ in self.inertia.values()), complex)
-        )
+        return self._force(self.inertia)
 
     @cached_property
     def shaking_moment(self) -> Array:
@@ -90,9 +74,7 @@ class Forces:
     @cached_property
     def weight(self) -> VectorSignal:
         """Weight of all links, N: the same at every crank angle."""
-        return VectorSignal(
-            full(self.motion, -sum(force for force, _ in self.weights.values()), complex)
-        )
+        return self._force(self.weights)
 
     @cached_property
     def weight_moment(self) -> Array:
@@ -156,6 +138,10 @@ class Forces:
         """The same at another speed (rad/s) or acceleration (rad/s2), no position solved again."""
         return forces(self.motion.at(speed, acceleration), self.about)
 
+    def _force(self, demands: Mapping[str, Demand]) -> VectorSignal:
+        whole = -sum(force for force, _ in demands.values())
+        return VectorSignal(full(self.motion, whole, complex))
+
     def _moment(self, demands: Mapping[str, Demand], about: complex) -> Any:
         return sum(
             moment + kernels.cross(self.motion.state[f"p({self.anchor(link)})"] - about, force)
@@ -168,15 +154,13 @@ class Forces:
 
 
 @dataclass(frozen=True, eq=False)
-class Split:
-    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
+class Shares:
+    """Outputs told apart: arrays (..., N), whose first axes are what they are shares of.
 
     shaking_force, frame_force : complex, N.  shaking_moment, frame_moment, drive_torque : N m.
-    joints : name -> `JointForce` whose arrays have those axes.  gears : likewise.
-    Gears are taken with the flank in contact that the whole load gives.
+    joints, gears : name -> force whose arrays have those axes.
     """
 
-    links: tuple[str, ...]
     shaking_force: Array
     shaking_moment: Array
     frame_force: Array
@@ -184,6 +168,22 @@ class Split:
     drive_torque: Array
     joints: Mapping[str, JointForce]
     gears: Mapping[str, MeshForce]
+
+    @property
+    def of_machine(self) -> dict[str, Array]:
+        """All but the forces in joints and gears, by name."""
+        known = {one.name: getattr(self, one.name) for one in fields(Shares)}
+        return {name: value for name, value in known.items() if isinstance(value, np.ndarray)}
+
+
+@dataclass(frozen=True, eq=False)
+class Split(Shares):
+    """Outputs by cause and link: arrays (5, L, N), causes as in `CAUSES`, links in file order.
+
+    Gears are taken with the flank in contact that the whole load gives.
+    """
+
+    links: tuple[str, ...]
 
     def by_cause(self, output: str) -> dict[str, Array]:
         """An output, such as ``drive_torque`` or ``joints.B``, summed over links."""
@@ -194,7 +194,7 @@ class Split:
         return dict(zip(self.links, self._array(output).sum(axis=0), strict=True))
 
     def _array(self, output: str) -> Array:
-        found = {name: value for name, value in vars(self).items() if isinstance(value, np.ndarray)}
+        found = self.of_machine
         for name, joint in self.joints.items():
             found[f"joints.{name}"] = joint.value
             if isinstance(joint, SliderForce):
@@ -225,7 +225,7 @@ def forces(motion: Motion, about: str | Vector | complex | None = None) -> Force
     speed2, gravity = motion.speed**2, complex(*machine.gravity)
     inertia, weights = {}, {}
     for link in machine.links:
-        mass, moment, turning = inertia_about_anchor(motion, link)
+        mass, moment, turning = inertia_about(machine.links[link], motion.linkage.anchors[link])
         inertia[link] = demand_of_inertia(motion, link, speed2, mass, moment, turning)
         weights[link] = kernels.weight_demand(motion.state[f"u({link})"], mass, moment, gravity)
     held = load_demands(motion), spring_demands(motion)
@@ -241,11 +241,6 @@ def massless(machine: Machine) -> str:
         f"forces need mass, center_of_mass and inertia of every link; missing for "
         f"{', '.join(missing)} (a link to be neglected has mass 0)"
     )
-
-
-def inertia_about_anchor(motion: Motion, link: str) -> tuple[float, complex, float]:
-    """Mass, first moment (complex) and moment of inertia of a link about its anchor."""
-    return inertia_about(motion.machine.links[link], motion.linkage.anchors[link])
 
 
 def inertia_about(body: Link, point: str) -> tuple[float, complex, float]:
@@ -286,7 +281,6 @@ def split(whole: Forces) -> Split:
     # A spring's pull on the frame and what it makes the joints bear there cancel.
     on_frame = np.array([1, 1, 1, 1, 0])[:, None, None]
     return Split(
-        links,
         inertial * -sum(force for force, _ in demands.values()),
         inertial * -whole._moment(demands, whole.about),
         np.broadcast_to(on_frame * solved.frame_force, shape),
@@ -294,19 +288,20 @@ def split(whole: Forces) -> Split:
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        links,
     )
 
 
 def _causes(whole: Forces, link: str) -> list[Demand]:
     """Demands of a link in the order of `CAUSES`."""
     motion = whole.motion
-    mass, moment, _ = inertia_about_anchor(motion, link)
-    own = motion.machine.links[link].inertia
+    body = motion.machine.links[link]
+    mass, moment, _ = inertia_about(body, whole.anchor(link))
     as_point = abs(moment) ** 2 / mass if mass else 0.0
     speed2 = motion.speed**2
     return [
         demand_of_inertia(motion, link, speed2, mass, moment, as_point),
-        demand_of_inertia(motion, link, speed2, 0.0, 0.0, own),
+        demand_of_inertia(motion, link, speed2, 0.0, 0.0, body.inertia),
         whole.weights[link],
         whole.loads.get(link, (0j, 0.0)),
         whole.springs.get(link, (0j, 0.0)),

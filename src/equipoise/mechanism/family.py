@@ -11,8 +11,10 @@ for is here a design of which `wrong` is true.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
+from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from itertools import combinations
 from math import pi
 from typing import Any, TypeVar
@@ -20,13 +22,13 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.keys import changed
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
-from equipoise.mechanism.steps import Call, State, Step, p, planar, run, u
+from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u
 from equipoise.quantities.units import HUGE, TINY
 
-Array = np.ndarray[Any, Any]
 Triple = tuple[Array, Array, Array]
 
 
@@ -120,23 +122,34 @@ def column(values: Iterable[Any]) -> Array:
     return np.array(list(values))[:, None]
 
 
+# -- columns ---------------------------------------------------------------------------------------
+
 Columns = Mapping[str, Array]
 """Path of a number -> its values (P, 1), SI units."""
 Value = TypeVar("Value")
 
 PAIR = {"x", "y", "distance", "direction"}
 HOLDERS = {
-    "drive": (re.compile("drive"), {"speed", "acceleration"}),
-    "gravity": (re.compile("gravity"), PAIR),
-    "frame": (re.compile(r"frame\.points\.(?P<point>.+)"), PAIR),
-    "point": (re.compile(r"links\.(?P<link>.+?)\.points\.(?P<point>.+)"), PAIR),
-    "center": (re.compile(r"links\.(?P<link>.+)\.center_of_mass"), PAIR),
-    "link": (re.compile(r"links\.(?P<link>.+)"), {"mass", "inertia"}),
-    "slider": (re.compile(r"sliders\[(?P<number>\d+)\]"), {"direction", "angle"}),
-    "gear": (re.compile(r"gears\[(?P<number>\d+)\]"), {"start", "pressure_angle"}),
-    "spring": (re.compile(r"springs\[(?P<number>\d+)\]"), {"stiffness", "free_length"}),
+    r"(drive)": {"speed", "acceleration"},
+    r"(gravity)": PAIR,
+    r"(frame)\.(points)\.(.+)": PAIR,
+    r"(links)\.(.+?)\.(points)\.(.+)": PAIR,
+    r"(links)\.(.+)\.(center_of_mass)": PAIR,
+    r"(links)\.(.+)": {"mass", "inertia"},
+    r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
+    r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
+    r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
 """What has numbers that may be columns, by its path in the model file, and their keys."""
+
+
+def _holder(whole: str, parts: Set[str]) -> tuple[str, ...]:
+    """The steps to what has these numbers; a `KeyError` where they may be no columns."""
+    for pattern, keys in HOLDERS.items():
+        found = re.fullmatch(pattern, whole)
+        if found is not None and parts <= keys:
+            return found.groups()
+    raise KeyError(whole)
 
 
 def can_vary(machine: Machine, path: str) -> bool:
@@ -161,9 +174,44 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
     for path, column in columns.items():
         whole, _, part = path.rpartition(".")
         parts.setdefault(whole, {})[part] = column
-    result = machine
     for whole, found in parts.items():
-        result = _put(result, whole, found)
+        try:
+            steps = _holder(whole, found.keys())
+            machine = changed(machine, steps, partial(_filled, found), _with)
+        except (KeyError, IndexError):
+            told = " and ".join(f"{whole}.{part}".lstrip(".") for part in found)
+            raise UsageError(
+                f"got {told}; the machine has no such number that can be a column"
+            ) from None
+    return machine
+
+
+def _filled(parts: Mapping[str, Array], held: Any) -> Any:
+    """What holds numbers with columns for some of them, which have to be given."""
+    if isinstance(held, tuple):
+        return _pair(held, parts)
+    if held is None or any(getattr(held, name) is None for name in parts):
+        raise KeyError
+    return _with(held, **parts)
+
+
+def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
+    """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
+    x: Any
+    y: Any
+    x, y = place
+    if parts.keys() & {"distance", "direction"}:
+        distance = parts.get("distance", np.hypot(x, y))
+        direction = parts.get("direction", np.arctan2(y, x))
+        x, y = distance * np.cos(direction), distance * np.sin(direction)
+    return parts.get("x", x), parts.get("y", y)
+
+
+def _with(value: Value, **changes: Any) -> Value:
+    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
+    result = object.__new__(type(value))
+    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
+    result.__dict__.update(kept, **changes)
     return result
 
 
@@ -179,11 +227,10 @@ def linkage_of(machine: Machine, base: Linkage) -> Linkage:
 def massive_link(path: str) -> str | None:
     """The link whose mass, centre of mass or moment of inertia a path leads to."""
     whole, _, part = path.rpartition(".")
-    for kind in ("center", "link"):
-        pattern, keys = HOLDERS[kind]
-        found = pattern.fullmatch(whole)
-        if found is not None and part in keys:
-            return found["link"]
+    with suppress(KeyError):
+        match _holder(whole, {part}):
+            case ("links", link) | ("links", link, "center_of_mass"):
+                return link
     return None
 
 
@@ -214,98 +261,3 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
     for spring in machine.springs:
         yield (spring.stiffness > 0) & (np.asarray(spring.free_length) >= 0)
-
-
-# -- putting columns in ----------------------------------------------------------------------------
-
-
-def _put(machine: Machine, whole: str, parts: Mapping[str, Array]) -> Machine:
-    for kind, (pattern, keys) in HOLDERS.items():
-        found = pattern.fullmatch(whole)
-        if found is not None and parts.keys() <= keys:
-            try:
-                return _PUT[kind](machine, found, parts)
-            except (KeyError, IndexError):
-                break
-    told = " and ".join(f"{whole}.{part}".lstrip(".") for part in parts)
-    raise UsageError(f"got {told}; the machine has no such number that can be a column")
-
-
-def _drive(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    return _with(machine, drive=_with(machine.drive, **parts))
-
-
-def _gravity(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    return _with(machine, gravity=_pair(machine.gravity, parts))
-
-
-def _frame(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    place = _pair(machine.frame[found["point"]], parts)
-    return _with(machine, frame={**machine.frame, found["point"]: place})
-
-
-def _point(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    points = machine.links[found["link"]].points
-    place = _pair(points[found["point"]], parts)
-    return _with_link(machine, found["link"], points={**points, found["point"]: place})
-
-
-def _center(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    center = machine.links[found["link"]].center_of_mass
-    if center is None:
-        raise KeyError(found["link"])
-    return _with_link(machine, found["link"], center_of_mass=_pair(center, parts))
-
-
-def _link(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-    if machine.links[found["link"]].mass is None:
-        raise KeyError(found["link"])
-    return _with_link(machine, found["link"], **parts)
-
-
-def _listed(name: str) -> Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]:
-    def put(machine: Machine, found: re.Match[str], parts: Mapping[str, Array]) -> Machine:
-        values, place = list(getattr(machine, name)), int(found["number"]) - 1
-        if place < 0:
-            raise IndexError
-        values[place] = _with(values[place], **parts)
-        return _with(machine, **{name: tuple(values)})
-
-    return put
-
-
-_PUT: dict[str, Callable[[Machine, re.Match[str], Mapping[str, Array]], Machine]] = {
-    "drive": _drive,
-    "gravity": _gravity,
-    "frame": _frame,
-    "point": _point,
-    "center": _center,
-    "link": _link,
-    "slider": _listed("sliders"),
-    "gear": _listed("gears"),
-    "spring": _listed("springs"),
-}
-
-
-def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
-    """A pair with coordinates, or polar coordinates, replaced; x and y go by what is there then."""
-    x: Any
-    y: Any
-    x, y = place
-    if parts.keys() & {"distance", "direction"}:
-        distance = parts.get("distance", np.hypot(x, y))
-        direction = parts.get("direction", np.arctan2(y, x))
-        x, y = distance * np.cos(direction), distance * np.sin(direction)
-    return parts.get("x", x), parts.get("y", y)
-
-
-def _with(value: Value, **changes: Any) -> Value:
-    """A frozen value with fields changed, unchecked; what was kept with it is left behind."""
-    result = object.__new__(type(value))
-    kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
-    result.__dict__.update(kept, **changes)
-    return result
-
-
-def _with_link(machine: Machine, name: str, **changes: Any) -> Machine:
-    return _with(machine, links={**machine.links, name: _with(machine.links[name], **changes)})

@@ -5,7 +5,7 @@ They are part of the model; `equipoise.planting` computes with them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
 from typing import ClassVar, Literal
@@ -175,41 +175,25 @@ def wrong_planting(planting: Planting | None, bodies: Bodies) -> Iterator[ModelE
         known = dict.fromkeys(point for name in bodies if name != FRAME for point in bodies[name])
         yield ModelError("planting.tip", unknown(planting.tip, known, "point of a moving link"))
         return
-    yield from _wrong_finger(planting, links[0], bodies[links[0]])
-    yield from _wrong_travel(planting)
+    points = [point for point in bodies[links[0]] if point != planting.tip]
+    if planting.finger_from is not None and planting.finger_from not in points:
+        what = f"other point of {links[0]}, the tip's link,"
+        yield ModelError("planting.finger_from", unknown(planting.finger_from, points, what))
+    if (planting.forward_speed is None) == (planting.hill_spacing is None):
+        yield ModelError("planting", "give either forward_speed or hill_spacing")
     if (planting.depth is None) == (planting.surface is None):
         yield ModelError("planting", "give either depth or surface")
     if planting.tray is not None and planting.tray[0] == planting.tray[1]:
         yield ModelError("planting.tray", "its two points are the same; give both ends of the edge")
-    if planting.soil is not None:
-        yield from _wrong_soil(planting.soil)
-
-
-def _wrong_finger(planting: Planting, link: str, names: Iterable[str]) -> Iterator[ModelError]:
-    points = [point for point in names if point != planting.tip]
-    if planting.finger_from is not None and planting.finger_from not in points:
-        yield ModelError(
-            "planting.finger_from",
-            unknown(planting.finger_from, points, f"other point of {link}, the tip's link,"),
-        )
-
-
-def _wrong_travel(planting: Planting) -> Iterator[ModelError]:
-    if (planting.forward_speed is None) == (planting.hill_spacing is None):
-        yield ModelError("planting", "give either forward_speed or hill_spacing")
+    if planting.soil is None:
         return
+    if not any(getattr(planting.soil, part) for part in (*PARTS, "table")):
+        yield ModelError("planting.soil", f"give at least one of {', '.join(PARTS)} and table")
+    if planting.soil.table is not None:
+        yield from _wrong_table("planting.soil.table", planting.soil.table)
 
 
-def _wrong_soil(soil: Soil) -> Iterator[ModelError]:
-    values = {name: getattr(soil, name) for name in PARTS}
-    if not any(values.values()) and soil.table is None:
-        yield ModelError("planting.soil", f"give at least one of {', '.join(values)} and table")
-    if soil.table is not None:
-        yield from _wrong_table(soil.table)
-
-
-def _wrong_table(table: SoilTable) -> Iterator[ModelError]:
-    where = "planting.soil.table"
+def _wrong_table(where: str, table: SoilTable) -> Iterator[ModelError]:
     if not table.depth:
         yield ModelError(where, "the table has no rows")
     elif len(table.depth) != len(table.resistance):

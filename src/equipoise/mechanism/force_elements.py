@@ -25,6 +25,8 @@ from equipoise.keys import (
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
 
 MEAN_SPEEDS = ("held", "free")
+TURN = 2 * pi * (1 + 1e-12)
+"""rad: a whole turn, rounding included."""
 
 
 @declared
@@ -177,16 +179,12 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
         yield ModelError(f"{where}.point", "a torque acts on a link, not at a point; leave it out")
     if (load.start is None) != (load.stop is None):
         yield ModelError(where, "give both from and to, or neither")
-    elif load.start is not None and load.stop is not None and not _window(load.start, load.stop):
+    elif None not in (load.start, load.stop) and not 0 < abs(load.stop - load.start) <= TURN:  # type: ignore[operator]
         yield ModelError(
             where, "from and to must differ, by one turn at most; leave both out for always"
         )
     if load.table is not None:
         yield from _wrong_loads(f"{where}.table", load.table)
-
-
-def _window(start: float, stop: float) -> bool:
-    return 0 < abs(stop - start) <= 2 * pi * (1 + 1e-12)
 
 
 def _wrong_loads(where: str, table: LoadTable) -> Iterator[ModelError]:
@@ -196,7 +194,7 @@ def _wrong_loads(where: str, table: LoadTable) -> Iterator[ModelError]:
         return
     if any(b <= a for a, b in pairwise(angles)):
         yield ModelError(where, "the crank angles must rise from row to row")
-    if angles[-1] - angles[0] > 2 * pi * (1 + 1e-12):
+    if angles[-1] - angles[0] > TURN:
         yield ModelError(where, "the crank angles cover more than one turn")
     if any(len(column) != len(angles) for column in table.values):
         yield ModelError(where, "the columns differ in length")
@@ -234,20 +232,15 @@ def wrong_ends(where: str, spring: SpringEnds, bodies: Bodies) -> Iterator[Model
 
 def wrong_motor(where: str, motor: Motor) -> Iterator[ModelError]:
     """Everything that is wrong with a motor."""
-    line = (motor.no_load_speed, motor.stall_torque)
-    if (motor.table is None) != (None not in line) or (
-        motor.table is not None and any(value is not None for value in line)
-    ):
+    line, table = (motor.no_load_speed, motor.stall_torque), motor.table
+    where_table = f"{where}.table"
+    if line.count(None) != (0 if table is None else 2):
         yield ModelError(where, "give either no_load_speed and stall_torque, or table")
+    elif table is None:
         return
-    if motor.table is not None:
-        yield from _wrong_curve(f"{where}.table", motor.table)
-
-
-def _wrong_curve(where: str, table: MotorTable) -> Iterator[ModelError]:
-    if len(table.speed) != len(table.torque):
-        yield ModelError(where, "the columns differ in length")
+    elif len(table.speed) != len(table.torque):
+        yield ModelError(where_table, "the columns differ in length")
     elif len(table.speed) < 2:
-        yield ModelError(where, "the table has fewer than two rows; a curve needs two")
+        yield ModelError(where_table, "the table has fewer than two rows; a curve needs two")
     elif any(b <= a for a, b in pairwise(table.speed)):
-        yield ModelError(where, "the speeds must rise from row to row")
+        yield ModelError(where_table, "the speeds must rise from row to row")

@@ -1,13 +1,14 @@
 """Groups of links that are solved in closed form: dyads, and links that are geared.
 
 A dyad is two links with three joints, R (pin) or P (sliding); the outer joints join it to known
-bodies.  There is one
-builder for each sequence of joints; it turns links and joints into kernel calls.
+bodies.  There is one builder for each sequence of joints: it says which kernels solve it, and with
+which numbers.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from equipoise.mechanism.steps import (
     Call,
     Group,
     Guide,
+    Kernel,
     Outer,
     Reaction,
     Rotation,
@@ -36,217 +38,154 @@ NEAR = 1e-3
 """Distance, over the size of the machine, at which a block counts as near its guide's pivot."""
 
 
+def _dyad(
+    builder: Builder,
+    outers: tuple[Outer, Outer],
+    reactions: tuple[Reaction, Reaction, Reaction],
+    motion: tuple[Kernel, tuple[Any, ...]],
+    forces: tuple[Kernel, tuple[str, ...], tuple[Any, ...]],
+    *,
+    joint: str,
+    point: str = "",
+    dead: str = "",
+) -> Group:
+    """Two links of which the outer joints are known, and that are known afterwards.
+
+    reactions : of the outer joints, whose places are the links' anchors, and of the inner one.
+    motion : kernel and its numbers; it goes on from the outer joints.
+    forces : kernel, the places and rotations that it takes before the demands, and its numbers.
+    joint, dead : as in `Group`.  point : where the inner joint is, if the kernel finds that.
+    """
+    first, second = (outer.link for outer in outers)
+    margin = f"s({reactions[2].name})"
+    known = [name for outer in outers for name in outer.inputs]
+    found = (*u(first), *u(second), *(p(point) if point else ()), margin)
+    reach = [step for outer in outers for step in builder.reach(outer.body, outer.point)]
+    builder.add({first: reactions[0].at, second: reactions[1].at}, [point] if point else [])
+    kernel, places, numbers = forces
+    demands = (*demand_names(first), *demand_names(second))
+    results = tuple(name for reaction in reactions for name in reaction.outputs)
+    return Group(
+        "dyad",
+        (first, second),
+        (*reach, Call(motion[0], (*known,), motion[1], found)),
+        (
+            Call(kernel, (*places, *demands), numbers, results),
+            *(builder.hand_over(reaction) for reaction in reactions[:2]),
+        ),
+        reactions,
+        margin,
+        joint,
+        dead,
+    )
+
+
 def rrr(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links and three pins."""
     link, other = first.link, second.link
     meaning = f"{pin} lies left or right of the line from {first.point} to {second.point}"
     side = builder.side(pin, ("left", "right"), meaning)
-    arms = (
-        builder.arm(link, first.point, pin),
-        builder.arm(other, second.point, pin),
-    )
-    margin = f"s({pin})"
-    motion = (
-        *builder.reach(first.body, first.point),
-        *builder.reach(second.body, second.point),
-        Call(
-            kernels.rrr,
-            (*p(first.point), *p(second.point)),
-            (*arms, side),
-            (*u(link), *u(other), *p(pin), margin),
-        ),
-    )
-    builder.add({link: first.point, other: second.point}, [pin])
-    ground = pin_reaction(first.point, link, first.body)
-    far = pin_reaction(second.point, other, second.body)
-    inner = pin_reaction(pin, other, link)
+    arms = (builder.arm(link, first.point, pin), builder.arm(other, second.point, pin))
     places = (f"p({first.point})", f"p({second.point})", f"p({pin})")
-    in_line = f"{link!r} and {other!r} lie in line"
-    forces = (
-        Call(
-            kernels.rrr_forces,
-            (*places, *demand_names(link), *demand_names(other)),
-            (),
-            (ground.force, far.force, inner.force),
-        ),
-        builder.hand_over(first.body, first.point, ground.force),
-        builder.hand_over(second.body, second.point, far.force),
+    return _dyad(
+        builder,
+        (first, second),
+        (first.reaction(), second.reaction(), pin_reaction(pin, other, link)),
+        (kernels.rrr, (*arms, side)),
+        (kernels.rrr_forces, places, ()),
+        joint=pin,
+        point=pin,
+        dead=f"{link!r} and {other!r} lie in line",
     )
-    return Group("dyad", (link, other), motion, forces, (ground, far, inner), margin, pin, in_line)
 
 
 def rrp(builder: Builder, pinned: Outer, sliding: Outer, pin: str) -> Group:
     """A pinned link and a link on a known guide, joined by a pin."""
-    link, other, guide = pinned.link, sliding.link, _guide(sliding)
+    link, other, guide = pinned.link, sliding.link, sliding.rail
     meaning = f"{pin} lies ahead of or behind {pinned.point}, seen along the guide's direction"
     side = builder.side(pin, AHEAD, meaning)
     arm = builder.arm(link, pinned.point, pin)
     shift = guide.turn * builder.arm(other, guide.point, pin)
-    margin = f"s({pin})"
-    motion = (
-        *builder.reach(pinned.body, pinned.point),
-        *builder.reach(sliding.body, guide.base),
-        Call(
-            kernels.rrp,
-            (*p(pinned.point), *p(guide.base), *u(sliding.body)),
-            (arm, guide.along, shift, guide.turn, side),
-            (*u(link), *u(other), *p(pin), margin),
-        ),
-    )
-    builder.add({link: pinned.point, other: pin}, [pin])
-    ground = pin_reaction(pinned.point, link, pinned.body)
-    rail = guide_reaction(guide, other, sliding.body, pin)
-    inner = pin_reaction(pin, other, link)
-    assert rail.couple is not None
     places = (f"p({pinned.point})", f"p({pin})", f"u({sliding.body})")
-    square = f"{link!r} stands square to the line of {guide.name!r}"
-    forces = (
-        Call(
-            kernels.rrp_forces,
-            (*places, *demand_names(link), *demand_names(other)),
-            (guide.along,),
-            (ground.force, rail.force, rail.couple, inner.force),
-        ),
-        builder.hand_over(pinned.body, pinned.point, ground.force),
-        builder.hand_over(sliding.body, pin, rail.force, rail.couple),
+    return _dyad(
+        builder,
+        (pinned, sliding),
+        (pinned.reaction(), sliding.reaction(pin), pin_reaction(pin, other, link)),
+        (kernels.rrp, (arm, guide.along, shift, guide.turn, side)),
+        (kernels.rrp_forces, places, (guide.along,)),
+        joint=pin,
+        point=pin,
+        dead=f"{link!r} stands square to the line of {guide.name!r}",
     )
-    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), margin, pin, square)
 
 
 def rpr(builder: Builder, block: Outer, other: Outer, slider: Slider) -> Group:
     """Two pinned links, of which the first slides on the second."""
     link, on = block.link, other.link
-    inner_guide = Guide.seen_from(slider, on)
+    guide = Guide.seen_from(slider, on)
     meaning = f"{block.point} lies ahead of or behind {other.point}, along the guide's direction"
     side = builder.side(slider.point, AHEAD, meaning)
-    from_pivot = builder.arm(on, other.point, inner_guide.base) / inner_guide.along
-    from_point = builder.arm(link, inner_guide.point, block.point) * inner_guide.turn
-    offset = (from_pivot + from_point).imag
-    margin = f"s({slider.name})"
-    back = inner_guide.along.conjugate()
-    motion = (
-        *builder.reach(block.body, block.point),
-        *builder.reach(other.body, other.point),
-        Call(
-            kernels.rpr,
-            (*p(block.point), *p(other.point)),
-            (offset, inner_guide.turn, back, (NEAR * builder.size()) ** 2, side),
-            (*u(link), *u(on), margin),
-        ),
-    )
-    builder.add({link: block.point, on: other.point})
-    ground = pin_reaction(block.point, link, block.body)
-    far = pin_reaction(other.point, on, other.body)
-    inner = guide_reaction(inner_guide, link, on, block.point)
-    assert inner.couple is not None
+    from_pivot = builder.arm(on, other.point, guide.base) / guide.along
+    from_point = builder.arm(link, guide.point, block.point) * guide.turn
+    offset, back = (from_pivot + from_point).imag, guide.along.conjugate()
     places = (f"p({block.point})", f"p({other.point})", f"u({link})")
-    stuck = f"{block.point} comes to {other.point}, or square to it across {slider.name!r}"
-    forces = (
-        Call(
-            kernels.rpr_forces,
-            (*places, *demand_names(link), *demand_names(on)),
-            (inner_guide.turn.conjugate(),),
-            (ground.force, far.force, inner.force, inner.couple),
-        ),
-        builder.hand_over(block.body, block.point, ground.force),
-        builder.hand_over(other.body, other.point, far.force),
-    )
-    return Group(
-        "dyad", (link, on), motion, forces, (ground, far, inner), margin, slider.point, stuck
+    return _dyad(
+        builder,
+        (block, other),
+        (block.reaction(), other.reaction(), guide_reaction(guide, link, on, block.point)),
+        (kernels.rpr, (offset, guide.turn, back, (NEAR * builder.size()) ** 2, side)),
+        (kernels.rpr_forces, places, (guide.turn.conjugate(),)),
+        joint=slider.point,
+        dead=f"{block.point} comes to {other.point}, or square to it across {slider.name!r}",
     )
 
 
 def prp(builder: Builder, first: Outer, second: Outer, pin: str) -> Group:
     """Two links on known guides, joined by a pin; there is only one way to assemble them."""
-    link, other = first.link, second.link
-    guides = (_guide(first), _guide(second))
+    near, far = first.rail, second.rail
     shapes: list[complex] = []
-    for outer, guide in zip((first, second), guides, strict=True):
+    for outer, guide in ((first, near), (second, far)):
         shift = guide.turn * builder.arm(outer.link, guide.point, pin)
         shapes += (guide.along, shift, guide.turn)
-    margin = f"s({pin})"
-    bases = tuple(
-        (*p(guide.base), *u(outer.body))
-        for outer, guide in zip((first, second), guides, strict=True)
-    )
-    motion = (
-        *builder.reach(first.body, guides[0].base),
-        *builder.reach(second.body, guides[1].base),
-        Call(
-            kernels.prp,
-            (*bases[0], *bases[1]),
-            tuple(shapes),
-            (*u(link), *u(other), *p(pin), margin),
-        ),
-    )
-    builder.add({link: pin, other: pin}, [pin])
-    near = guide_reaction(guides[0], link, first.body, pin)
-    far = guide_reaction(guides[1], other, second.body, pin)
-    inner = pin_reaction(pin, other, link)
-    assert near.couple is not None and far.couple is not None
     turns = (f"u({first.body})", f"u({second.body})")
-    parallel = f"the lines of {guides[0].name!r} and {guides[1].name!r} are parallel"
-    forces = (
-        Call(
-            kernels.prp_forces,
-            (*turns, *demand_names(link), *demand_names(other)),
-            (guides[0].along, guides[1].along),
-            (near.force, near.couple, far.force, far.couple, inner.force),
-        ),
-        builder.hand_over(first.body, pin, near.force, near.couple),
-        builder.hand_over(second.body, pin, far.force, far.couple),
+    return _dyad(
+        builder,
+        (first, second),
+        (first.reaction(pin), second.reaction(pin), pin_reaction(pin, second.link, first.link)),
+        (kernels.prp, tuple(shapes)),
+        (kernels.prp_forces, turns, (near.along, far.along)),
+        joint=pin,
+        point=pin,
+        dead=f"the lines of {near.name!r} and {far.name!r} are parallel",
     )
-    return Group("dyad", (link, other), motion, forces, (near, far, inner), margin, pin, parallel)
 
 
 def rpp(builder: Builder, pinned: Outer, sliding: Outer, slider: Slider) -> Group:
     """A pinned link that slides on (or carries) a link on a known guide: a yoke."""
-    link, other, guide = pinned.link, sliding.link, _guide(sliding)
-    inner_guide = Guide.seen_from(slider, other)
-    line = guide.turn * inner_guide.along
+    link, other, guide = pinned.link, sliding.link, sliding.rail
+    inner = Guide.seen_from(slider, other)
+    line = guide.turn * inner.along
     if np.all(abs(line.imag) < 1e-9):
         raise ModelError(
             f"sliders[{builder.machine.sliders.index(slider) + 1}]",
             f"its line is parallel to that of {guide.name!r}, which leaves {other!r} free to "
             "slide; turn one of them",
         )
-    turn = line * inner_guide.turn
-    shift = turn * builder.arm(link, pinned.point, inner_guide.point) - guide.turn * builder.arm(
-        other, guide.point, inner_guide.base
+    turn = line * inner.turn
+    shift = turn * builder.arm(link, pinned.point, inner.point) - guide.turn * builder.arm(
+        other, guide.point, inner.base
     )
-    margin = f"s({slider.name})"
-    motion = (
-        *builder.reach(pinned.body, pinned.point),
-        *builder.reach(sliding.body, guide.base),
-        Call(
-            kernels.rpp,
-            (*p(pinned.point), *p(guide.base), *u(sliding.body)),
-            (guide.along, guide.turn, line, turn, shift),
-            (*u(link), *u(other), *p(guide.point), margin),
-        ),
-    )
-    builder.add({link: pinned.point, other: guide.point}, [guide.point])
-    ground = pin_reaction(pinned.point, link, pinned.body)
-    rail = guide_reaction(guide, other, sliding.body, guide.point)
-    inner = guide_reaction(inner_guide, link, other, pinned.point)
-    assert rail.couple is not None and inner.couple is not None
     places = (f"p({pinned.point})", f"p({guide.point})", f"u({sliding.body})")
-    forces = (
-        Call(
-            kernels.rpp_forces,
-            (*places, *demand_names(link), *demand_names(other)),
-            (guide.along, line),
-            (ground.force, rail.force, rail.couple, inner.force, inner.couple),
-        ),
-        builder.hand_over(pinned.body, pinned.point, ground.force),
-        builder.hand_over(sliding.body, guide.point, rail.force, rail.couple),
+    on_inner = guide_reaction(inner, link, other, pinned.point)
+    return _dyad(
+        builder,
+        (pinned, sliding),
+        (pinned.reaction(), sliding.reaction(guide.point), on_inner),
+        (kernels.rpp, (guide.along, guide.turn, line, turn, shift)),
+        (kernels.rpp_forces, places, (guide.along, line)),
+        joint=slider.point,
+        point=guide.point,
     )
-    return Group("dyad", (link, other), motion, forces, (ground, rail, inner), margin, slider.point)
-
-
-def _guide(outer: Outer) -> Guide:
-    assert outer.guide is not None
-    return outer.guide
 
 
 @dataclass(frozen=True)
@@ -303,6 +242,7 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
     builder.running.add(link)
     pitch, tooth, sense = f"pitch({gear.name})", f"R({gear.name}/{link})", f"flank({gear.name})"
     ground = pin_reaction(pin, link, bearer)
+    reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
     forces = (
         Call(kernels.point, (*p(pin), *u(carrier)), (mesh.lever,), p(pitch)),
         Call(kernels.flank, (f"M({link})",), (), (sense,)),
@@ -312,8 +252,7 @@ def geared(builder: Builder, joints: Structure, gear: Gear) -> Group:
             (mesh.lever, mesh.radial),
             (ground.force, tooth, f"T({gear.name})"),
         ),
-        builder.hand_over(bearer, pin, ground.force),
-        builder.hand_over(gear.driver, pitch, tooth),
+        builder.hand_over(ground),
+        builder.hand_over(reaction),
     )
-    reaction = Reaction(gear.name, "gear", link, gear.driver, pitch, tooth)
     return Group("geared", (link,), motion, forces, (ground, reaction))

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
+from equipoise.mechanism.checks import bodies_at
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
 
 MOST_SUBSETS = 10_000
@@ -49,10 +50,7 @@ class Structure:
 def structure(machine: Machine) -> Structure:
     """Read joints off the names that bodies share."""
     bodies = (FRAME, *machine.links)
-    shared: dict[str, list[str]] = {}
-    for body in bodies:
-        for point in machine.points_of(body):
-            shared.setdefault(point, []).append(body)
+    shared = bodies_at(machine.bodies)
     pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
     _check_apart(machine, pins)
     result = Structure(bodies, pins, machine.sliders, machine.gears)
@@ -114,43 +112,25 @@ def _check_mobility(joints: Structure, drive: str) -> None:
         f"{_number(len(links), 'moving link')}, {_number(pins, 'pin')}, "
         f"{_number(len(joints.sliders), 'sliding joint')} and {_number(len(joints.gears), 'gear')}"
     )
+    known = [FRAME, drive]
+    others = [link for link in links if link != drive]
     if mobility < 1:
-        locked = _locked(joints, drive)
+        held = (group for group in subsets(joints, others) if joints.freedom(group, known) < 0)
+        locked = next(held, (drive,))
         raise MobilityError(
             f"the linkage has no free motion (count {mobility}: {count}); "
             f"too many joints hold {_names(locked)}"
         )
-    free = _undetermined(joints, drive)
+    while others:
+        found = (group for group in subsets(joints, others) if joints.freedom(group, known) <= 0)
+        if not (group := next(found, ())):
+            break
+        known += group
+        others = [link for link in others if link not in group]
     raise MobilityError(
         f"the linkage has {mobility} free motions ({count}), and one drive can command only one; "
-        f"the drive leaves {_names(free)} undetermined"
+        f"the drive leaves {_names(others)} undetermined"
     )
-
-
-def _locked(joints: Structure, drive: str) -> list[str]:
-    """Find the smallest set of neighbouring links that is held by too many joints."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
-    for group in subsets(joints, others):
-        if joints.freedom(group, known) < 0:
-            return list(group)
-    return [drive]
-
-
-def _undetermined(joints: Structure, drive: str) -> list[str]:
-    """Find the links that stay free when all that the drive determines is determined."""
-    known = [FRAME, drive]
-    others = [link for link in joints.bodies[1:] if link != drive]
-    settled = True
-    while settled:
-        settled = False
-        for group in subsets(joints, others):
-            if joints.freedom(group, known) <= 0:
-                known += group
-                others = [link for link in others if link not in group]
-                settled = True
-                break
-    return others
 
 
 def subsets(joints: Structure, links: list[str]) -> Iterator[tuple[str, ...]]:
@@ -186,7 +166,7 @@ def _number(count: int, word: str) -> str:
     return f"{count} {word}{'' if count == 1 else 's'}"
 
 
-def _names(links: list[str]) -> str:
+def _names(links: Sequence[str]) -> str:
     if len(links) < 2:
         return "".join(repr(link) for link in links) or "the drive link"
     return f"{', '.join(repr(link) for link in links[:-1])} and {links[-1]!r}"

@@ -71,11 +71,7 @@ def gear(angle_r, w_r, a_r, angle_c, w_c, a_c, ratio, offset):
 def along_line(d, d1, d2, n, w, a):
     """Vector d and its derivatives in axes along the unit vector n, which turns by w, a."""
     back = n.conjugate()
-    return (
-        d * back,
-        (d1 - 1j * w * d) * back,
-        (d2 - 2j * w * d1 - (1j * a + w * w) * d) * back,
-    )
+    return (d * back, (d1 - 1j * w * d) * back, (d2 - 2j * w * d1 - (1j * a + w * w) * d) * back)
 
 
 def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):

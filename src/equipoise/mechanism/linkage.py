@@ -24,8 +24,9 @@ from equipoise.errors import ChangePointError, MobilityError, ModelError, RangeE
 from equipoise.mechanism import groups
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN, Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
-from equipoise.mechanism.model import FRAME, Machine, Slider
+from equipoise.mechanism.model import FRAME, Machine
 from equipoise.mechanism.steps import (
+    Array,
     Builder,
     Group,
     Guide,
@@ -39,6 +40,9 @@ from equipoise.mechanism.steps import (
     plain_angle,
     run,
 )
+
+Stuck = RangeError | ChangePointError
+"""Why a crank cannot turn fully."""
 
 
 @dataclass(frozen=True)
@@ -79,15 +83,12 @@ class Linkage:
     @cached_property
     def named_reactions(self) -> tuple[tuple[str, Reaction], ...]:
         """Joints by name: a pin of several bodies goes by its point and by the link it holds."""
-        return tuple(
-            (
-                f"{r.name}/{r.on}"
-                if r.kind == "pin" and len(self.joints.pins[r.name]) > 2
-                else r.name,
-                r,
-            )
-            for r in self.reactions
-        )
+
+        def named(one: Reaction) -> str:
+            several = one.kind == "pin" and len(self.joints.pins[one.name]) > 2
+            return f"{one.name}/{one.on}" if several else one.name
+
+        return tuple((named(one), one) for one in self.reactions)
 
     @cached_property
     def cycle(self) -> Cycle:
@@ -123,14 +124,14 @@ def assemble(machine: Machine) -> Linkage:
     """
     kept = machine.__dict__.get("_linkage")
     if kept is None:
-        kept = machine.__dict__["_linkage"] = _assemble(machine)
+        kept = ordered(machine, structure(machine))
+        names = [name for name, _ in kept.named_reactions]
+        for name in names:
+            if names.count(name) > 1:  # outputs go by the names of joints
+                sentence = f"two joints would be called {name!r} in the output; rename one"
+                raise ModelError("links", sentence)
+        machine.__dict__["_linkage"] = kept
     return kept
-
-
-def _assemble(machine: Machine) -> Linkage:
-    linkage = ordered(machine, structure(machine))
-    _check_names(linkage)
-    return linkage
 
 
 def ordered(machine: Machine, joints: Structure, start: State | None = None) -> Linkage:
@@ -150,28 +151,15 @@ def ordered(machine: Machine, joints: Structure, start: State | None = None) -> 
         groups.append(group)
         builder.motion += group.motion
         unknown = [link for link in unknown if link not in group.links]
-    _check_assembly(machine, builder.sides)
-    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
-
-
-def _check_names(linkage: Linkage) -> None:
-    """Outputs go by the names of joints, which must differ."""
-    names = [name for name, _ in linkage.named_reactions]
-    for name in names:
-        if names.count(name) > 1:
-            raise ModelError(
-                "links", f"two joints would be called {name!r} in the output; rename one"
-            )
-
-
-def _check_assembly(machine: Machine, used: set[str]) -> None:
     for joint in machine.assembly:
-        if joint not in used:
+        if joint not in builder.sides:
+            dyads = ", ".join(sorted(builder.sides)) or "no point"
             raise ModelError(
                 f"assembly.{joint}",
-                "no dyad has its inner joint there that could be assembled on two sides; "
-                f"the dyads of this linkage meet at {', '.join(sorted(used)) or 'no point'}",
+                "no dyad has its inner joint there that could be assembled on two sides; the dyads "
+                f"of this linkage meet at {dyads}",
             )
+    return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 
 
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:
@@ -184,7 +172,7 @@ def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group
     hung = [link for link in unknown if len(outers[link]) == 1]
     for pair in combinations(hung, 2):
         if joints.freedom(pair, known) == 0:
-            dyad = _dyad(builder, joints, (outers[pair[0]][0], outers[pair[1]][0]))
+            dyad = _dyad(builder, joints, *(outers[link][0] for link in pair))
             if dyad is not None:
                 return dyad
     for links in subsets(joints, unknown):
@@ -214,42 +202,29 @@ def _geared(builder: Builder, joints: Structure, unknown: list[str]) -> Group | 
     return None
 
 
-def _dyad(builder: Builder, joints: Structure, outers: tuple[Outer, Outer]) -> Group | None:
-    """Two links with one joint each to known bodies, if one joint is between them."""
-    pair = (outers[0].link, outers[1].link)
-    pins = [
-        point
-        for point in joints.pins_between(*pair)
-        if not any(body in builder.rank for body in joints.pins[point])
-    ]
-    between = [s for s in joints.sliders if {s.link, s.on} == set(pair)]
-    if len(pins) + len(between) != 1:
+def _dyad(builder: Builder, joints: Structure, first: Outer, second: Outer) -> Group | None:
+    """Two links with one joint each to known bodies, if one joint is between them.
+
+    It is built by its sequence of joints, R (pin) or P (sliding): outer, inner, outer.
+    """
+    pair = (first.link, second.link)
+    shared = joints.pins_between(*pair)
+    pins = [pin for pin in shared if not any(body in builder.rank for body in joints.pins[pin])]
+    slides = [slider for slider in joints.sliders if {slider.link, slider.on} == set(pair)]
+    if len(pins) + len(slides) != 1:
         return None
-    return _by_joints(builder, outers, pins, between)
-
-
-def _by_joints(
-    builder: Builder, outers: tuple[Outer, Outer], pins: list[str], between: list[Slider]
-) -> Group:
-    """Build a dyad by its sequence of joints, R or P: outer, inner, outer."""
-    first, second = outers
-    kinds = "".join(
-        "R" if pinned else "P" for pinned in (first.guide is None, pins, second.guide is None)
-    )
-    if kinds in ("PRR", "PPR"):
-        first, second = second, first
-    if kinds == "RPR" and between[0].link != first.link:
-        first, second = second, first
+    is_pin = (first.guide is None, bool(pins), second.guide is None)
+    kinds = "".join("R" if pinned else "P" for pinned in is_pin)
     if kinds == "PPP":
         raise MobilityError(
-            f"three sliding joints in a row cannot position {first.link!r} and {second.link!r}; "
+            f"three sliding joints in a row cannot position {pair[0]!r} and {pair[1]!r}; "
             "replace one by a pin"
         )
-    if pins:
-        build = {"RRR": groups.rrr, "RRP": groups.rrp, "PRR": groups.rrp, "PRP": groups.prp}[kinds]
-        return build(builder, first, second, pins[0])
-    slide = {"RPR": groups.rpr, "RPP": groups.rpp, "PPR": groups.rpp}[kinds]
-    return slide(builder, first, second, between[0])
+    if kinds in ("PRR", "PPR") or (kinds == "RPR" and slides[0].link != first.link):
+        first, second, kinds = second, first, kinds[::-1]
+    build: Any = getattr(groups, kinds.lower())
+    group: Group = build(builder, first, second, pins[0] if pins else slides[0])
+    return group
 
 
 def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
@@ -267,10 +242,10 @@ def outer_joints(builder: Builder, joints: Structure, link: str) -> list[Outer]:
     return result
 
 
-Array = np.ndarray[Any, Any]
+# -- cranks that swing -----------------------------------------------------------------------------
 
 
-def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePointError) -> State:
+def solve_swinging(linkage: Linkage, theta: Array, error: Stuck) -> State:
     """State at crank angles (N,) of a linkage whose cycle ended with `error`.
 
     Raises
@@ -289,9 +264,7 @@ def solve_swinging(linkage: Linkage, theta: Array, error: RangeError | ChangePoi
     return state
 
 
-def middle_angle(
-    linkage: Linkage, link: str, theta: Array, error: RangeError | ChangePointError
-) -> Array:
+def middle_angle(linkage: Linkage, link: str, theta: Array, error: Stuck) -> Array:
     """Angle of a link (N,) in the middle of the range that each crank angle lies in.
 
     Within a range a link swings less than half a turn to either side of that.
@@ -306,13 +279,7 @@ def middle_angle(
     return plain_angle(state, link)
 
 
-def _add_references(
-    linkage: Linkage,
-    state: State,
-    chosen: Array,
-    side: int,
-    error: RangeError | ChangePointError,
-) -> None:
+def _add_references(linkage: Linkage, state: State, chosen: Array, side: int, error: Stuck) -> None:
     """Follow the running angles from crank angle 0 to the farthest on one side."""
     theta = state["theta"]
     far = float(np.max(np.abs(theta[chosen]), initial=0.0))
@@ -325,13 +292,7 @@ def _add_references(
         reference[chosen] = np.interp(np.abs(theta[chosen]), way, followed[f"phi({name})"])
 
 
-def _check(
-    linkage: Linkage,
-    state: State,
-    theta: Array,
-    error: RangeError | ChangePointError,
-    doing: str,
-) -> None:
+def _check(linkage: Linkage, state: State, theta: Array, error: Stuck, doing: str) -> None:
     """Raise the error again, with the crank angle, where a dyad cannot be closed."""
     for group in linkage.groups:
         if group.margin is None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import islice
 from math import ceil, degrees, pi
 from typing import Any
 
@@ -15,7 +16,6 @@ from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
 from equipoise.mechanism.model import Gear, Position, Slider
 from equipoise.mechanism.newton import (
-    Array,
     End,
     GearLoop,
     Loop,
@@ -27,6 +27,7 @@ from equipoise.mechanism.newton import (
     StartAngle,
 )
 from equipoise.mechanism.steps import (
+    Array,
     Builder,
     Group,
     Reaction,
@@ -43,30 +44,26 @@ from equipoise.mechanism.steps import (
 class LoopForces:
     """Solves the free-body equations of a group: as many unknown joint forces as equations.
 
-    outputs : for each loop, the names of its force and, of a slider, its couple.
+    reactions : of each loop.
     """
 
     group: LoopGroup
     loops: tuple[Loop, ...]
-    outputs: tuple[tuple[str, ...], ...]
+    reactions: tuple[Reaction, ...]
 
     def run(self, state: State) -> None:
         poses = self.poses(state)
         senses = self.senses(state, poses)
         strengths = self.solve(state, poses, senses)
-        k = 0
-        for loop, names, sense in zip(self.loops, self.outputs, senses, strict=True):
-            wrenches = loop.wrenches(poses, sense)
-            parts = [strengths[..., k + i] for i in range(loop.unknowns)]
-            wrench = [
-                sum(part * unit[i] for part, unit in zip(parts, wrenches, strict=True))
-                for i in range(2)
-            ]
-            state.update(zip(names, wrench, strict=False))
+        for loop, reaction, sense, parts in zip(
+            self.loops, self.reactions, senses, strengths, strict=True
+        ):
+            units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
+            for name, unit in zip(reaction.outputs, units, strict=False):
+                state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
             if isinstance(loop, GearLoop):
-                state[f"p(pitch({loop.name}))"] = loop.place(poses)
+                state[f"p({reaction.at})"] = loop.place(poses)
                 state[f"T({loop.name})"] = parts[0]
-            k += loop.unknowns
 
     def poses(self, state: State) -> Poses:
         poses = self.group.known_poses(state)
@@ -81,15 +78,13 @@ class LoopForces:
         names = [f"flank({loop.name})" if isinstance(loop, GearLoop) else "" for loop in self.loops]
         if any(name and name not in state for name in names):
             strengths = self.solve(state, poses, [0.0] * len(self.loops))
-            k = 0
-            for loop, name in zip(self.loops, names, strict=True):
+            for name, parts in zip(names, strengths, strict=True):
                 if name:
-                    (state[name],) = kernels.flank(strengths[..., k])
-                k += loop.unknowns
+                    (state[name],) = kernels.flank(parts[0])
         return [state[name] if name else 0.0 for name in names]
 
-    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> Array:
-        """Strength of every unknown, (..., N, 3 n)."""
+    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
+        """Strength (..., N) of every unknown of each loop."""
         shape = np.shape(state["theta"])
         columns = [
             [np.broadcast_to(entry, shape) for entry in column]
@@ -97,7 +92,9 @@ class LoopForces:
             for column in self.columns(loop, poses, sense)
         ]
         matrix = np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
-        return np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
+        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
+        strengths = iter(np.moveaxis(solved, -1, 0))
+        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
 
     def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
         """Force and moment about the anchor on each link, for a unit of each of its unknowns."""
@@ -146,17 +143,14 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(links)
     reactions = tuple(maker.reaction(loop) for loop in loops)
-    outputs = tuple(tuple(filter(None, (r.force, r.couple))) for r in reactions)
-    hand_over = tuple(
-        builder.hand_over(r.by, r.at, r.force, r.couple) for r in reactions if r.by not in links
-    )
+    hand_over = tuple(builder.hand_over(one) for one in reactions if one.by not in links)
     reach = tuple(
         step
         for reaction in reactions
         if reaction.kind != "gear"
         for step in builder.reach(reaction.on, reaction.at)
     )
-    forces: tuple[Step, ...] = (LoopForces(solved, loops, outputs), *hand_over)
+    forces: tuple[Step, ...] = (LoopForces(solved, loops, reactions), *hand_over)
     return Group("loops", links, (*before, solved, *reach), forces, reactions)
 
 
@@ -167,14 +161,10 @@ class _Maker:
     links: tuple[str, ...]
 
     def __post_init__(self) -> None:
-        points = self.builder.machine.links
-        self.anchors = {
-            link: next(
-                (pt for pt in points[link].points if pt in self.joints.pins),
-                next(iter(points[link].points)),
-            )
-            for link in self.links
-        }
+        self.anchors = {}
+        for link in self.links:
+            points = [*self.builder.machine.links[link].points]
+            self.anchors[link] = next((pt for pt in points if pt in self.joints.pins), points[0])
 
     def end(self, body: str, point: str) -> End:
         anchor = self.anchors.get(body) or self.builder.anchors[body]

@@ -93,9 +93,7 @@ class Position(Frozen):
     """Where the machine is, roughly, at one crank angle: the start of Newton's method."""
 
     crank_angle: float = key(
-        "angle",
-        "at which it holds; 0 where gears are among these links",
-        default=0.0,
+        "angle", "at which it holds; 0 where gears are among these links", default=0.0
     )
     points: Mapping[str, Vector] = key(Named(Point()), "places in the frame", factory=dict)
     angles: Mapping[str, float] = key(
@@ -224,7 +222,7 @@ class Machine(Frozen):
         first, last = steps[0], steps[-1]
         massive = first == "links" and bool({*steps} & MASS_FIELDS) and "points" not in steps
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
-        return self._same_motion(changed(self, steps, number), same)
+        return self._same_motion(changed(self, steps, lambda _: number), same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""

@@ -1,41 +1,133 @@
-"""How a linkage moves: rotations and points with their derivatives by crank angle."""
+"""How a linkage moves: rotations and points with their derivatives by crank angle (kinematic
+coefficients), and what they are in time.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import pi
 from numbers import Real
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.kinematics import LinkMotion, PointMotion, SliderMotion
+from equipoise.mechanism.checks import Named, Vector, bodies_at
 from equipoise.mechanism.linkage import Linkage, assemble, middle_angle, solve_swinging
-from equipoise.mechanism.model import Machine, Slider, unknown
-from equipoise.mechanism.steps import Group, State, p, plain_angle, running_angle, u
+from equipoise.mechanism.model import Drive, Machine, Slider
+from equipoise.mechanism.steps import Array, Group, State, p, plain_angle, running_angle, u
 from equipoise.quantities.units import HUGE
 
-__all__ = ["MOST_ANGLES", "LinkMotion", "Motion", "Named", "PointMotion", "SliderMotion", "move"]
-
-Array = np.ndarray[Any, Any]
-Value = TypeVar("Value")
 MOST_ANGLES = 400_000
 """In one analysis; it takes about a kilobyte for each crank angle and link."""
 
 
-class Named(dict[str, Value]):
-    """A dict that says which names there are when one is asked for that is not."""
+def in_time(first: Array, second: Array, speed: float, acceleration: float) -> Array:
+    """Second derivative by time, from the derivatives by crank angle."""
+    steady = second * speed**2
+    return steady + first * acceleration if acceleration else steady
 
-    def __init__(self, kind: str, items: Iterable[tuple[str, Value]]) -> None:
-        super().__init__(items)
-        self.kind = kind
 
-    def __missing__(self, name: str) -> Value:
-        raise KeyError(unknown(name, self, self.kind))
+@dataclass(frozen=True, eq=False)
+class LinkMotion:
+    """Motion of one link; every array (N,).
+
+    angle : rad, counted on through the turns.
+    angle_1, angle_2 : first and second derivative by crank angle (kinematic coefficients).
+    """
+
+    angle: Array
+    angle_1: Array
+    angle_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def angular_velocity(self) -> Array:
+        """rad/s."""
+        return self.angle_1 * self.speed
+
+    @property
+    def angular_acceleration(self) -> Array:
+        """rad/s2."""
+        return in_time(self.angle_1, self.angle_2, self.speed, self.acceleration)
+
+
+@dataclass(frozen=True, eq=False)
+class PointMotion:
+    """Motion of one point; complex arrays (N,), x + i y.
+
+    place : m.  place_1, place_2 : first and second derivative by crank angle, m.  The parts x and
+    y of place (m), velocity (m/s) and acceleration (m/s2) are real.
+    """
+
+    place: Array
+    place_1: Array
+    place_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def x(self) -> Array:
+        return self.place.real
+
+    @property
+    def y(self) -> Array:
+        return self.place.imag
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, complex."""
+        return self.place_1 * self.speed
+
+    @property
+    def acceleration_vector(self) -> Array:
+        """m/s2, complex."""
+        return in_time(self.place_1, self.place_2, self.speed, self.acceleration)
+
+    @property
+    def vx(self) -> Array:
+        return self.velocity.real
+
+    @property
+    def vy(self) -> Array:
+        return self.velocity.imag
+
+    @property
+    def ax(self) -> Array:
+        return self.acceleration_vector.real
+
+    @property
+    def ay(self) -> Array:
+        return self.acceleration_vector.imag
+
+
+@dataclass(frozen=True, eq=False)
+class SliderMotion:
+    """Motion along the guide of a sliding joint; arrays (N,).
+
+    travel : m, of the slider's point from the guide's point along the guide's direction.
+    travel_1, travel_2 : first and second derivative by crank angle, m.
+    """
+
+    travel: Array
+    travel_1: Array
+    travel_2: Array
+    speed: float
+    acceleration: float
+
+    @property
+    def velocity(self) -> Array:
+        """m/s, as seen from the guide."""
+        return self.travel_1 * self.speed
+
+    @property
+    def along_acceleration(self) -> Array:
+        """m/s2, as seen from the guide."""
+        return in_time(self.travel_1, self.travel_2, self.speed, self.acceleration)
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,13 +159,8 @@ class Motion:
 
     def at(self, speed: float | None = None, acceleration: float | None = None) -> Motion:
         """The same positions at another speed (rad/s) or acceleration (rad/s2) of the crank."""
-        return replace(
-            self,
-            speed=self.speed if speed is None else _rate(speed, "speed"),
-            acceleration=self.acceleration
-            if acceleration is None
-            else _rate(acceleration, "acceleration"),
-        )
+        w, a = _rates(self, speed, acceleration)
+        return replace(self, speed=w, acceleration=a)
 
     @cached_property
     def links(self) -> Mapping[str, LinkMotion]:
@@ -83,16 +170,15 @@ class Motion:
     @cached_property
     def points(self) -> Mapping[str, PointMotion]:
         """Motion of each point, by name; the frame's points stand still."""
-        names = dict.fromkeys(self.machine.frame)
-        for link in self.machine.links.values():
-            names.update(dict.fromkeys(link.points))
+        names = bodies_at(self.machine.bodies)
         return Named("point", ((point, self._point(point)) for point in names))
 
     @cached_property
     def mass_centers(self) -> Mapping[str, PointMotion]:
         """Motion of each link's centre of mass, for links whose mass is known."""
-        links = (name for name, link in self.machine.links.items() if link.has_mass)
-        return Named("link with mass", ((link, self._mass_center(link)) for link in links))
+        found = self.machine.links.items()
+        centers = ((name, link.center_of_mass) for name, link in found if link.center_of_mass)
+        return Named("link with mass", ((name, self._attached(name, at)) for name, at in centers))
 
     @cached_property
     def sliders(self) -> Mapping[str, SliderMotion]:
@@ -149,12 +235,12 @@ class Motion:
         return np.where(there, kernels.dot(along, way) ** 2 / np.where(there, apart, 1.0), margin)
 
     def _link(self, link: str) -> LinkMotion:
-        _, first, second = (self.state[name] for name in u(link))
+        _, w, a = (self.state[name] for name in u(link))
         angle = self.state.get(f"phi({link})")
         if angle is None:
             angle = self._running_angle(link)
-        coefficients = (self._full(first), self._full(second))
-        return LinkMotion(self._full(angle), *coefficients, self.speed, self.acceleration)
+        angle, first, second = (self._full(value) for value in (angle, w, a))
+        return LinkMotion(angle, first, second, self.speed, self.acceleration)
 
     def _running_angle(self, link: str) -> Array:
         """Angle counted on through the turns; without a cycle, from the middle of the range."""
@@ -173,24 +259,18 @@ class Motion:
             return self._moving(*(self.state[name] for name in names))
         links = self.machine.links
         link = next(name for name in links if point in links[name].points)
-        return self._attached(link, complex(*links[link].points[point]))
+        return self._attached(link, links[link].points[point])
 
-    def _mass_center(self, link: str) -> PointMotion:
-        center = self.machine.links[link].center_of_mass
-        assert center is not None
-        return self._attached(link, complex(*center))
-
-    def _attached(self, link: str, place: complex) -> PointMotion:
+    def _attached(self, link: str, place: Vector) -> PointMotion:
         """A point given in a link's axes."""
         anchor = self.linkage.anchors[link]
-        arm = place - complex(*self.machine.points_of(link)[anchor])
-        place, first, second = (self.state[name] for name in p(anchor))
-        rotation, w, a = (self.state[name] for name in u(link))
-        return self._moving(*kernels.point(place, first, second, rotation, w, a, arm))
+        arm = complex(*place) - complex(*self.machine.points_of(link)[anchor])
+        known = [self.state[name] for name in (*p(anchor), *u(link))]
+        return self._moving(*kernels.point(*known, arm))  # type: ignore[call-arg]
 
-    def _moving(self, place: Any, first: Any, second: Any) -> PointMotion:
-        coefficients = (self._full(first, complex), self._full(second, complex))
-        return PointMotion(self._full(place, complex), *coefficients, self.speed, self.acceleration)
+    def _moving(self, *values: Any) -> PointMotion:
+        place, first, second = (self._full(value, complex) for value in values)
+        return PointMotion(place, first, second, self.speed, self.acceleration)
 
     def _full(self, value: Any, kind: type = float) -> Array:
         if isinstance(value, np.ndarray) and value.shape == self.crank_angle.shape:
@@ -222,15 +302,14 @@ def move(
         raise UsageError(f"got {angles}; give a number of crank angles, or angles")
     whole_cycle = isinstance(angles, int | np.integer)
     theta = _cycle_angles(linkage, int(angles)) if whole_cycle else _given_angles(angles)  # type: ignore[arg-type]
-    drive = machine.drive
-    return Motion(
-        linkage,
-        theta,
-        _rate(drive.speed if speed is None else speed, "speed"),
-        _rate(drive.acceleration if acceleration is None else acceleration, "acceleration"),
-        whole_cycle,
-        _solve(linkage, theta, whole_cycle),
-    )
+    rates = _rates(machine.drive, speed, acceleration)
+    try:
+        state = linkage.solve(theta)
+    except (RangeError, ChangePointError) as error:
+        if whole_cycle:
+            raise
+        state = solve_swinging(linkage, theta, error)
+    return Motion(linkage, theta, *rates, whole_cycle, state)
 
 
 def _cycle_angles(linkage: Linkage, count: int) -> Array:
@@ -255,17 +334,12 @@ def _given_angles(angles: Any) -> Array:
     return theta
 
 
-def _solve(linkage: Linkage, theta: Array, whole_cycle: bool) -> State:
-    """Solve at the crank angles; those given need not belong to a linkage that turns fully."""
-    try:
-        return linkage.solve(theta)
-    except (RangeError, ChangePointError) as error:
-        if whole_cycle:
-            raise
-        return solve_swinging(linkage, theta, error)
-
-
-def _rate(value: float, name: str) -> float:
-    if not isinstance(value, Real) or not abs(value) < HUGE:
-        raise UsageError(f"got {value!r} for {name}; give a finite number in SI units")
-    return float(value)
+def _rates(usual: Drive | Motion, *given: float | None) -> tuple[float, float]:
+    """Speed and acceleration of the crank, the usual ones where they are not given."""
+    rates = []
+    for name, value in zip(("speed", "acceleration"), given, strict=True):
+        rate = getattr(usual, name) if value is None else value
+        if not isinstance(rate, Real) or not abs(rate) < HUGE:  # type: ignore[operator]
+            raise UsageError(f"got {rate!r} for {name}; give a finite number in SI units")
+        rates.append(float(rate))
+    return rates[0], rates[1]

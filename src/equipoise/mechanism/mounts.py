@@ -7,18 +7,7 @@ from math import cos, hypot, pi, sin
 from typing import Any, ClassVar
 
 from equipoise.errors import ModelError
-from equipoise.keys import (
-    Conditions,
-    Flag,
-    Frozen,
-    Key,
-    Keys,
-    Point,
-    Quantity,
-    Text,
-    declared,
-    key,
-)
+from equipoise.keys import Conditions, Flag, Frozen, Key, Keys, Point, Quantity, Text, declared, key
 from equipoise.keys import Direction as DirectionKind
 
 Place = tuple[float, float, float]
@@ -99,9 +88,7 @@ class Mount(Frozen):
         example=["0 mm", "300 mm"],
     )
     direction: Direction = key(
-        DirectionKind(),
-        "in which it pushes the support; it stays fixed in space",
-        default=UP,
+        DirectionKind(), "in which it pushes the support; it stays fixed in space", default=UP
     )
     stiffness: float = key("stiffness", "along the direction", default=0.0, at_least=0)
     damping: float = key("damping", "along the direction", default=0.0, at_least=0)

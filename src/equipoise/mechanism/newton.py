@@ -20,9 +20,7 @@ import numpy as np
 
 from equipoise.errors import MotionError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.steps import State, p, u
-
-Array = np.ndarray[Any, Any]
+from equipoise.mechanism.steps import Array, State, p, u
 
 
 @dataclass(frozen=True)

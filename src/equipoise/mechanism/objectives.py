@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
 from typing import ClassVar
@@ -22,7 +22,7 @@ from equipoise.keys import (
     inside,
     key,
 )
-from equipoise.mechanism.checks import positive, unknown
+from equipoise.mechanism.checks import numbered, positive, unknown
 from equipoise.mechanism.declaring import Declared, Measure, matches
 from equipoise.mechanism.outputs import DECLARED
 from equipoise.mechanism.parts import Mechanism
@@ -204,53 +204,37 @@ def wrong_objective(where: str, objective: Objective, machine: Mechanism) -> Ite
             f"{where}.output",
             f"{objective.output} is a vector, which has no {objective.measure}; give .x or .y",
         )
-    yield from _wrong_orders(where, objective.orders)
-    yield from _wrong_about(where, objective, machine)
+    for name in ("orders", "speeds"):
+        count = len(getattr(objective, name))
+        if count > MOST_NUMBERS:
+            sentence = f"got {count}; at most {MOST_NUMBERS} are computed with"
+            yield ModelError(f"{where}.{name}", sentence)
+    for k, (place, order) in enumerate(numbered(f"{where}.orders", objective.orders)):
+        if order < 0:
+            yield ModelError(place, f"got {order:g}; give 0 or more")
+        elif order in objective.orders[:k]:
+            yield ModelError(place, f"{order:g} is given twice")
+    if objective.about is not None and not output.about:
+        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
+        yield ModelError(f"{where}.about", f"goes with {' and '.join(names)}; leave it out")
+    elif objective.about is not None and objective.about not in machine.frame:
+        sentence = unknown(objective.about, machine.frame, "point of the frame")
+        yield ModelError(f"{where}.about", sentence)
     yield from _wrong_speeds(where, objective)
     if objective.weight <= 0:
         yield ModelError(f"{where}.weight", f"got {objective.weight:g}; give more than 0")
 
 
-def _wrong_orders(where: str, orders: tuple[float, ...]) -> Iterator[ModelError]:
-    yield from _too_many(f"{where}.orders", orders)
-    for number, order in enumerate(orders, 1):
-        if order < 0:
-            yield ModelError(f"{where}.orders[{number}]", f"got {order:g}; give 0 or more")
-        elif order in orders[: number - 1]:
-            yield ModelError(f"{where}.orders[{number}]", f"{order:g} is given twice")
-
-
-def _wrong_about(where: str, objective: Objective, machine: Mechanism) -> Iterator[ModelError]:
-    about, key = objective.about, f"{where}.about"
-    if about is None:
-        return
-    if not output_of(objective.output, machine).about:
-        names = [one.name for one in DECLARED.values() if one.about and not one.reason]
-        yield ModelError(key, f"goes with {' and '.join(names)}; leave it out")
-    elif about not in machine.frame:
-        yield ModelError(key, unknown(about, machine.frame, "point of the frame"))
-
-
 def _wrong_speeds(where: str, objective: Objective) -> Iterator[ModelError]:
-    yield from _too_many(f"{where}.speeds", objective.speeds)
     if objective.speeds and not objective.output.startswith(GAUGES):
         yield ModelError(
-            f"{where}.speeds",
-            "goes with gauges; other outputs are taken at the speed of the drive",
+            f"{where}.speeds", "goes with gauges; other outputs are taken at the speed of the drive"
         )
-    for number, speed in enumerate(objective.speeds, 1):
+    for k, (place, speed) in enumerate(numbered(f"{where}.speeds", objective.speeds)):
         if speed == 0:
-            yield ModelError(
-                f"{where}.speeds[{number}]", "the crank stands still there; give another speed"
-            )
-        elif speed in objective.speeds[: number - 1]:
-            yield ModelError(f"{where}.speeds[{number}]", "the same speed is given twice")
-
-
-def _too_many(where: str, values: Iterable[float]) -> Iterator[ModelError]:
-    count = len([*values])
-    if count > MOST_NUMBERS:
-        yield ModelError(where, f"got {count}; at most {MOST_NUMBERS} are computed with")
+            yield ModelError(place, "the crank stands still there; give another speed")
+        elif speed in objective.speeds[:k]:
+            yield ModelError(place, "the same speed is given twice")
 
 
 def wrong_limit(where: str, limit: Limit, machine: Mechanism) -> Iterator[ModelError]:

@@ -6,9 +6,12 @@ all rows.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from typing import Any
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.checks import FRAME, bodies_at
 from equipoise.mechanism.declaring import (
     DECLARED,
     GROUPS,
@@ -20,11 +23,11 @@ from equipoise.mechanism.declaring import (
     matches,
     output,
 )
+from equipoise.quantities import Dimension
 
 __all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
 """What `declaring` has is had from here, where something is declared."""
 
-FRAME = "frame"
 FORCE: tuple[Measure, ...] = ("rms", "peak")
 MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
 TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
@@ -40,37 +43,16 @@ def joint_names(machine: Any) -> list[str]:
     At a pin of several bodies each moving link has one; which of them carries the others is found
     only when the linkage is put together.
     """
-    shared: dict[str, list[str]] = {}
-    for body in (FRAME, *machine.links):
-        for point in machine.points_of(body):
-            shared.setdefault(point, []).append(body)
-    pins = [point for point, bodies in shared.items() if len(bodies) == 2]
-    several = (
-        f"{point}/{body}"
-        for point, bodies in shared.items()
-        if len(bodies) > 2
-        for body in bodies
-        if body != FRAME
-    )
-    return [*pins, *several, *slider_names(machine)]
+    shared = bodies_at(machine.bodies).items()
+    pins = [point for point, bodies in shared if len(bodies) == 2]
+    several = [(point, bodies) for point, bodies in shared if len(bodies) > 2]
+    held = [f"{point}/{body}" for point, bodies in several for body in bodies if body != FRAME]
+    return [*pins, *held, *slider_names(machine)]
 
 
 def slider_names(machine: Any) -> list[str]:
     """Names of sliding joints, such as ``ram on frame``."""
     return [slider.name for slider in machine.sliders]
-
-
-def point_names(machine: Any) -> list[str]:
-    """Names of points, those of the frame first."""
-    names = dict.fromkeys(machine.frame)
-    for link in machine.links.values():
-        names.update(dict.fromkeys(link.points))
-    return list(names)
-
-
-def gauge_names(machine: Any) -> list[str]:
-    """Names of the gauges on the support."""
-    return [] if machine.support is None else list(machine.support.gauges)
 
 
 def body_named(name: str) -> str:
@@ -84,230 +66,202 @@ def joint_named(name: str) -> str:
     return say("{link} on {on}", link=link, on=body_named(on)) if on else name
 
 
+XY = (".x", ".y")
+
+
+def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
+    """A way to declare outputs whose names begin alike, and that are read alike.
+
+    read : from the rest of the name (or `had`), an analysis and the member.  shared : as of
+        `output`.
+    parts : of a vector; those that begin with a dot go on after its name, others stand in its
+        place.  loop : True where compiled loops know it by its name.
+    """
+
+    def declare(
+        name: str,
+        dimension: Dimension,
+        label: str,
+        parts: tuple[str, ...] = (),
+        had: str = "",
+        **more: Any,
+    ) -> None:
+        more = {**shared, **more}
+        if parts:
+            stem = {part: where + name if part[0] == "." else where for part in parts}
+            more["parts"] = tuple(stem[part] + part for part in parts)
+        if more.get("loop") is True:
+            known = name.replace("_", " ") + (":name" if "{}" in where else "")
+            more["loop"] = f"{{{known}}}"
+        output(where + name, dimension, label, **more)(partial(read, had or name))
+
+    return declare
+
+
 # -- motion ----------------------------------------------------------------------------------------
 
-_LINKS: dict[str, Any] = {
-    "needs": "motion",
-    "members": lambda machine: machine.links,
-    "summed": False,
-}
-output("links.{}.angle", "angle", to_say("angle of {name}"), **_LINKS)(
-    lambda found, link: found.motion.links[link].angle
+of_link = _alike(
+    "links.{}.",
+    lambda name, found, link: getattr(found.motion.links[link], name),
+    needs="motion",
+    members=lambda machine: machine.links,
+    summed=False,
+    loop=True,
 )
-output(
-    "links.{}.angular_velocity",
-    "angular speed",
-    to_say("angular velocity of {name}"),
-    loop="{angular velocity:name}",
-    **_LINKS,
-)(lambda found, link: found.motion.links[link].angular_velocity)
-output(
-    "links.{}.angular_acceleration",
-    "angular acceleration",
-    to_say("angular acceleration of {name}"),
-    loop="{angular acceleration:name}",
-    **_LINKS,
-)(lambda found, link: found.motion.links[link].angular_acceleration)
+of_link("angle", "angle", to_say("angle of {name}"), loop=None)
+of_link("angular_velocity", "angular speed", to_say("angular velocity of {name}"))
+of_link("angular_acceleration", "angular acceleration", to_say("angular acceleration of {name}"))
 
-_POINTS: dict[str, Any] = {"needs": "motion", "members": point_names, "summed": False}
-output(
-    "points.{}.place",
-    "length",
-    to_say("position of {name}"),
-    parts=("points.{}.x", "points.{}.y"),
-    sized=False,
-    loop="{position:name}",
-    **_POINTS,
-)(lambda found, point: found.motion.points[point].place)
-output(
-    "points.{}.velocity",
-    "speed",
-    to_say("velocity of {name}"),
-    parts=("points.{}.vx", "points.{}.vy"),
-    loop="{velocity:name}",
-    **_POINTS,
-)(lambda found, point: found.motion.points[point].velocity)
-output(
-    "points.{}.acceleration",
+of_point = _alike(
+    "points.{}.",
+    lambda name, found, point: getattr(found.motion.points[point], name),
+    needs="motion",
+    members=lambda machine: bodies_at(machine.bodies),
+    summed=False,
+)
+of_point(
+    "place", "length", to_say("position of {name}"), ("x", "y"), sized=False, loop="{position:name}"
+)
+of_point("velocity", "speed", to_say("velocity of {name}"), ("vx", "vy"), loop=True)
+of_point(
+    "acceleration",
     "acceleration",
     to_say("acceleration of {name}"),
-    parts=("points.{}.ax", "points.{}.ay"),
-    loop="{acceleration:name}",
-    **_POINTS,
-)(lambda found, point: found.motion.points[point].acceleration_vector)
+    ("ax", "ay"),
+    loop=True,
+    had="acceleration_vector",
+)
 
-_SLIDERS: dict[str, Any] = {"needs": "motion", "members": slider_names, "spoken": joint_named}
-output("sliders.{}.travel", "length", to_say("travel of {name}"), **_SLIDERS)(
-    lambda found, slider: found.motion.sliders[slider].travel
+of_slider = _alike(
+    "sliders.{}.",
+    lambda name, found, slider: getattr(found.motion.sliders[slider], name),
+    needs="motion",
+    members=slider_names,
+    spoken=joint_named,
 )
-output("sliders.{}.velocity", "speed", to_say("sliding velocity of {name}"), **_SLIDERS)(
-    lambda found, slider: found.motion.sliders[slider].velocity
+of_slider("travel", "length", to_say("travel of {name}"))
+of_slider("velocity", "speed", to_say("sliding velocity of {name}"))
+of_slider(
+    "acceleration",
+    "acceleration",
+    to_say("sliding acceleration of {name}"),
+    had="along_acceleration",
 )
-output(
-    "sliders.{}.acceleration", "acceleration", to_say("sliding acceleration of {name}"), **_SLIDERS
-)(lambda found, slider: found.motion.sliders[slider].along_acceleration)
-output(
+of_dyad = _alike(
     "transmission.{}",
-    "angle",
-    to_say("transmission angle at {name}"),
+    lambda _, found, joint: found.motion.transmission[joint],
     needs="motion",
     members=lambda machine: (),
     items=lambda found: found.motion.transmission,
     spoken=joint_named,
-)(lambda found, joint: found.motion.transmission[joint])
+)
+of_dyad("", "angle", to_say("transmission angle at {name}"))
 
 # -- frame and drive -------------------------------------------------------------------------------
 
-output(
-    "shaking_force",
-    "force",
-    to_say("shaking force"),
-    parts=("shaking_force.x", "shaking_force.y"),
-    linear=True,
-    loop="{shaking force}",
-    ordered=True,
-    compared=FORCE,
-)(lambda found: found.forces.shaking_force)
-output(
-    "shaking_moment",
-    "torque",
-    to_say("shaking moment"),
-    linear=True,
-    about=True,
-    loop="{shaking moment}",
-    ordered=True,
-    compared=MOMENT,
-)(lambda found: found.forces.shaking_moment)
-output(
-    "drive_torque",
-    "torque",
-    to_say("drive torque"),
-    linear=True,
-    loop="{drive torque}",
-    ordered=True,
-    compared=TORQUE,
-)(lambda found: found.forces.drive_torque)
-output(
-    "frame_force",
-    "force",
-    to_say("force on the frame"),
-    parts=("frame_force.x", "frame_force.y"),
-    linear=True,
-    loop="{frame force}",
-    summed=(True, False),
-)(lambda found: found.forces.frame_force)
-output(
-    "frame_moment",
-    "torque",
-    to_say("moment on the frame"),
-    linear=True,
-    about=True,
-    loop="{frame moment}",
-)(lambda found: found.forces.frame_moment)
 
-_WEIGHT: dict[str, Any] = {
-    "linear": "{what} shakes nothing; take the force or moment on the frame instead",
-    "summed": False,
-}
-output("weight", "force", to_say("weight"), parts=("weight.x", "weight.y"), sized=False, **_WEIGHT)(
-    lambda found: found.forces.weight
+def _force(name: str, found: Any) -> Any:
+    return getattr(found.forces, name)
+
+
+linear = _alike("", _force, linear=True, loop=True)
+linear("shaking_force", "force", to_say("shaking force"), XY, ordered=True, compared=FORCE)
+linear(
+    "shaking_moment", "torque", to_say("shaking moment"), about=True, ordered=True, compared=MOMENT
 )
-output("weight_moment", "torque", to_say("moment of the weight"), about=True, **_WEIGHT)(
-    lambda found: found.forces.weight_moment
+linear("drive_torque", "torque", to_say("drive torque"), ordered=True, compared=TORQUE)
+linear("frame_force", "force", to_say("force on the frame"), XY, summed=(True, False))
+linear("frame_moment", "torque", to_say("moment on the frame"), about=True)
+of_weight = _alike(
+    "",
+    _force,
+    linear="{what} shakes nothing; take the force or moment on the frame instead",
+    summed=False,
 )
-output(
-    "mass_center.acceleration",
-    "acceleration",
-    to_say("acceleration of the common centre of mass"),
-    parts=("mass_center.ax", "mass_center.ay"),
+of_weight("weight", "force", to_say("weight"), XY, sized=False)
+of_weight("weight_moment", "torque", to_say("moment of the weight"), about=True)
+of_center = _alike(
+    "mass_center.",
+    lambda _, found: -found.forces.shaking_force.value / found.machine.mass,
     linear="{what} is the shaking force over the mass; take the shaking force instead",
     items=lambda found: ("",) if found.machine.mass else (),
     ordered=True,
     summed=False,
     sized=False,
-)(lambda found: -found.forces.shaking_force.value / found.machine.mass)
+)
+of_center(
+    "acceleration",
+    "acceleration",
+    to_say("acceleration of the common centre of mass"),
+    ("ax", "ay"),
+)
 
 # -- joints ----------------------------------------------------------------------------------------
 
-output(
+
+def _members(forces: Any, name: str, member: str) -> Any:
+    """A force by its member, or of that force what follows a dot."""
+    return getattr(forces[member], name[1:]) if name else forces[member]
+
+
+of_joint = _alike(
     "joints.{}",
+    lambda name, found, joint: _members(found.forces.joints, name, joint),
+    spoken=joint_named,
+)
+FORCES = (".force_x", ".force_y")
+of_joint(
+    "",
     "force",
     to_say("force in joint {name}"),
-    parts=("joints.{}.force_x", "joints.{}.force_y"),
+    FORCES,
     members=joint_names,
     items=lambda found: found.forces.joints,
-    spoken=joint_named,
     linear=True,
     loop="{joint force:name}",
     summed=(True, False),
     compared=FORCE,
-)(lambda found, joint: found.forces.joints[joint])
-
-_RAILS: dict[str, Any] = {
+)
+RAILS: dict[str, Any] = {
     "members": slider_names,
-    "items": lambda found: [
-        name for name, joint in found.forces.joints.items() if hasattr(joint, "moment")
-    ],
-    "spoken": joint_named,
+    "items": lambda found: [n for n, one in found.forces.joints.items() if hasattr(one, "moment")],
     "linear": "{what} is only read; take the whole force in the joint instead",
 }
-output("joints.{}.normal", "force", to_say("normal force in joint {name}"), summed=False, **_RAILS)(
-    lambda found, joint: found.forces.joints[joint].normal
-)
-output(
-    "joints.{}.moment",
-    "torque",
-    to_say("moment in joint {name}"),
-    loop="{joint moment:name}",
-    **_RAILS,
-)(lambda found, joint: found.forces.joints[joint].moment)
+of_joint(".normal", "force", to_say("normal force in joint {name}"), summed=False, **RAILS)
+of_joint(".moment", "torque", to_say("moment in joint {name}"), loop="{joint moment:name}", **RAILS)
 
-_GEARS: dict[str, Any] = {
-    "members": lambda machine: [gear.name for gear in machine.gears],
-    "spoken": lambda name: name.replace(" to ", " → "),
-    "linear": "{what} goes with the flank in contact, which other masses may change",
-}
-output(
+of_gear = _alike(
     "gears.{}",
+    lambda name, found, gear: _members(found.forces.gears, name, gear),
+    members=lambda machine: [gear.name for gear in machine.gears],
+    spoken=lambda name: name.replace(" to ", " → "),
+    linear="{what} goes with the flank in contact, which other masses may change",
+)
+of_gear(
+    "",
     "force",
     to_say("tooth force {name}"),
-    parts=("gears.{}.force_x", "gears.{}.force_y"),
+    FORCES,
     loop="{joint force:name}",
     summed=(True, False),
     compared=FORCE,
-    **_GEARS,
-)(lambda found, gear: found.forces.gears[gear])
-output(
-    "gears.{}.tangential", "force", to_say("tangential tooth force {name}"), summed=False, **_GEARS
-)(lambda found, gear: found.forces.gears[gear].tangential)
-output("gears.{}.radial", "force", to_say("radial tooth force {name}"), summed=False, **_GEARS)(
-    lambda found, gear: found.forces.gears[gear].radial
 )
+of_gear(".tangential", "force", to_say("tangential tooth force {name}"), summed=False)
+of_gear(".radial", "force", to_say("radial tooth force {name}"), summed=False)
 
 # -- rows and support ------------------------------------------------------------------------------
 
-_ROWS: dict[str, Any] = {"needs": "rows", "linear": True}
-output(
-    "rows.shaking_force",
-    "force",
-    to_say("shaking force"),
-    parts=("rows.shaking_force.x", "rows.shaking_force.y"),
-    summed=(True, False),
-    compared=FORCE,
-    **_ROWS,
-)(lambda found: found.together["shaking_force"])
-output("rows.shaking_moment", "torque", to_say("shaking moment"), compared=FORCE, **_ROWS)(
-    lambda found: found.together["shaking_moment"]
-)
-output("rows.roll_moment", "torque", to_say("roll moment"), compared=FORCE, **_ROWS)(
-    lambda found: found.together["roll_moment"]
-)
-output("rows.yaw_moment", "torque", to_say("yaw moment"), compared=FORCE, **_ROWS)(
-    lambda found: found.together["yaw_moment"]
-)
-output("rows.drive_torque", "torque", to_say("drive torque"), **_ROWS)(
-    lambda found: found.together["drive_torque"]
-)
+of_rows = _alike("rows.", lambda name, found: found.together[name], needs="rows", linear=True)
+of_rows("shaking_force", "force", to_say("shaking force"), XY, summed=(True, False), compared=FORCE)
+of_rows("shaking_moment", "torque", to_say("shaking moment"), compared=FORCE)
+of_rows("roll_moment", "torque", to_say("roll moment"), compared=FORCE)
+of_rows("yaw_moment", "torque", to_say("yaw moment"), compared=FORCE)
+of_rows("drive_torque", "torque", to_say("drive torque"))
 DECLARED["gauges.{}"] = Declared(
-    "gauges.{}", "length", to_say("gauge {name}"), None, needs="support", members=gauge_names
+    "gauges.{}",
+    "length",
+    to_say("reading at {name}"),
+    None,
+    needs="support",
+    members=lambda machine: [] if machine.support is None else list(machine.support.gauges),
 )

@@ -13,7 +13,7 @@ without the spring, plus k times the first row and f times the second.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,41 +21,39 @@ import numpy as np
 
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.applied import demands_of, spring_direction, spring_vector
-from equipoise.mechanism.dynamics import Forces, demand_of_inertia, forces, massless, place_of
+from equipoise.mechanism.dynamics import (
+    Forces,
+    Shares,
+    demand_of_inertia,
+    forces,
+    massless,
+    place_of,
+)
 from equipoise.mechanism.model import Link, Machine, Vector, unknown
 from equipoise.mechanism.motion import Motion, move
-from equipoise.mechanism.reactions import Demand, JointForce, MeshForce, reactions
-from equipoise.mechanism.steps import planar
-
-Array = np.ndarray[Any, Any]
+from equipoise.mechanism.reactions import (
+    Demand,
+    demands_of,
+    reactions,
+    spring_direction,
+    spring_vector,
+)
+from equipoise.mechanism.steps import Array, planar
 
 QUANTITIES = ("mass", "moment_x", "moment_y", "inertia")
 """Inertial parameters of a link: kg, kg m, kg m, kg m2; moments and inertia about its origin."""
 
-FRAME_OUTPUTS = ("shaking_force", "shaking_moment", "drive_torque")
-
 
 @dataclass(frozen=True, eq=False)
-class Regressor:
+class Regressor(Shares):
     """Derivative of every output by every inertial parameter.
 
-    parameters : P pairs of link and quantity; values : (P,) those of the machine.
-    shaking_force, frame_force : (P, N) complex.  shaking_moment, frame_moment, drive_torque :
-        (P, N).  joints, gears : name -> force whose arrays are (P, N).
-
-    What loads and springs add is `Forces.split` of causes "load" and "spring".
+    Arrays are (P, N).  parameters : P pairs of link and quantity; values : (P,) those of the
+    machine.  What loads and springs add is `Forces.split` of causes "load" and "spring".
     """
 
     parameters: tuple[tuple[str, str], ...]
     values: Array
-    shaking_force: Array
-    shaking_moment: Array
-    frame_force: Array
-    frame_moment: Array
-    drive_torque: Array
-    joints: Mapping[str, JointForce]
-    gears: Mapping[str, MeshForce]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,15 +74,9 @@ class BaseParameters:
         return len(self.combinations)
 
     def __str__(self) -> str:
-        return "\n".join(self._row(row) for row in self.combinations)
-
-    def _row(self, row: Array) -> str:
-        terms = [
-            f"{factor:+.6g} {link}.{quantity}"
-            for factor, (link, quantity) in zip(row, self.parameters, strict=True)
-            if abs(factor) > 1e-12
-        ]
-        return " ".join(terms)
+        names = [f"{link}.{quantity}" for link, quantity in self.parameters]
+        rows = [zip(row, names, strict=True) for row in self.combinations]
+        return "\n".join(" ".join(f"{x:+.6g} {n}" for x, n in r if abs(x) > 1e-12) for r in rows)
 
 
 def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:
@@ -120,8 +112,6 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
     solved = reactions(motion, total, whole.solved)
     shaking = Forces(motion, pole, inertia, {}, {})
     return Regressor(
-        parameter_names(machine),
-        values,
         -sum(force for force, _ in inertia.values()),
         shaking.shaking_moment,
         solved.frame_force,
@@ -129,6 +119,8 @@ def regressor(motion: Motion, about: str | Vector | complex | None = None) -> Re
         solved.drive_torque,
         solved.joints,
         solved.gears,
+        parameter_names(machine),
+        values,
     )
 
 
@@ -138,25 +130,16 @@ def _unit_demands(motion: Motion) -> tuple[dict[str, Any], dict[str, Any]]:
     count, shape = len(machine.links), len(motion.crank_angle)
     gravity = complex(*machine.gravity)
     inertia, total = {}, {}
-    for k, link in enumerate(machine.links):
-        own = _about_anchor(motion, link)
-        moving = demand_of_inertia(motion, link, motion.speed**2, *own)
-        weight = kernels.weight_demand(motion.state[f"u({link})"], *own[:2], gravity)
-        inertia[link] = _spread(moving, k, count, shape)
+    for k, (name, link) in enumerate(machine.links.items()):
+        shift = complex(*link.points[motion.linkage.anchors[name]])
+        unit = np.eye(4)[:, :, None]  # mass, moments and inertia, of one parameter a row
+        own = kernels.about(unit[0], unit[1] + 1j * unit[2], unit[3], shift)
+        moving = demand_of_inertia(motion, name, motion.speed**2, *own)
+        weight = kernels.weight_demand(motion.state[f"u({name})"], own[0], own[1], gravity)
+        inertia[name] = _spread(moving, k, count, shape)
         carried = _spread(weight, k, count, shape)
-        total[link] = tuple(a + b for a, b in zip(inertia[link], carried, strict=True))
+        total[name] = tuple(a + b for a, b in zip(inertia[name], carried, strict=True))
     return inertia, total
-
-
-def _about_anchor(motion: Motion, link: str) -> tuple[Array, Array, Array]:
-    """Mass, first moment and inertia about the anchor for a unit of each parameter, (4, 1)."""
-    points = motion.machine.links[link].points
-    r = complex(*points[motion.linkage.anchors[link]])
-    mass = np.array([1.0, 0, 0, 0])
-    moment = np.array([0, 1, 1j, 0])
-    inertia = np.array([0, 0, 0, 1.0])
-    mass, moment, inertia = kernels.about(mass, moment, inertia, r)
-    return mass[:, None], moment[:, None], inertia[:, None]
 
 
 def _spread(demand: tuple[Any, Any], k: int, count: int, shape: int) -> tuple[Array, Array]:
@@ -168,13 +151,15 @@ def _spread(demand: tuple[Any, Any], k: int, count: int, shape: int) -> tuple[Ar
 
 
 def base_parameters(
-    machine: Machine, outputs: Sequence[str] = FRAME_OUTPUTS, angles: int = 72
+    machine: Machine,
+    outputs: Sequence[str] = ("shaking_force", "shaking_moment", "drive_torque"),
+    angles: int = 72,
 ) -> BaseParameters:
     """Find the combinations of inertial parameters that some outputs can tell apart, in any motion.
 
     Parameters
     ----------
-    outputs : names of outputs of `Regressor`: those of the frame by default.
+    outputs : names of outputs of `Regressor`; by default what frame and drive feel.
     angles : crank angles a turn at which the outputs are compared.
 
     Notes
@@ -187,8 +172,13 @@ def base_parameters(
     if not outputs:
         raise UsageError("give at least one output, such as drive_torque")
     names = parameter_names(machine)
-    size = _length(machine)
-    motion = move(_with_any_masses(machine), angles)
+    bodies = (link.points.values() for link in machine.links.values())
+    size = max(abs(complex(*place)) for places in bodies for place in places) or 1.0
+    known = machine
+    for name, link in machine.links.items():
+        if not link.has_mass:  # which combinations count does not depend on masses
+            known = known.with_link(name, mass=1.0, center_of_mass=(0.0, 0.0), inertia=1.0)
+    motion = move(known, angles)
     matrix = np.concatenate([_rows(motion, output, size) for output in outputs])
     scale = np.tile([1.0, size, size, size**2], len(machine.links))
     kept, grouping = independent_columns(matrix * scale)
@@ -198,29 +188,15 @@ def base_parameters(
     return BaseParameters(names, combinations, values)
 
 
-def _with_any_masses(machine: Machine) -> Machine:
-    """Give masses to links that have none: which combinations count does not depend on them."""
-    for name, link in machine.links.items():
-        if not link.has_mass:
-            machine = machine.with_link(name, mass=1.0, center_of_mass=(0.0, 0.0), inertia=1.0)
-    return machine
-
-
-def _length(machine: Machine) -> float:
-    places = [abs(complex(*p)) for link in machine.links.values() for p in link.points.values()]
-    return max(places) or 1.0
-
-
 def _rows(motion: Motion, output: str, size: float) -> Array:
     """Rows of an output in any motion: at rest, at constant speed, starting from rest."""
     rate = (9.81 / size) ** 0.5
-    parts = []
+    parts: list[Array] = []
     for case in (motion.at(0.0, 0.0), motion.at(rate, 0.0), motion.at(0.0, rate**2)):
-        found = regressor(case)
-        names = [name for name, value in vars(found).items() if isinstance(value, np.ndarray)]
-        if output not in names[1:]:
-            raise UsageError(unknown(output, names[1:], "output"))
-        array = getattr(found, output)
+        found = regressor(case).of_machine
+        if output not in found:
+            raise UsageError(unknown(output, found, "output"))
+        array = found[output]
         parts += [array.real.T, array.imag.T] if np.iscomplexobj(array) else [array.T / size]
     return np.concatenate(parts)
 
@@ -260,7 +236,13 @@ def spring_columns(
     ModelError : the ends meet, so that a pull has no direction.
     UsageError : there is no such link or point.
     """
-    _check(motion.machine, link, point, to)
+    links, frame = motion.machine.links, motion.machine.frame
+    if link not in links:
+        raise UsageError(unknown(link, links, "link"))
+    if point not in (points := links[link].points):
+        raise UsageError(unknown(point, points, f"point of {link}"))
+    if to not in frame:
+        raise UsageError(unknown(to, frame, "point of the frame"))
     units = np.stack([spring_vector(motion, point, to), spring_direction(motion, link, point, to)])
     zero = np.zeros(units.shape)
     demands: dict[str, Demand] = dict.fromkeys(motion.machine.links, (zero + 0j, zero))
@@ -268,13 +250,3 @@ def spring_columns(
     like = forces(motion).solved if motion.machine.gears else None
     solved = reactions(motion, demands, like)
     return solved.drive_torque, {name: joint.value for name, joint in solved.joints.items()}
-
-
-def _check(machine: Machine, link: str, point: str, to: str) -> None:
-    if link not in machine.links:
-        raise UsageError(unknown(link, machine.links, "link"))
-    points = machine.links[link].points
-    if point not in points:
-        raise UsageError(unknown(point, points, f"point of {link}"))
-    if to not in machine.frame:
-        raise UsageError(unknown(to, machine.frame, "point of the frame"))

@@ -119,13 +119,7 @@ class Gear(Frozen):
             '`"frame"` where the carrier turns',
             example=["crank", "wheel"],
         ),
-        "mesh": Key(
-            "mesh",
-            Text(MESHES),
-            "goes with `teeth`",
-            default=None,
-            shown="external",
-        ),
+        "mesh": Key("mesh", Text(MESHES), "goes with `teeth`", default=None, shown="external"),
     }
     file_order = ("between", "ratio", "teeth", "mesh")
     conditions: ClassVar[Conditions] = {
@@ -241,11 +235,7 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if name == FRAME or not name.strip():
         yield ModelError(where, f"a link cannot be called {name!r}; choose another name")
     yield from wrong_points(where, link.points)
-    given = {
-        "mass": link.mass,
-        "center_of_mass": link.center_of_mass,
-        "inertia": link.inertia,
-    }
+    given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
     missing = [key for key, value in given.items() if value is None]
     if 0 < len(missing) < 3:
         yield ModelError(
@@ -259,8 +249,7 @@ def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
     if link.mass == 0 and link.inertia > 0:
         text = f"{link.inertia:g} kg m^2"
         yield ModelError(
-            f"{where}.inertia",
-            f"got {text} for a mass of 0; no body can have that, give 0",
+            f"{where}.inertia", f"got {text} for a mass of 0; no body can have that, give 0"
         ).about(link.inertia, text)
 
 

@@ -26,7 +26,9 @@ from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import FRAME, Machine, Slider, Vector
 
+Array = np.ndarray[Any, Any]
 State = dict[str, Any]
+Kernel = Callable[..., tuple[Any, ...]]
 
 
 class Step(Protocol):
@@ -39,7 +41,7 @@ class Step(Protocol):
 class Call:
     """outputs = kernel(*inputs, *parameters)."""
 
-    kernel: Callable[..., tuple[Any, ...]]
+    kernel: Kernel
     inputs: tuple[str, ...]
     parameters: tuple[Any, ...]
     outputs: tuple[str, ...]
@@ -69,19 +71,19 @@ class RunningAngle:
         state[f"phi({self.link})"] = running_angle(state, self.link, reference)
 
 
-def running_angle(state: State, link: str, reference: Any = None) -> np.ndarray[Any, Any]:
+def running_angle(state: State, link: str, reference: Any = None) -> Array:
     """Angle of a link (N,), counted on from a reference, or else from angle to angle."""
     angle = plain_angle(state, link)
     if reference is None:
         return np.unwrap(angle)
     turns = np.round((reference - angle) / (2 * np.pi))
-    running: np.ndarray[Any, Any] = angle + 2 * np.pi * turns
+    running: Array = angle + 2 * np.pi * turns
     return running
 
 
-def plain_angle(state: State, link: str) -> np.ndarray[Any, Any]:
+def plain_angle(state: State, link: str) -> Array:
     """Angle of a link (N,) within half a turn of 0."""
-    angle: np.ndarray[Any, Any] = np.angle(state[f"u({link})"])
+    angle: Array = np.angle(state[f"u({link})"])
     return angle if np.ndim(angle) else np.full(np.shape(state["theta"]), angle)
 
 
@@ -117,9 +119,6 @@ def u(link: str) -> tuple[str, str, str]:
     return f"u({link})", f"w({link})", f"a({link})"
 
 
-Array = np.ndarray[Any, Any]
-
-
 @dataclass(frozen=True)
 class Reaction:
     """A joint's force, as the calls find it: on body `on`, by body `by`, at point `at`.
@@ -135,6 +134,11 @@ class Reaction:
     at: str
     force: str
     couple: str | None = None
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """Names of what is to be found of it."""
+        return (self.force,) if self.couple is None else (self.force, self.couple)
 
 
 @dataclass(frozen=True)
@@ -186,12 +190,29 @@ class Guide:
 
 @dataclass(frozen=True)
 class Outer:
-    """Joint of an unknown link to a known body: a pin at `point`, or else a guide."""
+    """Joint of an unknown link to a known body: a pin at `point`, or else a guide through it."""
 
     link: str
     body: str
     point: str
     guide: Guide | None = None
+
+    @property
+    def rail(self) -> Guide:
+        """The guide of what is no pin."""
+        assert self.guide is not None
+        return self.guide
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of what a dyad has to know of it: a point, and how the body of a guide turns."""
+        return p(self.point) if self.guide is None else (*p(self.point), *u(self.body))
+
+    def reaction(self, at: str = "") -> Reaction:
+        """What it exerts on the link: of a guide, at a point that has to be given."""
+        if self.guide is None:
+            return pin_reaction(self.point, self.link, self.body)
+        return guide_reaction(self.guide, self.link, self.body, at)
 
 
 @dataclass
@@ -271,13 +292,12 @@ class Builder:
             )
         return 1.0 if side == words[0] else -1.0
 
-    def hand_over(self, body: str, at: str, force: str, couple: str | None = None) -> Call:
+    def hand_over(self, reaction: Reaction) -> Call:
         """Call that passes a reaction on to the body that exerts it."""
-        demand = demand_names(body)
-        inputs = (*demand, f"p({self.anchors[body]})", f"p({at})", force)
-        if couple is None:
-            return Call(kernels.transfer, inputs, (), demand)
-        return Call(kernels.transfer_couple, (*inputs, couple), (), demand)
+        demand, anchor = demand_names(reaction.by), self.anchors[reaction.by]
+        kernel = kernels.transfer if reaction.couple is None else kernels.transfer_couple
+        inputs = (*demand, f"p({anchor})", f"p({reaction.at})", *reaction.outputs)
+        return Call(kernel, inputs, (), demand)
 
 
 def planar(place: Vector) -> complex:

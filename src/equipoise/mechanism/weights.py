@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from math import inf, isfinite, pi, sqrt
 from typing import Any, ClassVar, Literal
 
@@ -21,7 +21,7 @@ from equipoise.keys import (
     key,
 )
 from equipoise.mechanism.checks import unknown, wrong_range
-from equipoise.mechanism.parts import Link
+from equipoise.mechanism.parts import Mechanism
 
 Pair = tuple[float, float]
 Shape = Literal["any", "point", "disc", "ring", "sector"]
@@ -160,11 +160,7 @@ class Weight(Frozen):
     )
     mass: float | None = key("mass", "where it is given", default=None, example="500 g", above=0)
     at_most: float | None = key(
-        "mass",
-        "the most that it may be, instead of `mass`",
-        default=None,
-        example="800 g",
-        above=0,
+        "mass", "the most that it may be, instead of `mass`", default=None, example="800 g", above=0
     )
 
     @classmethod
@@ -239,8 +235,21 @@ def wrong_weight(where: str, weight: Weight) -> Iterator[ModelError]:
             f"got {weight.radius:g} m; give at most {LARGEST_ROOM:g} m, or none for no limit",
         )
     yield from _wrong_plate(where, weight)
-    yield from _wrong_inner_radius(where, weight)
-    yield from _wrong_mass(where, weight)
+    inner, key = weight.inner_radius, f"{where}.inner_radius"
+    if inner and weight.shape not in HOLLOW:
+        yield ModelError(key, f"goes with a ring or sector, got shape {weight.shape!r}")
+    elif inner < 0:
+        yield ModelError(key, f"got {inner:g} m; give 0 or more")
+    elif inner >= weight.radius:
+        room = f"a room of {_length(weight.radius)}"
+        yield ModelError(key, f"got {_length(inner)} in {room}; give less than that")
+    if weight.mass is not None and weight.at_most is not None:
+        yield ModelError(where, "give either mass or at_most")
+    if weight.mass is None and not isfinite(weight.radius):
+        yield ModelError(where, "nothing limits it; give the radius of its room, or its mass")
+    cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
+    if cut and weight.mass is not None and weight.mass > largest_mass(weight) * ROUNDING:
+        yield ModelError(f"{where}.mass", _too_large(weight, weight.mass))
 
 
 def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
@@ -262,32 +271,6 @@ def _wrong_plate(where: str, weight: Weight) -> Iterator[ModelError]:
             f"{where}.material",
             f'missing; {shape} is cut from a plate, give a material such as "steel", or a density',
         )
-
-
-def _wrong_inner_radius(where: str, weight: Weight) -> Iterator[ModelError]:
-    inner, key = weight.inner_radius, f"{where}.inner_radius"
-    if inner and weight.shape not in HOLLOW:
-        yield ModelError(key, f"goes with a ring or sector, got shape {weight.shape!r}")
-    elif inner < 0:
-        yield ModelError(key, f"got {inner:g} m; give 0 or more")
-    elif inner >= weight.radius:
-        yield ModelError(
-            key,
-            f"got {_length(inner)} in a room of {_length(weight.radius)}; give less than that",
-        )
-
-
-def _wrong_mass(where: str, weight: Weight) -> Iterator[ModelError]:
-    if weight.mass is not None and weight.at_most is not None:
-        yield ModelError(where, "give either mass or at_most")
-    if weight.mass is None and not isfinite(weight.radius):
-        yield ModelError(
-            where,
-            "nothing limits it; give the radius of its room, or its mass",
-        )
-    cut = weight.shape in CUT and None not in (weight.thickness, weight.density)
-    if cut and weight.mass is not None and weight.mass > largest_mass(weight) * ROUNDING:
-        yield ModelError(f"{where}.mass", _too_large(weight, weight.mass))
 
 
 def _too_large(weight: Weight, mass: float) -> str:
@@ -312,8 +295,9 @@ def _length(value: float) -> str:
     return f"{1e3 * value:.5g} mm"
 
 
-def wrong_move(where: str, move: CenterMove, links: Mapping[str, Link]) -> Iterator[ModelError]:
+def wrong_move(where: str, move: CenterMove, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with a centre of mass that may be moved."""
+    links = machine.links
     if move.link not in links:
         yield ModelError(f"{where}.link", unknown(move.link, links, "link"))
     elif not links[move.link].mass:
@@ -329,8 +313,9 @@ def wrong_move(where: str, move: CenterMove, links: Mapping[str, Link]) -> Itera
         yield ModelError(where, "give either x and y, or center and radius")
 
 
-def wrong_added(where: str, added: AddedMass, links: Mapping[str, Link]) -> Iterator[ModelError]:
+def wrong_added(where: str, added: AddedMass, machine: Mechanism) -> Iterator[ModelError]:
     """Everything that is wrong with mass that may be added to a link."""
+    links = machine.links
     if added.link not in links:
         yield ModelError(f"{where}.link", unknown(added.link, links, "link"))
     elif added.at not in (points := links[added.link].points):

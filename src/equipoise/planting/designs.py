@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import pi
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from equipoise.errors import UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of, unknown
 from equipoise.mechanism.tip import planting_of, tip_link
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Bodies = dict[str, dict[str, complex]]
 Sense = Literal["as given", "counterclockwise", "clockwise", "either"]
 

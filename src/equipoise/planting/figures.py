@@ -1,7 +1,5 @@
 """Figures of the tip's motion, for one machine or for many designs of it at once.
 
-Figures of the tip's motion, for one machine or for many designs of it at once.
-
 Every figure has a dotted name, as in the output, and an array (P,) of values in SI units; NaN
 where a design does not have it.
 """
@@ -9,38 +7,210 @@ where a design does not have it.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
+from functools import partial
 from itertools import combinations
 from typing import Any
 
 import numpy as np
 
-from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import Signal, integral, lowest_within
-from equipoise.mechanism.tip import TipCurve
-from equipoise.planting.curve import (
-    extreme,
-    ground_bend,
-    ratios,
-    sharpest_bend,
-    size_of_curve,
-    transmission,
+from equipoise.mechanism.kernels import cross, dot
+from equipoise.mechanism.tip import (
+    STEP,
+    Signal,
+    TipCurve,
+    integral,
+    largest,
+    lowest_within,
+    roots,
+    smallest,
 )
 from equipoise.planting.stroke import (
-    Array,
     Figures,
+    direction,
     finger_base,
     ground_drive,
     in_time,
+    in_time_slope,
     instant,
     pick_up,
     release,
     while_driving,
     wrapped,
 )
+from equipoise.signals import Array
 
-PANELS = 24
-SAMPLES_OF_TURN = 720
+PANELS, SAMPLES_OF_TURN = 24, 720
 """Panels of the stay in which lengths are summed up, and samples of a turn."""
+
+
+def tip_figures(
+    curve: TipCurve,
+    entry: Array,
+    leave: Array,
+    breaks: Array | None = None,
+    wanted: Collection[str] | None = None,
+) -> Figures:
+    """Every figure of the path, of the instants and of the stay in the soil.
+
+    entry, leave : (P,) crank angles at which the tip enters and leaves the soil, running on in the
+        sense of the drive.
+    breaks : (P, B) crank angles from entry to leave between which the path is smooth; None for
+        equal panels.
+    wanted : first parts of the names that are needed, such as ``curve``; None for all.
+    """
+    instants: dict[str, Callable[[], Array]] = {
+        "lowest": lambda: curve.lowest[1],
+        "highest": lambda: curve.highest[1],
+        "entry": lambda: entry,
+        "exit": lambda: leave,
+        "release": lambda: release(curve),
+    }
+    if curve.planting.tray is not None:
+        instants["pick_up"] = lambda: pick_up(curve, entry)
+    groups: dict[str, Callable[[str], Figures]] = {
+        "surface": lambda name: {name: curve.surface},
+        "curve": lambda name: size_of_curve(curve) | sharpest_bend(curve, name, 0.0),
+        "ground": lambda name: sharpest_bend(
+            curve, name, ground_drive(curve), while_driving(curve)
+        ),
+        **dict.fromkeys(
+            ("max_speed", "min_speed", "max_acceleration", "min_acceleration"),
+            lambda name: extreme(curve, name),
+        ),
+        "ratio": lambda name: ratios(curve),
+        "transmission": lambda name: transmission(curve),
+        "soil": lambda name: in_soil(curve, entry, leave, breaks),
+        "limits": lambda name: limits(curve, entry, leave),
+        "clearance": lambda name: clearances(curve, entry),
+        **dict.fromkeys(instants, lambda name: instant(curve, name, instants[name]())),
+    }
+    known = [group(name) for name, group in groups.items() if wanted is None or name in wanted]
+    return {name: values for found in known for name, values in found.items()}
+
+
+def size_of_curve(curve: TipCurve) -> Figures:
+    """Extent and length of the curve relative to the machine."""
+    left, right = (
+        find(
+            lambda theta: curve.at(theta).place.real,
+            lambda theta: curve.at(theta).place_1.real,
+            curve.theta,
+            curve.grid.place.real,
+        )[0]
+        for find in (smallest, largest)
+    )
+    bottom, top = curve.lowest[0], curve.highest[0]
+    return {
+        "curve.height": top - bottom,
+        "curve.width": right - left,
+        "curve.length": np.mean(np.abs(curve.grid.place_1), axis=1) * curve.period,
+        "curve.lift": top - curve.surface,
+    }
+
+
+def sharpest_bend(curve: TipCurve, name: str, drive: Any, share: Any = 1.0) -> Figures:
+    """Smallest radius of curvature and its crank angle: one over the largest curvature.
+
+    drive : way of the machine along x by crank angle, m; 0 for the path relative to the machine.
+    share : NaN for a machine that has no such path.
+    """
+
+    def squared(theta: Array) -> Any:
+        tip = curve.at(theta)
+        rate = tip.place_1 + drive
+        return np.square(cross(rate, tip.place_2) / np.abs(rate) ** 3)
+
+    def slope(theta: Array) -> Any:
+        tip = curve.at(theta)
+        rate, bend = tip.place_1 + drive, cross(tip.place_1 + drive, tip.place_2)
+        turning = cross(rate, curve.place_3(theta)) * np.abs(rate) ** 2
+        return bend * (turning - 3 * bend * dot(rate, tip.place_2))
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        samples = np.nan_to_num(squared(curve.grid.theta), nan=np.inf)
+        value, at = largest(squared, slope, curve.theta, samples)
+        slow = _slow_bend(curve, drive, slope)
+        sharp = squared(slow[:, None])[:, 0]
+        radius = 1 / np.sqrt(np.fmax(value, sharp))
+    return {
+        f"{name}.smallest_radius.value": radius * share,
+        f"{name}.smallest_radius.crank_angle": wrapped(curve, np.where(sharp <= value, at, slow))
+        * share,
+    }
+
+
+def _slow_bend(curve: TipCurve, drive: Any, slope: Signal) -> Array:
+    """Crank angle (P,) of the bend at the slowest place, which may be sharper than samples tell."""
+
+    def rate2(theta: Array) -> Any:
+        return np.abs(curve.at(theta).place_1 + drive) ** 2
+
+    def rising(theta: Array) -> Any:
+        tip = curve.at(theta)
+        return dot(tip.place_1 + drive, tip.place_2)
+
+    value, slowest = smallest(rate2, rising, curve.theta, rate2(curve.grid.theta))
+    at = slowest[:, None]
+    width = np.minimum(0.5 * np.sqrt(value)[:, None] / np.abs(curve.at(at).place_2), curve.theta[1])
+    return np.asarray(roots(slope, at - width, at + width)[:, 0])
+
+
+def extreme(curve: TipCurve, name: str) -> Figures:
+    """Largest or smallest velocity or acceleration relative to the machine, with its direction.
+
+    name : ``max_speed``, ``min_speed``, ``max_acceleration`` or ``min_acceleration``.
+    """
+    find = largest if name.startswith("max") else smallest
+    order = 1 if name.endswith("speed") else 2
+
+    def squared(theta: Array) -> Any:
+        return np.abs(in_time(curve, theta, order)) ** 2
+
+    def rising(theta: Array) -> Any:
+        return dot(in_time(curve, theta, order), in_time_slope(curve, theta, order))
+
+    value, at = find(squared, rising, curve.theta, squared(curve.grid.theta))
+    return {
+        f"{name}.value": np.sqrt(value),
+        f"{name}.crank_angle": wrapped(curve, at),
+        f"{name}.direction": direction(in_time(curve, at[:, None], order)[:, 0]),
+    }
+
+
+def ratios(curve: TipCurve) -> Figures:
+    """Extremes of the angular velocity of every link but the drive, over that of the drive."""
+    result: Figures = {}
+    machine, family = curve.machines[0], curve.family
+    for link in machine.links:
+        if link == machine.drive.link:
+            continue
+        rate, slope = (
+            lambda theta, link=link, order=order: family.rates(family.solve(theta), link)[order]
+            for order in (0, 1)
+        )
+        samples = family.rates(curve.grid.state, link)[0]
+        for which, find in (("min", smallest), ("max", largest)):
+            value, at = find(rate, slope, curve.theta, samples)
+            result[f"ratio.{link}.{which}"] = value
+            result[f"ratio.{link}.{which}_at"] = wrapped(curve, at)
+    return result
+
+
+def transmission(curve: TipCurve) -> Figures:
+    """Smallest transmission angle of any dyad; an obtuse one counts by what it lacks to 180 deg."""
+    family = curve.family
+    if not any(group.margin for group in family.first.groups):
+        return {}
+
+    def margin(theta: Array) -> Any:
+        return family.margins(family.solve(theta))
+
+    samples = family.margins(curve.grid.state)
+    value, at = smallest(
+        margin, lambda x: margin(x + STEP) - margin(x - STEP), curve.theta, samples
+    )
+    angle = np.arcsin(np.sqrt(np.clip(value, 0.0, 1.0)))
+    return {"transmission.min": angle, "transmission.min_at": wrapped(curve, at)}
 
 
 def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -> Figures:
@@ -52,7 +222,7 @@ def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -
     ends = curve.at(np.stack([entry, leave], axis=1)).place.real
     advance = ends[:, 1] - ends[:, 0] + curve.forward[:, 0] * time
     drives = while_driving(curve)
-    sharpest, at = _largest_in_soil(curve, entry, leave)
+    sharpest, at = lowest_within(lambda theta: -np.abs(in_time(curve, theta, 2)), entry, leave)
     return {
         "soil.depth": curve.surface - curve.lowest[0],
         "soil.crank_travel": travel,
@@ -62,7 +232,7 @@ def in_soil(curve: TipCurve, entry: Array, leave: Array, breaks: Array | None) -
         "soil.ground_advance": advance * drives,
         "soil.ground_distance": np.abs(advance) * drives,
         "soil.hole_length": _hole_length(curve, entry, leave) * drives,
-        "soil.max_acceleration.value": sharpest,
+        "soil.max_acceleration.value": -sharpest,
         "soil.max_acceleration.crank_angle": wrapped(curve, at),
     }
 
@@ -100,35 +270,31 @@ def _hole_length(curve: TipCurve, entry: Array, leave: Array) -> Array:
     return np.where(upright, -right - left, np.nan)
 
 
-def _largest_in_soil(curve: TipCurve, entry: Array, leave: Array) -> tuple[Array, Array]:
-    value, at = lowest_within(lambda theta: -np.abs(in_time(curve, theta, 2)), entry, leave)
-    return -value, at
-
-
 def limits(curve: TipCurve, entry: Array, leave: Array) -> Figures:
     """Highest speeds of the drive (rad/s, without acceleration) that keep within the limits.
 
     The forward speed is the one at which hills stay as far apart as they are.
     """
-    planting = curve.planting
-
-    def less(theta: Array) -> Any:
-        return -np.abs(curve.at(theta).place_2)
-
     result: Figures = {}
-    ends = np.zeros(curve.count), np.full(curve.count, curve.period)
-    for name, limit, (low, high) in (
-        ("acceleration", planting.acceleration_limit, ends),
-        ("soil_acceleration", planting.soil_acceleration_limit, (entry, leave)),
+    for name, limit, ends in (
+        ("acceleration", curve.planting.acceleration_limit, _cycle(curve)),
+        ("soil_acceleration", curve.planting.soil_acceleration_limit, (entry, leave)),
     ):
         if limit is not None:
-            bend = -lowest_within(less, low, high, samples=SAMPLES_OF_TURN * curve.turns)[0]
-            result[f"limits.{name}.limit"] = np.full(curve.count, limit)
-            speed = np.sqrt(limit / bend)
-            result[f"limits.{name}.highest_speed"] = speed
-            way = np.abs(ground_drive(curve)[:, 0])
-            result[f"limits.{name}.highest_forward_speed"] = way * speed
+            samples = SAMPLES_OF_TURN * curve.turns
+            bend = lowest_within(lambda x: -np.abs(curve.at(x).place_2), *ends, samples=samples)[0]
+            speed = np.sqrt(limit / -bend)
+            result |= {
+                f"limits.{name}.limit": np.full(curve.count, limit),
+                f"limits.{name}.highest_speed": speed,
+                f"limits.{name}.highest_forward_speed": np.abs(ground_drive(curve)[:, 0]) * speed,
+            }
     return result
+
+
+def _cycle(curve: TipCurve) -> tuple[Array, Array]:
+    """Crank angles (P,) of begin and end of the cycle."""
+    return np.zeros(curve.count), np.full(curve.count, curve.period)
 
 
 def clearances(curve: TipCurve, entry: Array) -> Figures:
@@ -140,129 +306,53 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
     entry : (P,) crank angles at which the tip enters the soil.
     """
     result: Figures = {}
-    outlines = _outlines(curve)
-    for link, points in outlines.items():
-        result |= _smallest(curve, f"clearance.soil.{link}", _above_soil(curve, link, points))
-    if curve.planting.tray is None:
+    tip, tray, links = curve.planting.tip, curve.planting.tray, curve.machines[0].links
+    outlines = {name: [p for p in link.points if p != tip] for name, link in links.items()}
+    outlines = {name: points for name, points in outlines.items() if points}
+
+    def places(theta: Array, link: str) -> Array:
+        state = curve.family.solve(theta)
+        return np.array([curve.point_of(state, point, link)[0] for point in outlines[link]])
+
+    def height(theta: Array, link: str) -> Any:
+        return np.min(places(theta, link).imag, axis=0) - curve.surface[:, None]
+
+    for link in outlines:
+        result |= _smallest(curve, f"clearance.soil.{link}", partial(height, link=link))
+    if tray is None:
         return result
-    start, stop = (complex(*point) for point in curve.planting.tray)
-    for link, points in outlines.items():
-        apart = _from_line(curve, link, points, start, stop)
-        result |= _smallest(curve, f"clearance.tray.{link}", apart)
-    tip = f"clearance.tray.tip {curve.planting.tip}"
-    result |= _smallest(curve, tip, lambda theta: _to_line(curve.at(theta).place, start, stop))
-    passes = pick_up(curve, entry)
-    met = np.isfinite(passes)
-    result[f"{tip}.value"] = np.where(met, 0.0, result[f"{tip}.value"])
-    angle = np.where(met, wrapped(curve, passes), result[f"{tip}.crank_angle"])
-    result[f"{tip}.crank_angle"] = angle
-    return result
+    start, stop = (complex(*point) for point in tray)
 
-
-def _outlines(curve: TipCurve) -> dict[str, list[str]]:
-    """Points of each moving link but the tip."""
-    tip = curve.planting.tip
-    outlines = {
-        name: [point for point in link.points if point != tip]
-        for name, link in curve.machines[0].links.items()
-    }
-    return {name: points for name, points in outlines.items() if points}
-
-
-def _above_soil(curve: TipCurve, link: str, points: list[str]) -> Signal:
-    """Height of a link's lowest point above the surface."""
-
-    def height(theta: Array) -> Any:
-        return np.min(_places(curve, link, points, theta).imag, axis=0) - curve.surface[:, None]
-
-    return height
-
-
-def _from_line(
-    curve: TipCurve, link: str, points: list[str], start: complex, stop: complex
-) -> Signal:
-    """Distance of a link from a line that stands still."""
-
-    def apart(theta: Array) -> Any:
-        places = _places(curve, link, points, theta)
-        lines = combinations(places, 2) if len(points) > 1 else [(places[0], places[0])]
+    def apart(theta: Array, link: str) -> Any:
+        found = places(theta, link)
+        lines = combinations(found, 2) if len(found) > 1 else [(found[0], found[0])]
         return np.min([distance(a, b, start, stop) for a, b in lines], axis=0)
 
-    return apart
-
-
-def _places(curve: TipCurve, link: str, points: list[str], theta: Array) -> Array:
-    state = curve.family.solve(theta)
-    return np.array([curve.point_of(state, point, link)[0] for point in points])
+    for link in outlines:
+        result |= _smallest(curve, f"clearance.tray.{link}", partial(apart, link=link))
+    name, passes = f"clearance.tray.tip {tip}", pick_up(curve, entry)
+    found = _smallest(curve, name, lambda theta: _to_line(curve.at(theta).place, start, stop))
+    met = np.isfinite(passes)
+    found[f"{name}.value"][met] = 0.0
+    found[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
+    return result | found
 
 
 def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
-    ends = np.zeros(curve.count), np.full(curve.count, curve.period)
-    value, at = lowest_within(signal, *ends, samples=len(curve.theta) + 1)
+    value, at = lowest_within(signal, *_cycle(curve), samples=len(curve.theta) + 1)
     return {f"{name}.value": value, f"{name}.crank_angle": wrapped(curve, at)}
 
 
 def distance(a: Array, b: Array, c: complex, d: complex) -> Array:
     """Distance between lines from a to b (..., K) and a line from c to d, m."""
     gaps = [_to_line(a, c, d), _to_line(b, c, d), _to_line(c, a, b), _to_line(d, a, b)]
-    apart = kernels.cross(b - a, c - a) * kernels.cross(b - a, d - a) < 0
-    across = kernels.cross(d - c, a - c) * kernels.cross(d - c, b - c) < 0
+    apart = cross(b - a, c - a) * cross(b - a, d - a) < 0
+    across = cross(d - c, a - c) * cross(d - c, b - c) < 0
     return np.where(apart & across, 0.0, np.min(np.broadcast_arrays(*gaps), axis=0))
 
 
 def _to_line(point: Any, start: Any, stop: Any) -> Array:
     along = stop - start
     length2 = np.maximum(np.abs(along) ** 2, 1e-300)
-    share = np.clip(kernels.dot(along, point - start) / length2, 0.0, 1.0)
-    gap: Array = np.abs(point - start - share * along)
-    return gap
-
-
-def tip_figures(
-    curve: TipCurve,
-    entry: Array,
-    leave: Array,
-    breaks: Array | None = None,
-    wanted: Collection[str] | None = None,
-) -> Figures:
-    """Every figure of the path, of the instants and of the stay in the soil.
-
-    Parameters
-    ----------
-    entry, leave : (P,) crank angles at which the tip enters and leaves the soil, running on in the
-        sense of the drive.
-    breaks : (P, B) crank angles from entry to leave between which the path is smooth; None for
-        equal panels.
-    wanted : first parts of the names that are needed, such as ``curve``; None for all.
-    """
-    instants = {
-        "lowest": lambda: curve.lowest[1],
-        "highest": lambda: curve.highest[1],
-        "entry": lambda: entry,
-        "exit": lambda: leave,
-        "release": lambda: release(curve),
-        "pick_up": lambda: pick_up(curve, entry),
-    }
-    if curve.planting.tray is None:
-        del instants["pick_up"]
-    groups: dict[str, Callable[[], Figures]] = {
-        "surface": lambda: {"surface": curve.surface},
-        "curve": lambda: size_of_curve(curve) | sharpest_bend(curve, "curve", 0.0),
-        "ground": lambda: ground_bend(curve),
-        "max_speed": lambda: extreme(curve, "max_speed"),
-        "min_speed": lambda: extreme(curve, "min_speed"),
-        "max_acceleration": lambda: extreme(curve, "max_acceleration"),
-        "min_acceleration": lambda: extreme(curve, "min_acceleration"),
-        "ratio": lambda: ratios(curve),
-        "transmission": lambda: transmission(curve),
-        "soil": lambda: in_soil(curve, entry, leave, breaks),
-        "limits": lambda: limits(curve, entry, leave),
-        "clearance": lambda: clearances(curve, entry),
-    }
-    for name, when in instants.items():
-        groups[name] = lambda name=name, when=when: instant(curve, name, when())  # type: ignore[misc]
-    result: Figures = {}
-    for name, group in groups.items():
-        if wanted is None or name in wanted:
-            result |= group()
-    return result
+    share = np.clip(dot(along, point - start) / length2, 0.0, 1.0)
+    return np.asarray(np.abs(point - start - share * along))

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, radians
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.stroke import soil_crossings
+from equipoise.signals import Array
 
 _NAMES = {
     "length": "height width length lift depth x y surface hill_spacing smallest_radius "
@@ -45,8 +46,6 @@ def dimension_of(figure: str) -> str | None:
     component = last in ("size", "value", "min") or (last in ("x", "y") and len(path) > 1)
     return _DIMENSIONS.get(path[-1] if path and component else last)
 
-
-Array = np.ndarray[Any, Any]
 
 USUAL_SHARE = 0.01
 USUAL_ANGLE = radians(1)

@@ -12,11 +12,9 @@ from typing import Any
 import numpy as np
 
 from equipoise.mechanism import kernels
-from equipoise.mechanism.instants import crossings, integral, lowest_within
-from equipoise.mechanism.tip import TipCurve
+from equipoise.mechanism.tip import TipCurve, crossings, integral, lowest_within
 from equipoise.planting.stroke import wrapped
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 STILL = 1e-9
 """Rate of the path, over its largest, at which the tip counts as standing still over ground."""

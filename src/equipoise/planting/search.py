@@ -22,8 +22,7 @@ from equipoise.planting.designs import Designs, Sense
 from equipoise.planting.goals import LIMITS, Goal, Problem
 from equipoise.planting.summary import PlantingFigures, plant
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 GENERATIONS, POPULATION = 300, 120
 SMALLEST_POPULATION = 5

@@ -10,11 +10,9 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.family import column
-from equipoise.mechanism.instants import crossings, roots
-from equipoise.mechanism.tip import TipCurve
-from equipoise.signals import EQUAL, highest_at, within_period
+from equipoise.mechanism.tip import TipCurve, crossings, roots
+from equipoise.signals import EQUAL, Array, highest_at, within_period
 
-Array = np.ndarray[Any, Any]
 Figures = dict[str, Array]
 """Figures by dotted name; (P,), one value for each machine."""
 

@@ -11,19 +11,18 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
+from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics import Forces, forces, massless
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.motion import MOST_ANGLES, Motion, Named, PointMotion, move
+from equipoise.mechanism.motion import MOST_ANGLES, Motion, PointMotion, move
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.figures import tip_figures
 from equipoise.planting.ground import GroundPath, Loop
 from equipoise.planting.stroke import Visit, finger_base, tray_crossings, visits, wrapped
 from equipoise.results.result import Result
-from equipoise.signals import Figures, figures
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, Figures, figures
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,10 +196,10 @@ def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
             continue
         if body.startswith("clearance.soil.") and value < 0:
             link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g}"
-            yield Note(to_say("{link} goes {depth} mm into the soil"), link=link, depth=depth)
+            yield Note("{link} goes {depth} mm into the soil", link=link, depth=depth)
         if body.startswith("clearance.tray.") and value == 0 and ".tray.tip " not in body:
             link = body.removeprefix("clearance.tray.")
-            yield Note(to_say("{link} goes through the tray's edge"), link=link)
+            yield Note("{link} goes through the tray's edge", link=link)
 
 
 def _notes(
@@ -211,51 +210,37 @@ def _notes(
 ) -> Iterator[Note]:
     planting = curve.planting
     if curve.forward[0, 0] == 0:
-        yield (
-            Note(
-                to_say(
-                    "forward_speed is 0: there is no path over ground, and the figures of"
-                    " that path are left out"
-                )
-            )
+        yield Note(
+            "forward_speed is 0: there is no path over ground, and the figures of"
+            " that path are left out"
         )
     if len(stays) > 1:
-        yield (
-            Note(
-                to_say(
-                    "the tip is in the soil {count} times a cycle; entry, exit and lowest"
-                    " point are those of the deepest stay"
-                ),
-                count=len(stays),
-            )
+        yield Note(
+            "the tip is in the soil {count} times a cycle; entry, exit and lowest"
+            " point are those of the deepest stay",
+            count=len(stays),
         )
     if planting.tray is not None and not crossed:
-        yield Note(to_say("the tip never passes the tray's edge, so that it picks up nothing"))
+        yield Note("the tip never passes the tray's edge, so that it picks up nothing")
     if planting.units_per_turn > 1:
-        yield (
-            Note(
-                to_say(
-                    "units_per_turn is {units_per_turn}: soil loads, and clearances "
-                    "without the tip, are those of the one tip named, not of the other "
-                    "units"
-                ),
-                units_per_turn=planting.units_per_turn,
-            )
+        yield Note(
+            "units_per_turn is {units_per_turn}: soil loads, and clearances "
+            "without the tip, are those of the one tip named, not of the other "
+            "units",
+            units_per_turn=planting.units_per_turn,
         )
     if planting.release is not None and known["release.y"] > known["surface"]:
-        yield Note(to_say("the seedling is let go above the surface of the soil"))
+        yield Note("the seedling is let go above the surface of the soil")
     yield from _collisions(known)
     base = finger_base(curve)
     if base is not None and "soil.hole_length" not in known and curve.forward[0, 0] != 0:
         yield Note(
-            to_say(
-                "{base} is below the surface at entry or exit, so that no length of a hole is told"
-            ),
+            "{base} is below the surface at entry or exit, so that no length of a hole is told",
             base=base,
         )
     if planting.finger_from is None and base is not None:
         yield Note(
-            to_say("the finger is taken from {base} to {tip}; finger_from can name another"),
+            "the finger is taken from {base} to {tip}; finger_from can name another",
             base=base,
             tip=planting.tip,
         )

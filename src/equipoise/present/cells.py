@@ -25,6 +25,8 @@ Units = Mapping[Dimension, str]
 """Units that a reader has chosen, by dimension."""
 Kind = tuple[Dimension | None, str | None]
 
+UNCHANGED = change(1.0, 1.0)
+"""What `change` tells of two equal figures."""
 MORE_DIGITS = {"rad": 2, "turn": 3}
 """Of angles, beyond those behind the point in degrees."""
 
@@ -162,7 +164,8 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     if cell is None or isinstance(cell, str):
         return Text(cell or "")
     if isinstance(cell, Change):
-        return Text(change(cell.before, cell.after), number=True, strong=cell.worse)
+        share = change(cell.before, cell.after)
+        return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
     if isinstance(cell, Many):
         told = [_text(value, column, shown) for value in cell.values]
         words = [f"{one.text} ({one.at})" if one.at else one.text for one in told]

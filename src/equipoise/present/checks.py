@@ -136,7 +136,7 @@ def _support(machine: Machine) -> Iterator[str]:
     for name, mount in support.mounts.items():
         yield f"  mount {name}: {', '.join(_mount(mount))}"
     for name, gauge in support.gauges.items():
-        yield f"  gauge {name}: reads {_reading(gauge)}"
+        yield f"  {name}: a gauge that reads {_reading(gauge)}"
     if not support.mounts:
         yield "  no mounts"
 

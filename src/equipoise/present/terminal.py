@@ -120,7 +120,7 @@ class _Printer:
     def table(self, told: Grid) -> None:
         """A table, in as many parts as the width asks for."""
         for place, columns in enumerate(self._parts(told)):
-            title = told.title if not place else say("{title}, further", title=told.title)
+            title = told.title if not place else say("{title} (continued)", title=told.title)
             self.space()
             if title:
                 self.words(title, "bold")

@@ -4,64 +4,29 @@
 and `numbers` is the one formatter of numbers.
 """
 
-from equipoise.quantities.numbers import (
-    PER_RPM,
-    Display,
-    angle,
-    brief,
-    change,
-    display,
-    display_rules,
-    in_unit,
-    number,
-    percent,
-    span,
-    typeset,
-)
-from equipoise.quantities.reading import (
-    NUMBER,
-    described,
-    format_exact,
-    parse,
-    pattern,
-    plain_unit,
-    rounded,
-)
-from equipoise.quantities.units import (
-    FACTORS,
-    HUGE,
-    KINDS,
-    SI,
-    TINY,
-    Dimension,
-    Kind,
-)
-
-__all__ = [
-    "FACTORS",
-    "HUGE",
-    "KINDS",
-    "NUMBER",
-    "PER_RPM",
-    "SI",
-    "TINY",
-    "Dimension",
-    "Display",
-    "Kind",
-    "angle",
-    "brief",
-    "change",
-    "described",
-    "display",
-    "display_rules",
-    "format_exact",
-    "in_unit",
-    "number",
-    "parse",
-    "pattern",
-    "percent",
-    "plain_unit",
-    "rounded",
-    "span",
-    "typeset",
-]
+from equipoise.quantities.numbers import PER_RPM as PER_RPM
+from equipoise.quantities.numbers import Display as Display
+from equipoise.quantities.numbers import angle as angle
+from equipoise.quantities.numbers import brief as brief
+from equipoise.quantities.numbers import change as change
+from equipoise.quantities.numbers import display as display
+from equipoise.quantities.numbers import display_rules as display_rules
+from equipoise.quantities.numbers import in_unit as in_unit
+from equipoise.quantities.numbers import number as number
+from equipoise.quantities.numbers import percent as percent
+from equipoise.quantities.numbers import span as span
+from equipoise.quantities.numbers import typeset as typeset
+from equipoise.quantities.reading import NUMBER as NUMBER
+from equipoise.quantities.reading import described as described
+from equipoise.quantities.reading import format_exact as format_exact
+from equipoise.quantities.reading import parse as parse
+from equipoise.quantities.reading import pattern as pattern
+from equipoise.quantities.reading import plain_unit as plain_unit
+from equipoise.quantities.reading import rounded as rounded
+from equipoise.quantities.units import FACTORS as FACTORS
+from equipoise.quantities.units import HUGE as HUGE
+from equipoise.quantities.units import KINDS as KINDS
+from equipoise.quantities.units import SI as SI
+from equipoise.quantities.units import TINY as TINY
+from equipoise.quantities.units import Dimension as Dimension
+from equipoise.quantities.units import Kind as Kind

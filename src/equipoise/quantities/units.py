@@ -186,12 +186,7 @@ KINDS: dict[Dimension, Kind] = {
         printed=("m/s", "km/h"),
         example="0.3 m/s",
     ),
-    "frequency": Kind(
-        "a frequency",
-        {"Hz": "1", "kHz": "1000"},
-        printed=("Hz",),
-        example="50 Hz",
-    ),
+    "frequency": Kind("a frequency", {"Hz": "1", "kHz": "1000"}, printed=("Hz",), example="50 Hz"),
     "time": Kind(
         "a time",
         {"s": "1", "ms": "0.001", "min": "60", "h": "3600"},
@@ -242,10 +237,7 @@ KINDS: dict[Dimension, Kind] = {
         example="3 N m s/rad",
     ),
     "power": Kind(
-        "a power",
-        {"W": "1", "mW": "0.001", "kW": "1000"},
-        printed=("W",),
-        example="40 W",
+        "a power", {"W": "1", "mW": "0.001", "kW": "1000"}, printed=("W",), example="40 W"
     ),
     "density": Kind(
         "a density",
@@ -259,10 +251,7 @@ KINDS: dict[Dimension, Kind] = {
         example="7850 kg/m^3",
     ),
     "energy": Kind(
-        "an energy",
-        {"J": "1", "mJ": "0.001", "kJ": "1000"},
-        printed=("J",),
-        example="12 J",
+        "an energy", {"J": "1", "mJ": "0.001", "kJ": "1000"}, printed=("J",), example="12 J"
     ),
     "bending stiffness": Kind(
         "a bending stiffness",

@@ -12,9 +12,10 @@ import numpy as np
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
+from equipoise.mechanism.checks import Named
 from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
-from equipoise.mechanism.motion import Motion, Named, move
+from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result

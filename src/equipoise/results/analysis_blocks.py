@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.mechanism.dynamics import JointForce, SliderForce, massless
+from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.quantities import Dimension, angle
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
@@ -54,23 +55,19 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
     for one in ones:
         found, kind = one.figures, one.dimension
         scale = max(other.figures.peak for other in ones if other.dimension == kind)
-        values = (found.mean, found.rms)
-        rows.append(
-            (
-                one.label(),
-                *(Value(value, scale, dimension=kind) for value in values),
-                largest(found, scale, kind),
-                smallest(found, scale, kind),
-                Value(found.peak_to_peak, scale, dimension=kind),
-            )
+        mean, rms, swing = (
+            Value(value, scale, dimension=kind)
+            for value in (found.mean, found.rms, found.peak_to_peak)
         )
+        ends = (end(found, scale, kind) for end in (largest, smallest))
+        rows.append((one.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(
         "On frame and drive; extremes with their crank angle, moments about ({place}) mm",
         place=place((about.real, about.imag)),
     )
-    labels = ("", say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
-    yield Table(title, tuple(map(Column, labels)), tuple(rows))
+    labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
+    yield Table.of(title, ("", *labels), rows)
     yield _by_link(analysis)
     yield _causes(analysis)
     if analysis.has_orders:
@@ -79,7 +76,7 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
 
 def _by_link(analysis: Analysis) -> Table:
     parts = analysis.forces.split.by_link("shaking_force")
-    rows = tuple(
+    rows = (
         (
             name,
             Value(figures(analysis.crank_angle, np.abs(parts[name])).peak),
@@ -87,12 +84,8 @@ def _by_link(analysis: Analysis) -> Table:
         )
         for name, share in shares(parts).items()
     )
-    columns = (
-        Column(say("link")),
-        Column(say("peak"), "force"),
-        Column(say("share of the mean square"), unit="%"),
-    )
-    return Table(say("Shaking force by link"), columns, rows)
+    peak, share = Column(say("peak"), "force"), Column(say("share of the mean square"), unit="%")
+    return Table.of(say("Shaking force by link"), (say("link"), peak, share), rows)
 
 
 def shares(parts: Mapping[str, Array]) -> dict[str, float]:
@@ -113,38 +106,39 @@ def _causes(analysis: Analysis) -> Table:
     given = {"load": forces.loads, "spring": forces.springs}
     rows: list[tuple[Cell, ...]] = []
     for cause, values in forces.split.by_cause("drive_torque").items():
-        if cause in given and not given[cause]:
-            continue
-        found = figures(analysis.crank_angle, values)
-        told = (found.mean, found.rms, found.max, found.min)
-        rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
+        if given.get(cause, True):
+            found = figures(analysis.crank_angle, values)
+            told = (found.mean, found.rms, found.max, found.min)
+            rows.append((say(CAUSES[cause]), *(Value(value, scale) for value in told)))
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"))
-    columns = (Column(""), *(Column(label, "torque") for label in labels))
-    return Table(say("Drive torque by cause"), columns, tuple(rows))
+    columns = (Column(label, "torque") for label in labels)
+    return Table.of(say("Drive torque by cause"), ("", *columns), rows)
 
 
 def orders_table(analysis: Analysis) -> Table:
     """Amplitudes of the first orders that there are."""
     ones = [one for one in analysis.outputs.ordered if one.declared.summed]
-    kinds = {one.name: one.dimension for one in ones}
-    names, signals = list(kinds), {one.name: analysis.by_order[one.name] for one in ones}
-    count = max(len(signal.amplitudes) for signal in signals.values())
-    sizes = {name: np.pad(one.sizes, (0, count - len(one.sizes))) for name, one in signals.items()}
-    tops = {name: float(np.max(size[1:], initial=0.0)) for name, size in sizes.items()}
-    scales = {
-        name: max(tops[other] for other in names if kinds[other] == kinds[name]) for name in names
-    }
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    signals = [analysis.by_order[one.name] for one in ones]
+    count = max(len(signal.amplitudes) for signal in signals)
+    sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
+    tops: dict[Dimension, float] = {}
+    for one, size in zip(ones, sizes, strict=True):
+        top = float(np.max(size[1:], initial=0.0))
+        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
+    scales = [1e3 * tops[one.dimension] for one in ones]
+    turns = analysis.motion.turns
+    per_order = abs(analysis.motion.speed) / (2 * np.pi)
+    rows = (
         (
-            f"{k / analysis.motion.turns:.4g}",
-            Value(k / analysis.motion.turns * abs(analysis.motion.speed) / (2 * np.pi)),
-            *(Value(float(sizes[name][k]), 1e3 * scales[name]) for name in names),
+            f"{k / turns:.4g}",
+            Value(k / turns * per_order),
+            *(Value(float(size[k]), scale) for size, scale in zip(sizes, scales, strict=True)),
         )
-        for k in loud(list(sizes.values()))
+        for k in loud(sizes)
     )
     columns = (Column(one.declared.say(one.item), one.dimension) for one in ones)
-    heads = (Column(say("order")), Column(say("frequency"), "frequency"), *columns)
-    return Table(say("Amplitudes by order"), heads, rows)
+    heads = (say("order"), Column(say("frequency"), "frequency"), *columns)
+    return Table.of(say("Amplitudes by order"), heads, rows)
 
 
 def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
@@ -169,12 +163,11 @@ def joint_table(analysis: Analysis) -> Table:
         ends = f"{body_named(joint.by)} → {body_named(joint.on)}"
         rows.append((named, ends, Value(found.mean), Value(found.rms), largest(found), couple))
     labels = (say("mean"), say("RMS"), say("largest"))
-    columns = (Column(""), Column(say("by → on")), *(Column(label, "force") for label in labels))
-    if any(row[-1] is not None for row in rows):
-        columns = (*columns, Column(say("moment"), "torque"))
-    else:
-        rows = [row[:-1] for row in rows]
-    return Table(say("Force in each joint; largest with its crank angle"), columns, tuple(rows))
+    columns = ["", say("by → on"), *(Column(label, "force") for label in labels)]
+    columns.append(Column(say("moment"), "torque"))
+    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    title = say("Force in each joint; largest with its crank angle")
+    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
 
 
 # -- harmonics -------------------------------------------------------------------------------------
@@ -191,12 +184,10 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
-        labels = ("A", "B", "R", say("phase"), say("RMS"))
-        dimensions: tuple[Dimension, ...] = (kind, kind, kind, "angle", kind)
-        columns = map(Column, labels, dimensions)
-        rows = tuple(_harmonics(signals[one.name].shifted(zero), orders))
-        title = one.declared.title(one.item)
-        yield Table(title, (Column(say("order")), *columns), rows)
+        columns = [say("order"), *(Column(label, kind) for label in ("A", "B", "R"))]
+        columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind)]
+        rows = _harmonics(signals[one.name].shifted(zero), orders)
+        yield Table.of(one.declared.title(one.item), columns, rows)
 
 
 def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:

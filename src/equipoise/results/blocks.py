@@ -6,7 +6,7 @@ who renders them chooses digits and signs by `equipoise.quantities`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -120,6 +120,12 @@ class Table:
     title: str
     columns: tuple[Column, ...]
     rows: tuple[tuple[Cell, ...], ...]
+
+    @classmethod
+    def of(cls, title: str, columns: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Table:
+        """From columns and rows of cells; words alone head a column of plain numbers or words."""
+        heads = (Column(one) if isinstance(one, str) else one for one in columns)
+        return cls(title, tuple(heads), tuple(map(tuple, rows)))
 
 
 @dataclass(frozen=True)

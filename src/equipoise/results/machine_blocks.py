@@ -52,7 +52,7 @@ def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
     return None if steady else crank_angle
 
 
-def span_of(values: Array, scale: float = 0.0) -> Span:
+def _span(values: Array, scale: float = 0.0) -> Span:
     """Smallest to largest of some values."""
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
@@ -68,30 +68,20 @@ def place(xy: tuple[float, ...]) -> str:
 
 def model_blocks(machine: Machine) -> Iterator[Block]:
     """Everything that a model says in numbers."""
-    yield Table(
-        say("Links; places in the axes of each link"),
-        (
-            Column(""),
-            Column(say("mass"), "mass", "g"),
-            Column(f"{say('centre of mass')}, mm"),
-            Column(say("inertia"), "inertia", "kg mm^2"),
-        ),
-        tuple(
-            (
-                name,
-                None if link.mass is None else Value(link.mass),
-                None if link.center_of_mass is None else place(link.center_of_mass),
-                None if link.inertia is None else Value(link.inertia),
-            )
-            for name, link in machine.links.items()
-        ),
-    )
+    mass, inertia = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+    rows: list[tuple[Cell, ...]] = []
+    for name, link in machine.links.items():
+        center = None if link.center_of_mass is None else place(link.center_of_mass)
+        amounts = (None if value is None else Value(value) for value in (link.mass, link.inertia))
+        rows.append((name, next(amounts), center, next(amounts)))
+    title = say("Links; places in the axes of each link")
+    yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
-    yield Table(
+    yield Table.of(
         say("Points; places in the axes of each body"),
-        (Column(say("body")), Column(f"{say('points')} (x, y), mm")),
-        tuple(
+        (say("body"), f"{say('points')} (x, y), mm"),
+        (
             (body, "; ".join(f"{point} ({place(at)})" for point, at in points.items()))
             for body, points in bodies.items()
         ),
@@ -106,22 +96,13 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
 
 def rows_table(machine: Machine) -> Table:
     """Rows with their places and phases."""
-    return Table(
+    places = (say("lateral place"), f"{say('offset')} x", f"{say('offset')} y")
+    lengths = (Column(label, "length", "mm") for label in places)
+    return Table.of(
         say("Rows; the phase is the angle by which the crank is ahead"),
+        (say("row"), *lengths, Column(say("phase"), "angle", "deg")),
         (
-            Column(say("row")),
-            Column(say("lateral place"), "length", "mm"),
-            Column(f"{say('offset')} x", "length", "mm"),
-            Column(f"{say('offset')} y", "length", "mm"),
-            Column(say("phase"), "angle", "deg"),
-        ),
-        tuple(
-            (
-                str(count),
-                Value(row.lateral),
-                *(Value(part) for part in row.offset),
-                Value(row.phase, after=1),
-            )
+            (str(count), *map(Value, (row.lateral, *row.offset)), Value(row.phase, after=1))
             for count, row in enumerate(machine.rows, 1)
         ),
     )
@@ -202,24 +183,22 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.four_bar is not None:
         yield Facts(say("Four-bar linkage"), tuple(_four_bar(analysis.four_bar)))
     rate = abs(analysis.motion.speed)
-    yield Table(
-        say("Links: angle, angular velocity and acceleration"),
-        (
-            Column(""),
-            Column(say("angle"), "angle"),
-            Column(say("velocity"), "angular speed"),
-            Column(say("acceleration"), "angular acceleration"),
-        ),
-        tuple(
-            (
-                name,
-                span_of(link.angle),
-                span_of(link.angular_velocity, rate),
-                span_of(link.angular_acceleration, rate**2),
-            )
-            for name, link in analysis.motion.links.items()
-        ),
+    columns = (
+        "",
+        Column(say("angle"), "angle"),
+        Column(say("velocity"), "angular speed"),
+        Column(say("acceleration"), "angular acceleration"),
     )
+    rows = (
+        (
+            name,
+            _span(link.angle),
+            _span(link.angular_velocity, rate),
+            _span(link.angular_acceleration, rate**2),
+        )
+        for name, link in analysis.motion.links.items()
+    )
+    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
     yield _points(analysis)
 
 
@@ -231,28 +210,24 @@ def _points(analysis: Analysis) -> Table:
             continue
         reach = float(np.max(np.abs(point.place)))
         tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
-        rows.append((name, span_of(point.x, reach), span_of(point.y, reach), *map(largest, tops)))
+        rows.append((name, _span(point.x, reach), _span(point.y, reach), *map(largest, tops)))
     columns = (
-        Column(""),
+        "",
         Column("x", "length"),
         Column("y", "length"),
         Column(say("velocity"), "speed"),
         Column(say("acceleration"), "acceleration"),
     )
     title = say("Moving points: places, largest velocity and acceleration (at crank angle)")
-    return Table(title, columns, tuple(rows))
+    return Table.of(title, columns, rows)
 
 
 def _four_bar(found: FourBar) -> Iterator[str]:
-    lengths = (found.a, found.b, found.c, found.d)
-    frame, crank, coupler, rocker = (number(1e3 * length) for length in lengths)
+    lengths = {"frame": found.a, "crank": found.b, "coupler": found.c, "rocker": found.d}
     yield f"{say(found.type)}, {say(found.grashof)}"
     yield say(
         "Frame {frame} mm, crank {crank} mm, coupler {coupler} mm, rocker {rocker} mm",
-        frame=frame,
-        crank=crank,
-        coupler=coupler,
-        rocker=rocker,
+        **{link: number(1e3 * length) for link, length in lengths.items()},
     )
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(

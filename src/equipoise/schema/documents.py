@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.keys import Frozen
 from equipoise.mechanism.model import Machine
-from equipoise.schema.files import write_beside
-from equipoise.schema.models import Folder, loads_linkage, loads_tool
-from equipoise.schema.opening import Opened, kind_of_text, opened
-from equipoise.schema.saving import dumped, save_model
+from equipoise.schema.files import write
+from equipoise.schema.models import dumped, loads_linkage, loads_tool, save_model
+from equipoise.schema.opening import Folder, Opened, kind_of_text, opened
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -57,7 +56,7 @@ def _loaded(file: Opened) -> Machine | Tool | Study:
 
         return study_in(file)
     read = loads_tool if kind == "tool" else loads_linkage
-    return read(file.text, file.source, file.folder)
+    return read(*file)
 
 
 def dumps(model: Machine | Tool | Study) -> str:
@@ -95,4 +94,4 @@ def save(model: Machine | Tool | Study, path: str | os.PathLike[str]) -> None:
     if isinstance(model, Frozen):
         save_model(model, Path(path))
     else:
-        write_beside(Path(path), dumps(model))
+        write(Path(path), dumps(model))

@@ -1,12 +1,20 @@
-"""Reading and writing whole text files, with every mishap as one sentence."""
+"""Reading and writing whole files, with every mishap as one sentence; results as JSON and CSV."""
 
 from __future__ import annotations
 
+import csv
+import io
+import json
 import os
 import stat
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+
+if TYPE_CHECKING:
+    from equipoise.results.analysis import Analysis
 
 LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
@@ -61,30 +69,22 @@ def _bytes(path: str | os.PathLike[str], largest: int) -> bytes:
     return data
 
 
-def make_folder(path: str | os.PathLike[str]) -> None:
-    """Make a folder, with those above it, where it is not there."""
-    try:
-        os.makedirs(path, exist_ok=True)
-    except FileExistsError as error:
-        raise FileError("this is a file; give the name of a folder") from error
-    except (OSError, ValueError) as error:
-        raise FileError(
-            f"the folder cannot be made ({reason(error)}); choose another place or name"
-        ) from error
+def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = True) -> None:
+    """Write a file, text as UTF-8; it is afterwards the old or the new one, never half of it.
 
-
-def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write text in UTF-8; see `write_bytes`."""
-    write_bytes(path, text.encode("utf-8"))
-
-
-def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
-    """Write a file such that it is afterwards either the old or the new one, never half of it."""
+    Raises
+    ------
+    UsageError : it cannot be written, or is there already and `replace` is false.
+    """
+    shown = printable(path) or "''"
+    if not replace and os.path.lexists(path):
+        raise UsageError(f"{shown}: is there already; choose another name")
+    data = text if isinstance(text, bytes) else text.encode("utf-8")
     try:
         target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"
-            raise FileError(f"this is {kind}; give the name of a file")
+            raise UsageError(f"{shown}: this is {kind}; give the name of a file")
         temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
         try:
             _write_synced(temporary, data, like=target)
@@ -92,9 +92,8 @@ def write_bytes(path: str | os.PathLike[str], data: bytes) -> None:
         finally:
             temporary.unlink(missing_ok=True)
     except (OSError, ValueError) as error:
-        raise FileError(
-            f"the file cannot be written ({reason(error)}); choose another place or name"
-        ) from error
+        what = f"the file cannot be written ({reason(error)})"
+        raise UsageError(f"{shown}: {what}; choose another place or name") from error
 
 
 def _write_synced(path: Path, data: bytes, like: Path) -> None:
@@ -104,6 +103,25 @@ def _write_synced(path: Path, data: bytes, like: Path) -> None:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
+
+
+def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> None:
+    """Write files into a folder, which is made where it is not there; each whole or not at all.
+
+    Raises
+    ------
+    UsageError : they cannot be written.
+    """
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except FileExistsError as error:
+        shown = printable(folder)
+        raise UsageError(f"{shown}: this is a file; give the name of a folder") from error
+    except (OSError, ValueError) as error:
+        what = f"the folder cannot be made ({reason(error)})"
+        raise UsageError(f"{printable(folder)}: {what}; choose another place or name") from error
+    for name, data in files.items():
+        write(Path(folder) / name, data)
 
 
 def printable(path: str | os.PathLike[str]) -> str:
@@ -120,9 +138,30 @@ def reason(error: Exception) -> str:
     return str(error).lower()
 
 
-def write_beside(path: Path, text: str) -> None:
-    """Write a file; a `UsageError` says why it cannot be written."""
-    try:
-        write_text(path, text)
-    except FileError as problem:
-        raise UsageError(f"{printable(path)}: {problem}") from problem
+# -- results ---------------------------------------------------------------------------------------
+
+
+def json_text(values: dict[str, Any]) -> str:
+    """Nested values with NumPy arrays as one JSON object."""
+    return json.dumps(values, default=_plain, allow_nan=False)
+
+
+def _plain(value: Any) -> Any:
+    if hasattr(value, "tolist"):  # an array of NumPy, or one of its numbers
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} has no place in the output")
+
+
+def to_csv(analysis: Analysis) -> str:
+    """Every array against crank angle, one row a crank angle; units stand in the header."""
+    told = [(one.name, one.unit, one.values) for one in analysis.outputs.arrays]
+    return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
+
+
+def csv_text(table: Sequence[tuple[str, str, Any]]) -> str:
+    """Columns, as name, unit and values (N,), as the text of a CSV file."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow([f"{name} [{unit}]" if unit else name for name, unit, _ in table])
+    writer.writerows(zip(*(values.tolist() for _, _, values in table), strict=True))
+    return text.getvalue()

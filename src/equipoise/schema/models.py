@@ -1,63 +1,56 @@
-"""Reading the files of linkages and tools, with the tables and linkages that lie beside them."""
+"""Files of linkages and tools, with the tables and linkages that lie in files beside them."""
 
 from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from functools import partial
+from dataclasses import dataclass
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.keys import Frozen
 from equipoise.mechanism.model import Machine
-from equipoise.quantities import parse
-from equipoise.schema.files import printable
-from equipoise.schema.numbers import parse_share
-from equipoise.schema.objects import Context
-from equipoise.schema.opening import Opened, bundled, content_of, opened, opened_example
-from equipoise.schema.reading import read_table
+from equipoise.quantities import format_exact, parse
+from equipoise.schema.files import printable, write
+from equipoise.schema.numbers import format_share, parse_share
+from equipoise.schema.opening import (
+    Folder,
+    Opened,
+    bundled,
+    content_of,
+    in_file,
+    opened,
+    opened_example,
+)
+from equipoise.schema.reading import Context, read_table
+from equipoise.schema.writing import Writer, beside, toml_text
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
 
-Folder = str | os.PathLike[str] | None
-
 
 def load_linkage(path_or_name: str | os.PathLike[str]) -> Machine:
     """Read the file of a linkage and of nothing else, or a bundled example; as `load`."""
-    file = opened(path_or_name)
-    return loads_linkage(file.text, file.source, file.folder)
+    return loads_linkage(*opened(path_or_name))
 
 
 def loads_linkage(text: str, source: str = "<text>", folder: Folder = None) -> Machine:
     """Read the text of the file of a linkage and of nothing else; as `loads`."""
-    machine: Machine = _in_file(
-        source, lambda: machine_of(content_of(text, "linkage"), _beside(folder))
-    )
-    return machine
+    with in_file(source):
+        return machine_of(content_of(text, "linkage"), Beside(folder))
 
 
 def load_tool(path_or_name: str | os.PathLike[str]) -> Tool:
     """Read the file of a tool and of nothing else, or a bundled example; as `load`."""
-    file = opened(path_or_name)
-    return loads_tool(file.text, file.source, file.folder)
+    return loads_tool(*opened(path_or_name))
 
 
 def loads_tool(text: str, source: str = "<text>", folder: Folder = None) -> Tool:
     """Read the text of a tool's file and of nothing else; as `loads`."""
-    tool: Tool = _in_file(source, lambda: tool_of(content_of(text, "tool"), _beside(folder)))
-    return tool
-
-
-def _beside(folder: Folder) -> Beside:
-    return Beside(None if folder is None else Path(folder))
-
-
-def _in_file(source: str, read: Callable[[], Any]) -> Any:
-    try:
-        return read()
-    except ModelError as error:
-        raise ModelError(printable(error.where), error.what, source) from error
+    with in_file(source):
+        return tool_of(content_of(text, "tool"), Beside(folder))
 
 
 # -- content ---------------------------------------------------------------------------------------
@@ -117,17 +110,18 @@ class Beside:
     folder : None where the model did not come from a file; then every table is refused.
     """
 
-    def __init__(self, folder: Path | None) -> None:
-        self.folder = folder
+    def __init__(self, folder: Folder) -> None:
+        self.folder = None if folder is None else Path(folder)
 
     def read(self, sort: str, file: str) -> Any:
         """What lies in a file, of a sort such as ``load``."""
         if sort == "linkage":
             return self.linkage(file)
-        from equipoise.schema import tables
+        if self.folder is None:
+            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
+        from equipoise.schema.tables import read_beside
 
-        read: Callable[[str, Path], Any] = getattr(tables, f"read_{sort}")
-        return read(file, self._folder(file))
+        return read_beside(sort, file, self.folder)
 
     def linkage(self, file: str) -> Machine:
         """The linkage of another model file, or a bundled one; it has masses and turns fully."""
@@ -162,7 +156,125 @@ class Beside:
         except ModelError as error:
             raise ModelError("", f"{printable(file)}: {error.what}") from error
 
-    def _folder(self, file: str) -> Path:
-        if self.folder is None:
-            raise ModelError("", f"got {printable(file)!r}; a table can only be read beside a file")
-        return self.folder
+
+# -- writing ---------------------------------------------------------------------------------------
+
+
+def text_of(model: Machine | Tool, names: Mapping[str, str]) -> str:
+    """The text of a file; `names` are those of other files, by the key that names each.
+
+    Raises
+    ------
+    ModelError : a tool has what no file can tell.
+    """
+    makers: dict[type[Frozen], Callable[[Any], dict[str, Any]]] = {}
+    if isinstance(model, Machine) and model.balance is not None:
+        from equipoise.mechanism.balance import Limit
+
+        makers[Limit] = partial(_limit_table, model)
+    content = Writer(names, makers).content(type(model), model)
+    return toml_text(type(model), content)
+
+
+def _limit_table(machine: Machine, limit: Any) -> dict[str, Any]:
+    from equipoise.mechanism.objectives import quantity_of
+
+    if limit.ratio is not None:
+        at_most = format_share(limit.ratio)
+    else:
+        quantity = quantity_of(limit.objective, machine)
+        assert quantity is not None
+        at_most = format_exact(limit.at_most, quantity)
+    return {"objective": limit.objective, "at_most": at_most}
+
+
+def dumped(model: Machine | Tool) -> str:
+    """The text of a file that names those which its model came from.
+
+    Raises
+    ------
+    ModelError : something has no file name, or a section has what no file can tell.
+    """
+    parts = parts_of(model)
+    noun = "machine" if isinstance(model, Machine) else "tool"
+    for part in parts:
+        if not part.file:
+            table = "the table has" if noun == "machine" else "has"
+            raise ModelError(part.where, f"{table} no file; save the {noun} instead")
+        if not part.kept and part.sort == "linkage" and part.file in bundled():
+            raise ModelError(
+                part.where,
+                f"is not that of the example {part.file!r} any more; save the tool instead",
+            )
+    return text_of(model, {part.where: part.file for part in parts})
+
+
+def save_model(model: Machine | Tool, path: Path) -> None:
+    """Write a file and those beside it, the model file last; errors as `text_of`."""
+    parts = parts_of(model)
+    text = text_of(model, {part.where: part.name_beside(path) for part in parts})
+    for part, file in _written(parts, path):
+        if isinstance(part.value, Machine):
+            save_model(part.value, file)
+        else:
+            from equipoise.schema.tables import format_table
+
+            write(file, format_table(part.value))
+    write(path, text)
+
+
+def files_of(model: Machine | Tool, path: str | os.PathLike[str]) -> list[Path]:
+    """Every file that `save` would write, the model file first."""
+    found = [Path(path)]
+    for part, file in _written(parts_of(model), Path(path)):
+        found += files_of(part.value, file) if isinstance(part.value, Machine) else [file]
+    return found
+
+
+@dataclass(frozen=True)
+class Part:
+    """A table or linkage that has a file of its own.
+
+    where : key that names the file.
+    sort : ``load``, ``soil``, ``motor``, ``impedance`` or ``linkage``.
+    file : name of the one that it came from.
+    number : in the name of a new one; 0 for none.
+    """
+
+    where: str
+    sort: str
+    value: Any
+    file: str
+    number: int = 0
+
+    @cached_property
+    def kept(self) -> str:
+        """Name of the bundled example that it is, or nothing."""
+        if self.sort != "linkage" or self.file not in bundled():
+            return ""
+        return self.file if loads_linkage(*opened_example(self.file)) == self.value else ""
+
+    def name_beside(self, path: Path) -> str:
+        """Name of its file for a model that is saved at a path."""
+        if self.kept and not os.path.lexists(path.with_name(self.kept)):
+            return self.kept
+        suffix = "toml" if self.sort == "linkage" else "csv"
+        number = f"-{self.number}" if self.number else ""
+        return f"{path.stem}.{self.sort}{number}.{suffix}"
+
+
+def parts_of(model: Machine | Tool) -> list[Part]:
+    """Tables and linkages of a model that have files of their own."""
+    parts: list[Part] = []
+    for where, sort, value, file in beside(type(model), model):
+        number = len(parts) + 1
+        if sort in {"load", "linkage"}:  # numbered as in the file
+            number = int(where[where.index("[") + 1 : where.index("]")])
+        parts.append(Part(where, sort, value, file, 0 if sort in {"soil", "motor"} else number))
+    return parts
+
+
+def _written(parts: list[Part], path: Path) -> list[tuple[Part, Path]]:
+    """The parts that are written beside a model, each with its path."""
+    named = ((part, part.name_beside(path)) for part in parts)
+    return [(part, path.with_name(name)) for part, name in named if name != part.kept]

@@ -1,4 +1,4 @@
-"""Shares of a value before, such as ``"80 %"``."""
+"""Numbers of a file as they are written: quantities, shares such as ``"80 %"``, and points."""
 
 from __future__ import annotations
 
@@ -7,14 +7,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal, localcontext
 from functools import cached_property
-from math import atan2, hypot
+from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
 from equipoise.errors import UsageError
-from equipoise.keys import PLANES
-from equipoise.quantities import HUGE, KINDS, NUMBER, TINY, Dimension, parse, plain_unit
+from equipoise.keys import PLANES, Frozen, declared, key
+from equipoise.quantities import (
+    HUGE,
+    KINDS,
+    NUMBER,
+    TINY,
+    Dimension,
+    format_exact,
+    parse,
+    plain_unit,
+    rounded,
+)
 from equipoise.quantities.reading import too_far
-from equipoise.schema.places import from_polar
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60
@@ -48,6 +57,53 @@ def format_share(share: float) -> str:
         percent = (Decimal(repr(share)) * 100).normalize()
     return f"{percent:f} %" if -5 <= percent.adjusted() < 9 else f"{percent} %".lower()
 
+
+# -- points in the plane ---------------------------------------------------------------------------
+
+
+@declared
+class Polar(Frozen):
+    """A point by its distance and direction from the origin."""
+
+    distance: float = key("length", "from the origin", example="88 mm")
+    direction: float = key("angle", "from the x axis, positive counterclockwise", example="-83 deg")
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> tuple[float, float]:
+        return from_polar(given["distance"], given["direction"])
+
+
+def from_polar(distance: float, direction: float) -> tuple[float, float]:
+    """Return x and y (m) of a point by its distance (m) and direction (rad) from the origin."""
+    return distance * _clean(cos(direction)), distance * _clean(sin(direction))
+
+
+def _clean(ratio: float) -> float:
+    # The cosine of 90 degrees is 6e-17 in floats; in a file it means 0.
+    return 0.0 if abs(ratio) < 4e-16 else ratio
+
+
+def written_point(point: tuple[float, float]) -> list[str] | dict[str, str]:
+    """Write a point such that reading it gives exactly the same floats, in the shorter form."""
+    components = [format_exact(component, "length") for component in point]
+    if max(map(len, components)) < 20:
+        return components
+    distance = rounded(hypot(*point), "mm", 9)
+    for turn in (0.0, 2 * pi):
+        direction = rounded(atan2(point[1], point[0]) + turn, "deg", 9)
+        if _reads_as(point, distance, direction):
+            return {"distance": distance, "direction": direction}
+    return components
+
+
+def _reads_as(point: tuple[float, float], distance: str, direction: str) -> bool:
+    try:
+        return from_polar(parse(distance, "length"), parse(direction, "angle")) == point
+    except UsageError:  # such as 1e-40 deg, where one component is tiny beside the other
+        return False
+
+
+# -- numbers that can be others --------------------------------------------------------------------
 
 OF_UNIT: dict[str, Dimension] = {
     unit: dimension for dimension, kind in KINDS.items() for unit in kind.units

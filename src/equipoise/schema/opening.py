@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import re
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys import SCHEMA_VERSION, Frozen
@@ -37,13 +37,24 @@ OTHERS: dict[FileKind, str] = {
 _ENDLESS_KEY = re.compile(r"""(?<![\w-])(?:["']?[\w-]++["']?[ \t]*+\.[ \t]*+){50}""")
 
 
-@dataclass(frozen=True)
-class Opened:
+Folder = str | os.PathLike[str] | None
+
+
+class Opened(NamedTuple):
     """The text of a file, its name for errors, and the folder where what it names is."""
 
     text: str
     source: str
     folder: Path | None
+
+
+@contextmanager
+def in_file(source: str) -> Iterator[None]:
+    """Name a file in what is wrong in it."""
+    try:
+        yield
+    except ModelError as error:
+        raise ModelError(printable(error.where), error.what, source) from error
 
 
 def opened(path_or_name: str | os.PathLike[str]) -> Opened:

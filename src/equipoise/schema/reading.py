@@ -7,45 +7,93 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import re
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from json import dumps as quoted
 from math import isfinite
 from typing import Any
 
+from equipoise import keys
 from equipoise.errors import ModelError, UsageError
-from equipoise.keys import (
-    PLANES,
-    Anything,
-    Direction,
-    File,
-    Flag,
-    Frozen,
-    Key,
-    Kind,
-    Listing,
-    Named,
-    Number,
-    OneOr,
-    Planes,
-    Point,
-    Quantity,
-    Table,
-    Tables,
-    Text,
-    Told,
-    Whole,
-    all_keys,
-    choice,
-    keys_of,
-)
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import KINDS, parse
-from equipoise.schema.objects import WRONG, Context, NamedFile, Values, made
-from equipoise.schema.places import Place, Polar, written_place
+from equipoise.quantities import KINDS, described, parse
+from equipoise.schema.numbers import Polar
+
+Place = tuple[str | int, ...]
+"""Keys, and numbers in lists from 0."""
+LONGEST_KEY = 60
+
+
+def written_key(name: str) -> str:
+    """Return a key as it stands in TOML, cut where it is endless."""
+    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
+
+
+def written_place(place: Iterable[str | int]) -> str:
+    """Dotted path with numbers from 1, as the machine's own checks write it."""
+    text = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{written_key(s)}" for s in place)
+    return text.removeprefix(".")
+
+
+def within(place: Place, error: ModelError) -> ModelError:
+    """The same error, whose place is inside of another."""
+    outer = written_place(place)
+    point = "." if outer and error.where and error.where[0] != "[" else ""
+    return ModelError(f"{outer}{point}{error.where}", error.what)
+
+
+WRONG = object()
+"""Instead of a value that could not be read."""
+
+
+@dataclass
+class Context:
+    """What reading needs besides the content.
+
+    beside : reads what lies in a file of its own, by its sort and the file's name.
+    makers : make the objects of some classes otherwise than by `Frozen.from_table`.
+    problems : what has been found wrong, with its place.
+    """
+
+    beside: Callable[[str, str], Any] | None = None
+    makers: Mapping[type[keys.Frozen], Callable[[dict[str, Any]], Any]] = field(
+        default_factory=dict
+    )
+    problems: list[tuple[Place, str]] = field(default_factory=list)
+
+    def wrong(self, place: Place, given: Any, right: str) -> Any:
+        """Note that a value is none that can be read."""
+        self.problems.append((place, f"got {described(given)}; {right}"))
+        return WRONG
+
+    def say(self, place: Place, sentence: str) -> Any:
+        self.problems.append((place, sentence))
+        return WRONG
+
+
+@dataclass(frozen=True)
+class Values:
+    """Values of a table, of which an object is to be made."""
+
+    of: type[keys.Frozen]
+    place: Place
+    given: dict[str, Any]
+
+
+@dataclass(frozen=True)
+class NamedFile:
+    """What lies in a file that is named at a place."""
+
+    sort: str
+    place: Place
+    file: str
 
 
 def read_table(
-    of: type[Frozen], content: Mapping[str, Any], context: Context, place: Place = ()
+    of: type[keys.Frozen], content: Mapping[str, Any], context: Context, place: Place = ()
 ) -> Any:
     """The object of a whole file, or of the table of one at a place.
 
@@ -53,7 +101,7 @@ def read_table(
     ------
     ModelError : the first thing that is wrong with it, with the number of the others.
     """
-    found = _table(Table(of), content, place, context)
+    found = _table(keys.Table(of), content, place, context)
     if context.problems:
         (where, what), *others = context.problems
         more = f" (and {len(others)} more)" if others else ""
@@ -61,11 +109,11 @@ def read_table(
     return made(found, context)
 
 
-def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
+def _table(kind: keys.Table, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, "give a table")
     of = kind.type
-    known = all_keys(of)
+    known = keys.all_keys(of)
     for name in given:
         if name not in known:
             return context.say((*place, name), unknown(name, known, "key"))
@@ -76,20 +124,20 @@ def _table(kind: Table, given: Any, place: Place, context: Context) -> Any:
 
 
 def _values(
-    of: type[Frozen], given: Mapping[str, Any], place: Place, context: Context
+    of: type[keys.Frozen], given: Mapping[str, Any], place: Place, context: Context
 ) -> dict[str, Any]:
     """What is given of the keys of a class, by field."""
     values: dict[str, Any] = {}
-    for name, one in keys_of(of).items():
+    for name, one in keys.keys_of(of).items():
         kind, at = one.kind, one.field or name
-        if isinstance(kind, Table) and kind.flat:
+        if isinstance(kind, keys.Table) and kind.flat:
             values[at] = Values(kind.type, place, _values(kind.type, given, place, context))
         elif name in given:
             values[at] = READERS[type(kind)](kind, given[name], (*place, name), context)
     return values
 
 
-def _example(one: Key) -> str:
+def _example(one: keys.Key) -> str:
     """Return a key and its value as they would stand in the file."""
     name, example = one.name, one.example
     if example is None:
@@ -100,7 +148,7 @@ def _example(one: Key) -> str:
     return f"{name} = {quoted(example)}"
 
 
-def _tables(kind: Tables, given: Any, place: Place, context: Context) -> Any:
+def _tables(kind: keys.Tables, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, list):
         return context.wrong(
             place, given, f"write each as a table under [[{written_place(place)}]]"
@@ -108,31 +156,58 @@ def _tables(kind: Tables, given: Any, place: Place, context: Context) -> Any:
     return tuple(_table(kind.item, one, (*place, n), context) for n, one in enumerate(given))
 
 
-def _named(kind: Named, given: Any, place: Place, context: Context) -> Any:
+def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, dict):
         return context.wrong(place, given, "give a table")
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
 
 
+def made(value: Any, context: Context) -> Any:
+    """The objects of what has been read."""
+    if isinstance(value, dict):
+        return {name: made(item, context) for name, item in value.items()}
+    if isinstance(value, tuple) and value and isinstance(value[0], Values | NamedFile):
+        return tuple(made(item, context) for item in value)
+    if isinstance(value, Values):
+        make = partial(context.makers.get(value.of, value.of.from_table), _given(value, context))
+    elif isinstance(value, NamedFile) and context.beside is not None:
+        make = partial(context.beside, value.sort, value.file)
+    else:
+        return value
+    try:
+        return make()
+    except ModelError as error:
+        raise within(value.place, error) from error
+
+
+def _given(found: Values, context: Context) -> dict[str, Any]:
+    """What an object is made of, by its fields."""
+    given = {name: made(value, context) for name, value in found.given.items()}
+    for name, one in keys.keys_of(found.of).items():
+        if isinstance(one.kind, keys.File) and one.kind.named and name in given:
+            given[one.kind.named] = found.given[name].file
+    return given
+
+
 # -- single values ---------------------------------------------------------------------------------
 
 
-def _quantity(kind: Quantity, given: Any, place: Place, context: Context) -> Any:
+def _quantity(kind: keys.Quantity, given: Any, place: Place, context: Context) -> Any:
     try:
         return parse(given, kind.dimension)
     except UsageError as error:
         return context.say(place, str(error))
 
 
-def _text(kind: Text, given: Any, place: Place, context: Context) -> Any:
+def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
     if kind.names:
-        right = f"give {choice(kind.names)}"
+        right = f"give {keys.choice(kind.names)}"
         return given if given in kind.names else context.wrong(place, given, right)
     return given if isinstance(given, str) else context.wrong(place, given, "give text in quotes")
 
 
-def _number(kind: Number, given: Any, place: Place, context: Context) -> Any:
+def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, "give a plain number without unit and quotes")
     try:
@@ -142,10 +217,10 @@ def _number(kind: Number, given: Any, place: Place, context: Context) -> Any:
     return value if isfinite(value) else context.wrong(place, given, "give a finite number")
 
 
-def _whole(kind: Whole, given: Any, place: Place, context: Context) -> Any:
+def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
     whole = isinstance(given, int) and not isinstance(given, bool)
     if kind.names:
-        right = f"give {choice(kind.names)}"
+        right = f"give {keys.choice(kind.names)}"
         return given if whole and given in kind.names else context.wrong(place, given, right)
     if not whole:
         return context.wrong(place, given, "give a whole number without quotes")
@@ -154,21 +229,7 @@ def _whole(kind: Whole, given: Any, place: Place, context: Context) -> Any:
     return given if given <= kind.most else context.wrong(place, given, f"give {kind.most} or less")
 
 
-def _flag(kind: Flag, given: Any, place: Place, context: Context) -> Any:
-    if isinstance(given, bool):
-        return given
-    return context.wrong(place, given, "give true or false without quotes")
-
-
-def _anything(kind: Anything, given: Any, place: Place, context: Context) -> Any:
-    return given
-
-
-def _told(kind: Told, given: Any, place: Place, context: Context) -> Any:
-    return given if isinstance(given, str) else context.wrong(place, given, kind.right)
-
-
-def _file(kind: File, given: Any, place: Place, context: Context) -> Any:
+def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, str):
         return context.wrong(place, given, "give text in quotes")
     return NamedFile(kind.sort, place, given)
@@ -177,7 +238,7 @@ def _file(kind: File, given: Any, place: Place, context: Context) -> Any:
 # -- several values --------------------------------------------------------------------------------
 
 
-def _listing(kind: Listing, given: Any, place: Place, context: Context) -> Any:
+def _listing(kind: keys.Listing, given: Any, place: Place, context: Context) -> Any:
     if kind.right:
         counts = kind.sizes or range(1, len(given) + 1) if isinstance(given, list) else ()
         if not isinstance(given, list) or len(given) not in counts:
@@ -193,16 +254,16 @@ def _listing(kind: Listing, given: Any, place: Place, context: Context) -> Any:
     return WRONG
 
 
-_LENGTH = Quantity(dimension="length")
-_PAIR = Listing(_LENGTH, (2,))
+_LENGTH = keys.Quantity(dimension="length")
+_PAIR = keys.Listing(_LENGTH, (2,))
 _PLACE = '["0 mm", "300 mm"], or with z ["0 mm", "300 mm", "0 mm"]'
 _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg" }'
 
 
-def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
+def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, dict):
         count = len(context.problems)
-        found = _table(Table(Polar), given, place, context)
+        found = _table(keys.Table(Polar), given, place, context)
         if len(context.problems) > count:
             return WRONG
         x, y = made(found, context)
@@ -211,70 +272,76 @@ def _point(kind: Point, given: Any, place: Place, context: Context) -> Any:
         if not isinstance(given, list):
             return context.wrong(place, given, _POINT)
         return _listing(_PAIR, given, place, context)
-    values = _listing(Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
+    values = _listing(keys.Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values
 
 
 _VECTOR = 'an angle such as "90 deg", or three plain numbers such as [0, 1, 0]'
 
 
-def _direction(kind: Direction, given: Any, place: Place, context: Context) -> Any:
+def _direction(kind: keys.Direction, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, list):
-        return _listing(Listing(Number(), (3,), _VECTOR), given, place, context)
+        return _listing(keys.Listing(keys.Number(), (3,), _VECTOR), given, place, context)
     if not isinstance(given, str):
         return context.wrong(place, given, f"give {_VECTOR}")
-    return _quantity(Quantity(dimension="angle"), given, place, context)
+    return _quantity(keys.Quantity(dimension="angle"), given, place, context)
 
 
-def _one_or(kind: OneOr, given: Any, place: Place, context: Context) -> Any:
+def _one_or(kind: keys.OneOr, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, list):
-        return _listing(Listing(kind.item, (kind.size,), kind.right), given, place, context)
+        return _listing(keys.Listing(kind.item, (kind.size,), kind.right), given, place, context)
     plain = isinstance(given, int | float) and not isinstance(given, bool)
-    if not isinstance(kind.item, Quantity) and not plain:
+    if not isinstance(kind.item, keys.Quantity) and not plain:
         return context.wrong(place, given, f"give {kind.right}")
     value = READERS[type(kind.item)](kind.item, given, place, context)
     return value if value is WRONG else (value,) * (kind.size if kind.repeat else 1)
 
 
-def _planes(kind: Planes, given: Any, place: Place, context: Context) -> Any:
+def _planes(kind: keys.Planes, given: Any, place: Place, context: Context) -> Any:
     """One value, or two by the names of the planes."""
     read, item = READERS[type(kind.item)], kind.item
     example = example_of(item)
     if isinstance(given, list):
-        table = ", ".join(f'{plane} = "{example}"' for plane in PLANES)
+        table = ", ".join(f'{plane} = "{example}"' for plane in keys.PLANES)
         return context.wrong(place, given, f'give "{example}", or {{ {table} }}')
     if not isinstance(given, dict):
         value = read(item, given, place, context)
-        return value if value is WRONG else (value,) * (2 if isinstance(item, Quantity) else 1)
+        return value if value is WRONG else (value,) * (2 if isinstance(item, keys.Quantity) else 1)
     for name in given:
-        if name not in PLANES:
-            return context.say((*place, name), unknown(name, PLANES, "plane"))
-    for plane in PLANES:
+        if name not in keys.PLANES:
+            return context.say((*place, name), unknown(name, keys.PLANES, "plane"))
+    for plane in keys.PLANES:
         if plane not in given:
             return context.say((*place, plane), f'missing; add {plane} = "{example}"')
-    return tuple(read(item, given[plane], (*place, plane), context) for plane in PLANES)
+    return tuple(read(item, given[plane], (*place, plane), context) for plane in keys.PLANES)
 
 
-def example_of(kind: Kind) -> str:
+def example_of(kind: keys.Kind) -> str:
     """Something of a kind as it would stand in a file."""
-    return KINDS[kind.dimension].example if isinstance(kind, Quantity) else "hand.csv"
+    return KINDS[kind.dimension].example if isinstance(kind, keys.Quantity) else "hand.csv"
 
 
-READERS: dict[type[Kind], Callable[[Any, Any, Place, Context], Any]] = {
-    Anything: _anything,
-    Direction: _direction,
-    File: _file,
-    Flag: _flag,
-    Listing: _listing,
-    Named: _named,
-    Number: _number,
-    OneOr: _one_or,
-    Planes: _planes,
-    Point: _point,
-    Quantity: _quantity,
-    Table: _table,
-    Tables: _tables,
-    Text: _text,
-    Told: _told,
-    Whole: _whole,
+READERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Context], Any]] = {
+    keys.Anything: lambda kind, given, place, context: given,
+    keys.Direction: _direction,
+    keys.File: _file,
+    keys.Flag: lambda kind, given, place, context: (
+        given
+        if isinstance(given, bool)
+        else context.wrong(place, given, "give true or false without quotes")
+    ),
+    keys.Listing: _listing,
+    keys.Named: _named,
+    keys.Number: _number,
+    keys.OneOr: _one_or,
+    keys.Planes: _planes,
+    keys.Point: _point,
+    keys.Quantity: _quantity,
+    keys.Table: _table,
+    keys.Tables: _tables,
+    keys.Text: _text,
+    keys.Told: lambda kind, given, place, context: (
+        given if isinstance(given, str) else context.wrong(place, given, kind.right)
+    ),
+    keys.Whole: _whole,
 }

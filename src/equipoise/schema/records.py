@@ -1,4 +1,4 @@
-"""Recorded decays: CSV files of time and displacement, or angle, with units in the header.
+"""Recordings in CSV files with units in the header: free decays, accelerations, a day's tasks.
 
 ::
 
@@ -18,16 +18,31 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.exposure.daily import Task
-from equipoise.exposure.signal import UNEVEN_STEPS, uneven
+from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
-from equipoise.schema import csv_columns
-from equipoise.schema.csv_columns import Forms, arrays_of
-from equipoise.schema.files import FileError, printable, read_text
+from equipoise.schema.files import read_text
+from equipoise.schema.tables import (
+    Forms,
+    arrays_of,
+    check_width,
+    header_of,
+    in_table,
+    rows_of,
+    shortened,
+    told_forms,
+    value_of,
+    wrong,
+)
 
-LARGEST = 100_000_000
-"""Bytes: some millions of rows."""
+Array = np.ndarray[Any, Any]
+
+LARGEST, LARGEST_SIGNAL = 100_000_000, 300_000_000
+"""Bytes of a decay, and of accelerations: some millions of rows."""
 _RECORD: Forms = (("time", "displacement"), ("time", "angle"))
+_TASKS: Forms = (("acceleration", "duration"),)
+_SIGNAL: Forms = (("time", *AXES),)
+_SPECTRUM: Forms = (("frequency", *AXES),)
 
 
 def read_record(path: str | os.PathLike[str]) -> Record:
@@ -38,15 +53,8 @@ def read_record(path: str | os.PathLike[str]) -> Record:
     ModelError
         One sentence: file, line and column, what was given and what would be right.
     """
-    shown = printable(path) or "''"
-    try:
+    with in_table(path):
         return parse_record(read_text(path, LARGEST))
-    except FileError as problem:
-        raise ModelError("", f"{shown}: {problem}") from problem
-    except UsageError as error:
-        raise ModelError("", f"{shown}: {error}") from error
-    except ModelError as error:
-        raise ModelError("", f"{shown}, {error.what}") from error
 
 
 def parse_record(text: str) -> Record:
@@ -55,15 +63,6 @@ def parse_record(text: str) -> Record:
     time = columns.pop("time")
     ((name, displacement),) = columns.items()
     return Record(time, displacement, "angle" if name == "angle" else "length")
-
-
-Array = np.ndarray[Any, Any]
-
-LARGEST_SIGNAL = 300_000_000
-"""Bytes: some millions of rows of three axes."""
-_TASKS: csv_columns.Forms = (("acceleration", "duration"),)
-_SIGNAL: csv_columns.Forms = (("time", *AXES),)
-_SPECTRUM: csv_columns.Forms = (("frequency", *AXES),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,25 +82,14 @@ class Accelerations:
 
 
 def read_accelerations(path: str | os.PathLike[str]) -> Accelerations | tuple[Task, ...]:
-    """Read a signal, a spectrum or the tasks of a day from a CSV file.
-
-    Raises
-    ------
-    ModelError
-        One sentence: file, line and column, what was given and what would be right.
-    """
-    shown = printable(path) or "''"
-    try:
+    """Read a signal, a spectrum or the tasks of a day from a CSV file; errors as `read_record`."""
+    with in_table(path):
         return parse_accelerations(read_text(path, LARGEST_SIGNAL))
-    except FileError as problem:
-        raise ModelError("", f"{shown}: {problem}") from problem
-    except ModelError as error:
-        raise ModelError("", f"{shown}, {error.what}") from error
 
 
 def parse_accelerations(text: str) -> Accelerations | tuple[Task, ...]:
     """Read the text of such a file; errors begin with the number of the line."""
-    number, header = next(csv_columns.rows_of(text), (1, []))
+    number, header = next(rows_of(text), (1, []))
     names = [cell.split("[")[0].strip() for cell in header]
     if "time" in names:
         return _signal(text, names)
@@ -109,11 +97,9 @@ def parse_accelerations(text: str) -> Accelerations | tuple[Task, ...]:
         return _spectrum(text, names)
     if {"task", "acceleration", "duration"} & set(names):
         return _tasks(text)
-    given = f"the column {csv_columns.shortened(header[0])}" if header else "no column"
-    right = csv_columns.told_forms((*_SIGNAL, *_SPECTRUM, *_TASKS)).replace(
-        " or acc", " or task,acc"
-    )
-    raise ModelError("", f"line {number}: got {given}; {right}")
+    given = f"the column {shortened(header[0])}" if header else "no column"
+    right = told_forms((*_SIGNAL, *_SPECTRUM, *_TASKS)).replace(" or acc", " or task,acc")
+    raise wrong(number, f"got {given}; {right}")
 
 
 def _signal(text: str, names: list[str]) -> Accelerations:
@@ -121,9 +107,7 @@ def _signal(text: str, names: list[str]) -> Accelerations:
     time = columns["time"]
     worst = uneven(time) if len(time) > 1 else None
     if worst is not None:
-        raise ModelError(
-            "", f"line {_line(text, worst)}, column time: {time[worst]:.6g} s {UNEVEN_STEPS}"
-        )
+        raise wrong(_line(text, worst), f"{time[worst]:.6g} s {UNEVEN_STEPS}", "time")
     return Accelerations("time", time, axes, np.array([columns[axis] for axis in axes]))
 
 
@@ -132,11 +116,8 @@ def _spectrum(text: str, names: list[str]) -> Accelerations:
     for name, column in columns.items():
         if np.any(column < 0):
             first = int(np.argmax(column < 0))
-            raise ModelError(
-                "",
-                f"line {_line(text, first)}, column {name}: got {column[first]:g}; give RMS values "
-                "and frequencies of 0 or more",
-            )
+            what = f"got {column[first]:g}; give RMS values and frequencies of 0 or more"
+            raise wrong(_line(text, first), what, name)
     values = np.array([columns[axis] for axis in axes])
     return Accelerations("frequency", columns["frequency"], axes, values)
 
@@ -144,47 +125,43 @@ def _spectrum(text: str, names: list[str]) -> Accelerations:
 def _axes(text: str, first: str, names: list[str]) -> tuple[tuple[str, ...], dict[str, Array]]:
     """Axes that a file has, and its columns; one that has none is told of all three."""
     axes = tuple(axis for axis in AXES if axis in names) or AXES
-    forms: csv_columns.Forms = ((first, *axes),)
-    return axes, csv_columns.arrays_of(text, forms)
+    return axes, arrays_of(text, ((first, *axes),))
 
 
 def _line(text: str, row: int) -> int:
     """Line of a row below the header."""
-    number, _ = next(islice(csv_columns.rows_of(text), row + 1, None))
+    number, _ = next(islice(rows_of(text), row + 1, None))
     return number
 
 
 def _tasks(text: str) -> tuple[Task, ...]:
     """Tasks of a day; the names of tasks are a column of text."""
-    rows = csv_columns.rows_of(text)
+    rows = rows_of(text)
     line, header = next(rows)
     names, unit_of = _tasks_header(line, header)
     at = header.index("task")
     tasks: list[Task] = []
     for number, row in rows:
-        if len(row) != len(header):
-            raise ModelError(
-                "", f"line {number}: got {len(row)} values; the header has {len(header)} columns"
-            )
+        check_width(number, row, len(header))
         name = row.pop(at) or f"task {len(tasks) + 1}"
         cells = zip(names, unit_of, row, strict=True)
-        values = {key: csv_columns.value_of(number, key, unit, cell) for key, unit, cell in cells}
+        values = {key: value_of(number, key, unit, cell) for key, unit, cell in cells}
         try:
             tasks.append(Task(name, **values))
         except UsageError as error:
             raise ModelError("", f"line {number}, column {error}") from error
     if not tasks:
-        raise ModelError("", f"line {line}: there are no rows below the header; give at least one")
+        raise wrong(line, "there are no rows below the header; give at least one")
     return tuple(tasks)
 
 
 def _tasks_header(line: int, header: list[str]) -> tuple[list[str], list[str]]:
     """Names and units of the columns that are no text."""
-    right = csv_columns.told_forms(_TASKS)
+    right = told_forms(_TASKS)
     whole = right.replace("acceleration", "task,acceleration")
     if header.count("task") != 1:
-        raise ModelError("", f"line {line}: got {header.count('task')} columns task; {whole}")
+        raise wrong(line, f"got {header.count('task')} columns task; {whole}")
     try:
-        return csv_columns.header_of(line, [cell for cell in header if cell != "task"], _TASKS)
+        return header_of(line, [cell for cell in header if cell != "task"], _TASKS)
     except ModelError as error:
         raise ModelError("", error.what.replace(right, whole)) from error

@@ -6,34 +6,10 @@ import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from equipoise.keys import (
-    PLANES,
-    Anything,
-    Direction,
-    File,
-    Flag,
-    Frozen,
-    Key,
-    Kind,
-    Listing,
-    Named,
-    Number,
-    OneOr,
-    Planes,
-    Point,
-    Quantity,
-    Table,
-    Tables,
-    Text,
-    Told,
-    Whole,
-    all_keys,
-    innermost,
-    keys_of,
-)
+from equipoise import keys
 from equipoise.quantities import KINDS, Dimension, pattern
+from equipoise.schema.numbers import Polar
 from equipoise.schema.opening import FileKind, document_of
-from equipoise.schema.places import Polar
 from equipoise.schema.writing import plain_default, value_text
 
 Schema = dict[str, Any]
@@ -55,20 +31,20 @@ def json_schema(kind: FileKind = "linkage") -> Schema:
     }
 
 
-def _object(of: type[Frozen], definitions: Definitions) -> Schema:
-    keys = all_keys(of)
-    required = [name for name, one in keys.items() if one.required]
+def _object(of: type[keys.Frozen], definitions: Definitions) -> Schema:
+    known = keys.all_keys(of)
+    required = [name for name, one in known.items() if one.required]
     return {
         "description": " ".join((of.__doc__ or "").split("\n\n")[0].split()),
         "type": "object",
-        "properties": {name: _property(one, definitions) for name, one in keys.items()},
+        "properties": {name: _property(one, definitions) for name, one in known.items()},
         **({"required": required} if required else {}),
         "additionalProperties": False,
         **of.conditions,
     }
 
 
-def _property(one: Key, definitions: Definitions) -> Schema:
+def _property(one: keys.Key, definitions: Definitions) -> Schema:
     schema = dict(_schema(one.kind, definitions))
     if one.text:
         schema["description"] = one.text.replace("`", "")
@@ -77,15 +53,15 @@ def _property(one: Key, definitions: Definitions) -> Schema:
     default = plain_default(one)
     if default not in (None, [], {}):
         schema["default"] = default
-    if type(innermost(one.kind)) is Number:
+    if type(keys.innermost(one.kind)) is keys.Number:
         limits = {"minimum": one.at_least, "exclusiveMinimum": one.above,
                   "exclusiveMaximum": one.below}  # fmt: skip
-        at = schema if type(one.kind) is Number else schema.get("items", {})
+        at = schema if type(one.kind) is keys.Number else schema.get("items", {})
         at |= {name: limit for name, limit in limits.items() if limit is not None}
     return schema
 
 
-def _schema(kind: Kind, definitions: Definitions) -> Schema:
+def _schema(kind: keys.Kind, definitions: Definitions) -> Schema:
     return SCHEMAS[type(kind)](kind, definitions)
 
 
@@ -97,12 +73,12 @@ def _defined(name: str, schema: Callable[[], Schema], definitions: Definitions) 
     return {"$ref": f"#/$defs/{name}"}
 
 
-def _quantity(kind: Quantity, definitions: Definitions) -> Schema:
+def _quantity(kind: keys.Quantity, definitions: Definitions) -> Schema:
     name = "".join(word.capitalize() for word in kind.dimension.split())
     return _defined(name, lambda: {**_described(kind.dimension), **_text_of(kind)}, definitions)
 
 
-def _text_of(kind: Quantity) -> Schema:
+def _text_of(kind: keys.Quantity) -> Schema:
     example = KINDS[kind.dimension].example
     return {"type": "string", "pattern": pattern(kind.dimension), "examples": [example]}
 
@@ -113,16 +89,12 @@ def _described(dimension: Dimension, more: str = "") -> Schema:
     return {"description": f"{kind.noun}: number, space and one of {units}{more}"}
 
 
-def _text(kind: Text, definitions: Definitions) -> Schema:
+def _text(kind: keys.Text, definitions: Definitions) -> Schema:
     names = kind.names or kind.suggested
     return {"type": "string", **({"enum": [*names]} if names else {})}
 
 
-def _number(kind: Number, definitions: Definitions) -> Schema:
-    return {"type": "number"}
-
-
-def _whole(kind: Whole, definitions: Definitions) -> Schema:
+def _whole(kind: keys.Whole, definitions: Definitions) -> Schema:
     if len(kind.names) == 1:
         return {"type": "integer", "const": kind.names[0]}
     if kind.names:
@@ -131,34 +103,18 @@ def _whole(kind: Whole, definitions: Definitions) -> Schema:
     return {"type": "integer", **least}
 
 
-def _flag(kind: Flag, definitions: Definitions) -> Schema:
-    return {"type": "boolean"}
-
-
-def _told(kind: Told, definitions: Definitions) -> Schema:
-    return {"type": "string", **(kind.schema or {})}
-
-
-def _anything(kind: Anything, definitions: Definitions) -> Schema:
-    return dict(kind.schema or {})
-
-
-def _file(kind: File, definitions: Definitions) -> Schema:
-    return {"type": "string"}
-
-
-def _listing(kind: Listing, definitions: Definitions) -> Schema:
+def _listing(kind: keys.Listing, definitions: Definitions) -> Schema:
     least, most = (min(kind.sizes), max(kind.sizes)) if kind.sizes else (1, None)
     most_items = {} if most is None else {"maxItems": most}
-    unique = {"uniqueItems": True} if isinstance(kind.item, Text) and kind.item.names else {}
+    unique = {"uniqueItems": True} if isinstance(kind.item, keys.Text) and kind.item.names else {}
     items = _schema(kind.item, definitions)
     return {"type": "array", "items": items, "minItems": least, **most_items, **unique}
 
 
-_LENGTH = Quantity(dimension="length")
+_LENGTH = keys.Quantity(dimension="length")
 
 
-def _point(kind: Point, definitions: Definitions) -> Schema:
+def _point(kind: keys.Point, definitions: Definitions) -> Schema:
     sizes = (2, 3) if kind.space else (2,)
     polar = _defined("PolarPoint", lambda: _object(Polar, definitions), definitions)
     told = (
@@ -166,27 +122,27 @@ def _point(kind: Point, definitions: Definitions) -> Schema:
         if kind.space
         else "x and y, or distance and direction"
     )
-    either = [_listing(Listing(_LENGTH, sizes), definitions), polar]
+    either = [_listing(keys.Listing(_LENGTH, sizes), definitions), polar]
     name = "Place" if kind.space else "Point"
     return _defined(name, lambda: {"anyOf": either, "description": told}, definitions)
 
 
-def _direction(kind: Direction, definitions: Definitions) -> Schema:
-    vector = _listing(Listing(Number(), (3,)), definitions)
-    either = [_schema(Quantity(dimension="angle"), definitions), vector]
+def _direction(kind: keys.Direction, definitions: Definitions) -> Schema:
+    vector = _listing(keys.Listing(keys.Number(), (3,)), definitions)
+    either = [_schema(keys.Quantity(dimension="angle"), definitions), vector]
     told = "angle in the plane of the drawing, or a vector of three plain numbers"
     return _defined("Direction", lambda: {"anyOf": either, "description": told}, definitions)
 
 
-def _one_or(kind: OneOr, definitions: Definitions) -> Schema:
+def _one_or(kind: keys.OneOr, definitions: Definitions) -> Schema:
     item = _schema(kind.item, definitions)
-    item = {**item, "exclusiveMinimum": 0} if type(kind.item) is Number else item
+    item = {**item, "exclusiveMinimum": 0} if type(kind.item) is keys.Number else item
     several = {"type": "array", "items": item, "minItems": kind.size, "maxItems": kind.size}
     return {"anyOf": [item, several]}
 
 
-def _planes(kind: Planes, definitions: Definitions) -> Schema:
-    if not isinstance(kind.item, Quantity):
+def _planes(kind: keys.Planes, definitions: Definitions) -> Schema:
+    if not isinstance(kind.item, keys.Quantity):
         return _in_planes(
             {"type": "string", "examples": ["hand.csv"]}, "name of a file; or a table"
         )
@@ -199,54 +155,61 @@ def _planes(kind: Planes, definitions: Definitions) -> Schema:
 def _in_planes(text: Schema, told: str) -> Schema:
     table: Schema = {
         "type": "object",
-        "properties": dict.fromkeys(PLANES, text),
-        "required": [*PLANES],
+        "properties": dict.fromkeys(keys.PLANES, text),
+        "required": [*keys.PLANES],
         "additionalProperties": False,
     }
     told = f"{told} with one for the vertical and one for the lateral plane"
     return {"anyOf": [text, table], "description": told}
 
 
-def _named(kind: Named, definitions: Definitions) -> Schema:
-    return {"type": "object", "additionalProperties": _schema(kind.item, definitions)}
-
-
-def _table(kind: Table, definitions: Definitions) -> Schema:
+def _table(kind: keys.Table, definitions: Definitions) -> Schema:
     of = kind.type
     return _defined(of.__name__, lambda: _object(of, definitions), definitions)
 
 
-def _tables(kind: Tables, definitions: Definitions) -> Schema:
-    return {"type": "array", "items": _table(kind.item, definitions)}
-
-
-SCHEMAS: Mapping[type[Kind], Callable[[Any, Definitions], Schema]] = {
-    Anything: _anything,
-    Direction: _direction,
-    File: _file,
-    Flag: _flag,
-    Listing: _listing,
-    Named: _named,
-    Number: _number,
-    OneOr: _one_or,
-    Planes: _planes,
-    Point: _point,
-    Quantity: _quantity,
-    Table: _table,
-    Tables: _tables,
-    Text: _text,
-    Told: _told,
-    Whole: _whole,
+SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
+    keys.Anything: lambda kind, _: dict(kind.schema or {}),
+    keys.Direction: _direction,
+    keys.File: lambda kind, _: {"type": "string"},
+    keys.Flag: lambda kind, _: {"type": "boolean"},
+    keys.Listing: _listing,
+    keys.Named: lambda kind, definitions: {
+        "type": "object",
+        "additionalProperties": _schema(kind.item, definitions),
+    },
+    keys.Number: lambda kind, _: {"type": "number"},
+    keys.OneOr: _one_or,
+    keys.Planes: _planes,
+    keys.Point: _point,
+    keys.Quantity: _quantity,
+    keys.Table: _table,
+    keys.Tables: lambda kind, definitions: {
+        "type": "array",
+        "items": _table(kind.item, definitions),
+    },
+    keys.Text: _text,
+    keys.Told: lambda kind, _: {"type": "string", **(kind.schema or {})},
+    keys.Whole: _whole,
 }
 
 # -- the documentation -----------------------------------------------------------------------------
 
 _COUNTS = {2: "two", 3: "three"}
+WORDS: dict[type[keys.Kind], str] = {
+    keys.Anything: "value",
+    keys.Direction: "angle, or vector",
+    keys.File: "file",
+    keys.Flag: "true or false",
+    keys.Number: "number",
+    keys.Whole: "whole number",
+}
+"""What values of kinds without a choice are called; all others are text."""
 
 
-def key_table(of: type[Frozen]) -> str:
+def key_table(of: type[keys.Frozen]) -> str:
     """Rows of the documentation, one for each key of a class that holds no table."""
-    plain = (one for one in keys_of(of).values() if not holds_tables(one.kind))
+    plain = (one for one in keys.keys_of(of).values() if not holds_tables(one.kind))
     rows = (
         f"| `{one.name}` | {words_of(one.kind)} | {_default(one)} | {one.text} |" for one in plain
     )
@@ -254,12 +217,12 @@ def key_table(of: type[Frozen]) -> str:
     return table.replace("|  |", "| |")
 
 
-def holds_tables(kind: Kind) -> bool:
+def holds_tables(kind: keys.Kind) -> bool:
     """Whether a key has tables below it, which the documentation tells for themselves."""
-    return isinstance(innermost(kind), Table | Tables)
+    return isinstance(keys.innermost(kind), keys.Table | keys.Tables)
 
 
-def _default(one: Key) -> str:
+def _default(one: keys.Key) -> str:
     if one.required:
         return "required"
     default = plain_default(one)
@@ -268,33 +231,34 @@ def _default(one: Key) -> str:
     return f"`{value_text(default)}`"
 
 
-def words_of(kind: Kind) -> str:
+def words_of(kind: keys.Kind) -> str:
     """What a value is, as the documentation calls it."""
-    if isinstance(kind, Listing | Named | OneOr | Planes):
+    if isinstance(kind, keys.Listing | keys.Named | keys.OneOr | keys.Planes):
         return _words_of_several(kind)
-    if isinstance(kind, Quantity):
+    if isinstance(kind, keys.Quantity):
         return re.sub(r"^an? ", "", KINDS[kind.dimension].noun)
-    if isinstance(kind, Whole) and kind.names:
+    if isinstance(kind, keys.Whole) and kind.names:
         return " or ".join(map(str, kind.names))
-    if isinstance(kind, Text) and (names := kind.names or kind.suggested):
+    if isinstance(kind, keys.Text) and (names := kind.names or kind.suggested):
         *most, last = (f'`"{name}"`' for name in names)
         return f"{', '.join(most)} or {last}"
-    other = {Text: "text", File: "file", Flag: "true or false", Whole: "whole number",
-             Number: "number", Direction: "angle, or vector", Anything: "value"}  # fmt: skip
-    point = "place" if isinstance(kind, Point) and kind.space else "point"
-    return point if isinstance(kind, Point) else other.get(type(kind), "text")
+    if isinstance(kind, keys.Point):
+        return "place" if kind.space else "point"
+    return WORDS.get(type(kind), "text")
 
 
-def _words_of_several(kind: Listing | Named | OneOr | Planes) -> str:
+def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes) -> str:
     item = words_of(kind.item)
-    if isinstance(kind, Listing):
-        if isinstance(kind.item, Text) and kind.item.names:
+    if isinstance(kind, keys.Listing):
+        if isinstance(kind.item, keys.Text) and kind.item.names:
             return f"list of {item}"
         count = _COUNTS.get(kind.sizes[0], "") if kind.sizes else "list of"
         return f"{count} {_plural(item)}"
-    if isinstance(kind, Named):
+    if isinstance(kind, keys.Named):
         return f"{item if item[0] == '`' else _plural(item)} by name"
-    return f"{item}, or {_COUNTS[kind.size]}" if isinstance(kind, OneOr) else f"{item}, in planes"
+    if isinstance(kind, keys.OneOr):
+        return f"{item}, or {_COUNTS[kind.size]}"
+    return f"{item}, in planes"
 
 
 def _plural(words: str) -> str:

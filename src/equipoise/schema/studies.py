@@ -11,11 +11,17 @@ from typing import Any
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.quantities import KINDS, format_exact, parse
 from equipoise.quantities.reading import described
-from equipoise.schema.files import printable
 from equipoise.schema.numbers import read_number
-from equipoise.schema.objects import Context
-from equipoise.schema.opening import Opened, bundled, kind_of, opened, opened_example, toml_content
-from equipoise.schema.reading import read_table
+from equipoise.schema.opening import (
+    Opened,
+    bundled,
+    in_file,
+    kind_of,
+    opened,
+    opened_example,
+    toml_content,
+)
+from equipoise.schema.reading import Context, read_table
 from equipoise.schema.study_keys import (
     SPREADS,
     AccuracyTable,
@@ -40,7 +46,7 @@ from equipoise.studies.design_space import (
     Uniform,
     Vary,
 )
-from equipoise.studies.dimensions import dimension_of
+from equipoise.studies.figures import dimension_of
 from equipoise.studies.study import Study, from_plain
 
 MODEL = "model "
@@ -66,10 +72,8 @@ def load_study(path_or_name: str | os.PathLike[str]) -> Study:
 
 def study_in(file: Opened) -> Study:
     """The study of a file that is open; errors as `load_study`."""
-    try:
+    with in_file(file.source):
         return _study(file.text, file.folder or Path())
-    except ModelError as error:
-        raise ModelError(printable(error.where), error.what, file.source) from error
 
 
 def restore(texts: Mapping[str, str]) -> Study:

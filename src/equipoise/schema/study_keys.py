@@ -21,8 +21,7 @@ from equipoise.keys import (
     key,
 )
 from equipoise.quantities import NUMBER
-from equipoise.studies.checks import COMMANDS, METHODS
-from equipoise.studies.design_space import Sampling
+from equipoise.studies.design_space import COMMANDS, METHODS, Sampling
 
 SPREADS = ("range", "list", "normal", "uniform")
 VALUE = Anything(

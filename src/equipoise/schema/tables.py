@@ -1,4 +1,4 @@
-"""Tables of loads, of soil and of a motor: CSV files with units in the header.
+"""CSV files with units in the header: tables of loads, of soil, of a motor and of impedance.
 
 ::
 
@@ -9,130 +9,290 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import csv
+import io
+import os
+import re
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from math import isfinite
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
 
-from equipoise import quantities
+from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Impedance
 from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.model import LoadTable
-from equipoise.schema import csv_columns
-from equipoise.schema.csv_columns import COLUMNS, Forms, columns_of, csv_text, read_columns
-from equipoise.schema.places import from_polar
-
-_LOAD: Forms = (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque"))
-_SOIL: Forms = (("depth", "resistance"),)
-_MOTOR: Forms = (("speed", "torque"),)
-"""Columns of each kind of table; the first must rise from row to row."""
-
-
-def read_load(file: str, folder: Path) -> LoadTable:
-    """Read a load table.
-
-    Parameters
-    ----------
-    file : its name, relative to `folder`.
-    folder : that of the model file.
-
-    Raises
-    ------
-    ModelError
-        Names the table's file, line and column; `where` is empty.
-    """
-    columns = read_columns(file, folder, _LOAD)
-    return _load_table(columns, file)
-
-
-def read_soil(file: str, folder: Path) -> SoilTable:
-    """Read a table of the soil's resistance against depth; as `read_load`."""
-    columns = read_columns(file, folder, _SOIL)
-    return SoilTable(columns["depth"], columns["resistance"], file)
-
-
-def read_motor(file: str, folder: Path) -> MotorTable:
-    """Read a table of a motor's torque against its speed; as `read_load`."""
-    columns = read_columns(file, folder, _MOTOR)
-    return MotorTable(columns["speed"], columns["torque"], file)
-
-
-def parse_load(text: str, file: str = "") -> LoadTable:
-    """Read the text of a load table; errors begin with the number of the line."""
-    return _load_table(columns_of(text, _LOAD), file)
-
-
-def _load_table(columns: dict[str, tuple[float, ...]], file: str) -> LoadTable:
-    angles = columns.pop("crank_angle")
-    return LoadTable(angles, tuple(columns[key] for key in COLUMNS if key in columns), file)
-
-
-def format_table(table: LoadTable | SoilTable | MotorTable) -> str:
-    """Write any table as CSV such that reading it gives exactly the same numbers."""
-    if isinstance(table, LoadTable):
-        return format_load(table)
-    return format_soil(table) if isinstance(table, SoilTable) else format_motor(table)
-
-
-def format_load(table: LoadTable) -> str:
-    """Write a load table as CSV such that reading it gives exactly the same numbers."""
-    names = _LOAD[0] if len(table.values) == 2 else _LOAD[1]
-    unit, angles = _handy(table.crank_angle, "angle", "deg", "rad")
-    unit_of = [unit, *(quantities.KINDS[COLUMNS[name]].si for name in names[1:])]
-    return csv_text(names, unit_of, [angles, *(map(repr, column) for column in table.values)])
-
-
-def format_soil(table: SoilTable) -> str:
-    """Write a table of soil as CSV such that reading it gives exactly the same numbers."""
-    return csv_text(_SOIL[0], ["m", "N"], [map(repr, table.depth), map(repr, table.resistance)])
-
-
-def format_motor(table: MotorTable) -> str:
-    """Write a table of a motor as CSV such that reading it gives exactly the same numbers."""
-    unit, speeds = _handy(table.speed, "angular speed", "rpm", "rad/s")
-    return csv_text(_MOTOR[0], [unit, "N m"], [speeds, map(repr, table.torque)])
-
-
-def _handy(
-    values: Iterable[float], dimension: quantities.Dimension, usual: str, si: str
-) -> tuple[str, list[str]]:
-    """A unit and the numbers of a column in it: the usual one if it is exact for all of them."""
-    texts = [quantities.format_exact(value, dimension).split(" ", 1) for value in values]
-    if all(unit == usual for _, unit in texts):
-        return usual, [number for number, _ in texts]
-    return si, [repr(float(value)) for value in values]
-
-
-_IMPEDANCE: csv_columns.Forms = (
-    ("frequency", "resistance", "reactance"),
-    ("frequency", "magnitude", "phase"),
+from equipoise.quantities import (
+    FACTORS,
+    HUGE,
+    KINDS,
+    TINY,
+    Dimension,
+    format_exact,
+    parse,
+    plain_unit,
 )
+from equipoise.schema.files import FileError, printable, read_text
+from equipoise.schema.numbers import from_polar
+
+if TYPE_CHECKING:
+    import numpy as np
+
+Array: TypeAlias = "np.ndarray[Any, Any]"
+Columns = dict[str, tuple[float, ...]]
+Forms = tuple[tuple[str, ...], ...]
+"""Columns of each form of a table; the first must rise from row to row."""
+
+COLUMNS: dict[str, tuple[Dimension, str]] = {
+    # name: what it is, unit that a header is shown with
+    "crank_angle": ("angle", "deg"),
+    "force_x": ("force", "N"),
+    "force_y": ("force", "N"),
+    "torque": ("torque", "N m"),
+    "depth": ("length", "mm"),
+    "resistance": ("force", "N"),
+    "speed": ("angular speed", "rpm"),
+    "time": ("time", "s"),
+    "displacement": ("length", "mm"),
+    "angle": ("angle", "deg"),
+    "frequency": ("frequency", "Hz"),
+    "x": ("acceleration", "m/s^2"),
+    "y": ("acceleration", "m/s^2"),
+    "z": ("acceleration", "m/s^2"),
+    "acceleration": ("acceleration", "m/s^2"),
+    "duration": ("time", "h"),
+    "reactance": ("damping", "N s/m"),
+    "magnitude": ("damping", "N s/m"),
+    "phase": ("angle", "deg"),
+}
+OTHERWISE: dict[tuple[str, str], tuple[Dimension, str]] = {
+    ("frequency", "resistance"): ("damping", "N s/m"),
+}
+"""Columns that are something else in a table with that first column."""
 
 
-def read_impedance(file: str, folder: Path) -> Impedance:
-    """Read a table of impedance.
+def _column(name: str, forms: Forms) -> tuple[Dimension, str]:
+    """Dimension of a column, and the unit that it is shown with."""
+    first = forms[0][0] if forms else ""
+    return OTHERWISE.get((first, name)) or COLUMNS[name]
 
-    Parameters
-    ----------
-    file : its name, relative to `folder`.
-    folder : that of the tool's file.
+
+# -- what is wrong ---------------------------------------------------------------------------------
+
+
+@contextmanager
+def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
+    """Name a table's file in front of what is wrong with it."""
+    shown = printable(path) or "''"
+    try:
+        yield
+    except (FileError, UsageError) as error:
+        raise ModelError("", f"{shown}: {error}") from error
+    except ModelError as error:
+        raise ModelError("", f"{shown}, {error.what}") from error
+
+
+def wrong(line: int, what: str, column: str = "") -> ModelError:
+    """The error of a line, or of one of its columns."""
+    return ModelError("", f"line {line}{column and f', column {column}'}: {what}")
+
+
+def told_forms(forms: Forms) -> str:
+    """Say which headers would be right."""
+    headers = [",".join(f"{name} [{_column(name, forms)[1]}]" for name in form) for form in forms]
+    return f"the header is {' or '.join(headers)}"
+
+
+def shortened(cell: str) -> str:
+    """A cell for an error, cut where it is endless."""
+    return repr(cell if len(cell) <= 60 else f"{cell[:57]}...")
+
+
+# -- reading ---------------------------------------------------------------------------------------
+
+
+def columns_of(text: str, forms: Forms) -> Columns:
+    """Columns of a table by name, in SI units and radians."""
+    rows = rows_of(text)
+    number, header = next(rows, (1, []))
+    names, unit_of = header_of(number, header, forms)
+    columns: list[list[float]] = [[] for _ in names]
+    lines = []
+    for number, row in rows:
+        check_width(number, row, len(names))
+        for name, unit, cell, column in zip(names, unit_of, row, columns, strict=True):
+            column.append(value_of(number, name, unit, cell, forms))
+        lines.append(number)
+    if not lines:
+        raise wrong(number, "there are no rows below the header; give at least one")
+    by_name = dict(zip(names, map(tuple, columns), strict=True))
+    first = forms[0][0]
+    for line, before, after in zip(lines[1:], by_name[first], by_name[first][1:], strict=False):
+        if after <= before:
+            plural = {"angle": "angles", "frequency": "frequencies"}
+            what = plural.get(COLUMNS[first][0], f"{first}s")
+            raise wrong(line, f"the {what} must rise from row to row", first)
+    return by_name
+
+
+def arrays_of(text: str, forms: Forms) -> dict[str, Array]:
+    """The same as arrays (N,), for files of a million rows: cell by cell only to tell a mistake."""
+    import numpy as np
+
+    found = _whole(text, forms)
+    if found is None:
+        found = {name: np.array(column) for name, column in columns_of(text, forms).items()}
+    return found
+
+
+def _whole(text: str, forms: Forms) -> dict[str, Array] | None:
+    """All columns together; None where a row or cell is not what it should be."""
+    import numpy as np
+
+    lines = rows_of(text)
+    names, unit_of = header_of(*next(lines, (1, [])), forms)
+    if not text.isascii() or "_" in text:  # Python reads such numbers, but they are none here
+        return None
+    cells = [row for _, row in lines]
+    if not cells or any(len(row) != len(names) for row in cells):
+        return None
+    try:
+        values = np.array([[float(cell) for cell in row] for row in cells])
+    except ValueError:
+        return None
+    values *= [float(FACTORS[plain_unit(unit)]) for unit in unit_of]
+    sizes = np.abs(values)
+    if not np.all((sizes <= HUGE) & ((sizes >= TINY) | (sizes == 0))):
+        return None
+    found = dict(zip(names, values.T.copy(), strict=True))
+    return found if np.all(np.diff(found[forms[0][0]]) > 0) else None
+
+
+def rows_of(text: str) -> Iterator[tuple[int, list[str]]]:
+    """Rows that are not blank, with the number of their line."""
+    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
+    try:
+        for row in reader:
+            cells = [cell.strip() for cell in row]
+            if any(cells):
+                yield reader.line_num, cells
+    except csv.Error as error:
+        what = f"this is no table of comma-separated values ({error})"
+        raise wrong(reader.line_num, what) from error
+
+
+def check_width(line: int, row: list[str], columns: int) -> None:
+    """A row has as many values as the header."""
+    if len(row) != columns:
+        raise wrong(line, f"got {len(row)} values; the header has {columns} columns")
+
+
+def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
+    """Names and units of the columns; a wrong one is told with its line."""
+    names: list[str] = []
+    unit_of: list[str] = []
+    for cell in cells:
+        match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
+        name = match[1] if match else cell
+        if not any(name in form for form in forms):
+            raise wrong(line, f"got the column {shortened(cell)}; {told_forms(forms)}")
+        if match is None:
+            unit = KINDS[_column(name, forms)[0]].si
+            raise wrong(line, f"the unit is missing; {name} [{unit}]", name)
+        if name in names:
+            raise wrong(line, f"given twice; {told_forms(forms)}", name)
+        value_of(line, name, match[2], "0", forms)  # a wrong unit is the header's fault
+        names.append(name)
+        unit_of.append(match[2])
+    if not any(sorted(names) == sorted(form) for form in forms):
+        raise wrong(line, f"got {', '.join(names) or 'no column'}; {told_forms(forms)}")
+    return names, unit_of
+
+
+def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> float:
+    """A cell in SI units."""
+    try:
+        return parse(f"{cell} {unit}", _column(name, forms)[0])
+    except UsageError as error:
+        if _is_number(cell):
+            raise wrong(line, str(error), name) from error
+        what = f"got {shortened(cell)}; give a finite number with a decimal point"
+        raise wrong(line, what, name) from error
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        return isfinite(float(cell)) and cell.isascii() and "_" not in cell
+    except ValueError:
+        return False
+
+
+# -- tables beside a model -------------------------------------------------------------------------
+
+Table = LoadTable | SoilTable | MotorTable | Impedance
+FORMS: dict[str, Forms] = {
+    "load": (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque")),
+    "soil": (("depth", "resistance"),),
+    "motor": (("speed", "torque"),),
+    "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
+}
+"""Columns of each sort of table."""
+HANDY = {"crank_angle": "deg", "speed": "rpm"}
+"""Units of columns that are written in them where they are exact, else in SI units."""
+
+
+def read_beside(sort: str, file: str, folder: Path) -> Table:
+    """Read a table of a sort such as ``load``.
+
+    file : its name, relative to `folder`, which is that of the model file.
 
     Raises
     ------
     ModelError
         Names the table's file, line and column; `where` is empty.
     """
-    columns = csv_columns.read_columns(file, folder, _IMPEDANCE)
-    frequency = columns["frequency"]
+    with in_table(file):
+        return parse_table(sort, read_text(folder / file), file)
+
+
+def parse_table(sort: str, text: str, file: str = "") -> Table:
+    """Read the text of a table; errors begin with the number of the line."""
+    columns = columns_of(text, FORMS[sort])
+    if sort == "soil":
+        return SoilTable(columns["depth"], columns["resistance"], file)
+    if sort == "motor":
+        return MotorTable(columns["speed"], columns["torque"], file)
+    if sort == "load":
+        angles = columns.pop("crank_angle")
+        return LoadTable(angles, tuple(columns[key] for key in COLUMNS if key in columns), file)
     if "magnitude" in columns:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)
-        return Impedance(frequency, resistance, reactance, file)
-    return Impedance(frequency, columns["resistance"], columns["reactance"], file)
+        return Impedance(columns["frequency"], resistance, reactance, file)
+    return Impedance(columns["frequency"], columns["resistance"], columns["reactance"], file)
 
 
-def format_impedance(table: Impedance) -> str:
-    """Write a table of impedance as CSV such that reading it gives exactly the same numbers."""
-    columns = (table.frequency, table.resistance, table.reactance)
-    return csv_columns.csv_text(
-        _IMPEDANCE[0], ["Hz", "N s/m", "N s/m"], [map(repr, column) for column in columns]
-    )
+def format_table(table: Table) -> str:
+    """Write a table as CSV such that reading it gives exactly the same numbers."""
+    if isinstance(table, LoadTable):
+        form = FORMS["load"][0 if len(table.values) == 2 else 1]
+        return _text(form, [table.crank_angle, *table.values])
+    sort = {SoilTable: "soil", MotorTable: "motor", Impedance: "impedance"}[type(table)]
+    form = FORMS[sort][0]
+    return _text(form, [getattr(table, name) for name in form])
+
+
+def _text(form: tuple[str, ...], columns: Sequence[Sequence[float]]) -> str:
+    """The text of a CSV file; numbers with all their digits."""
+    header, cells = [], []
+    for name, values in zip(form, columns, strict=True):
+        dimension = _column(name, (form,))[0]
+        unit = HANDY.get(name, "")
+        texts = [format_exact(value, dimension).split(" ", 1) for value in values if unit]
+        if not unit or any(given != unit for _, given in texts):
+            unit, texts = KINDS[dimension].si, [[repr(float(value))] for value in values]
+        header.append(f"{name} [{unit}]")
+        cells.append([text[0] for text in texts])
+    return "\n".join(",".join(row) for row in (header, *zip(*cells, strict=True))) + "\n"

@@ -29,9 +29,8 @@ from equipoise.planting.designs import Sense
 from equipoise.planting.goals import Goal, dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
-from equipoise.schema.objects import Context
-from equipoise.schema.opening import toml_content
-from equipoise.schema.reading import read_table
+from equipoise.schema.opening import in_file, toml_content
+from equipoise.schema.reading import Context, read_table
 
 Quantity = str | float
 VALUE = Anything()
@@ -104,14 +103,12 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
     ModelError
         One sentence: file, table and key, what was given and what would be right.
     """
-    try:
-        text = read_text(path)
-    except FileError as problem:
-        raise ModelError("", str(problem), printable(path) or "''") from problem
-    try:
+    with in_file(printable(path) or "''"):
+        try:
+            text = read_text(path)
+        except FileError as problem:
+            raise ModelError("", str(problem)) from problem
         return _targets(_document(text), figures)
-    except ModelError as error:
-        raise ModelError(printable(error.where), error.what, printable(path)) from error
 
 
 def _document(text: str) -> TargetTable:

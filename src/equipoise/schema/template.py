@@ -20,20 +20,11 @@ from equipoise.mechanism.field import SoilTable
 from equipoise.mechanism.force_elements import MotorTable
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import LoadTable, Machine
-from equipoise.schema.files import printable
-from equipoise.schema.finding import (
-    Found,
-    all_numbers,
-    find,
-    replaced,
-    unit_in,
-    with_changes,
-)
-from equipoise.schema.models import Beside, machine_of, tool_of
+from equipoise.schema.finding import Found, all_numbers, find, replaced, unit_in, with_changes
+from equipoise.schema.models import Beside, machine_of, parts_of, text_of, tool_of
 from equipoise.schema.numbers import Number
-from equipoise.schema.opening import Kind, Opened, kind_of, model_content, opened
-from equipoise.schema.places import Place, written_place
-from equipoise.schema.saving import parts_of, text_of
+from equipoise.schema.opening import Kind, Opened, in_file, kind_of, model_content, opened
+from equipoise.schema.reading import Place, written_place
 
 Known = dict[tuple[str, str], Any]
 """What lies beside a model file, by sort and name: tables, and linkages as templates."""
@@ -73,11 +64,9 @@ class Template:
         self.text, self.source = text, source
         self._known: Known = dict(known or {})
         self._found: dict[str, Found] = {}
-        try:
+        with in_file(source):
             self._content = model_content(text)
             self._base = self._read(self._content, _Carried(folder, self._known))
-        except ModelError as error:
-            raise ModelError(printable(error.where), error.what, source) from error
 
     @classmethod
     def load(cls, path_or_name: str | os.PathLike[str]) -> Template:
@@ -87,7 +76,7 @@ class Template:
     @classmethod
     def of_opened(cls, file: Opened) -> Template:
         """Of a model file that is open."""
-        return cls(file.text, file.source, file.folder)
+        return cls(*file)
 
     @classmethod
     def of(cls, model: Machine | Tool) -> Template:

@@ -6,33 +6,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from equipoise import keys
 from equipoise.errors import ModelError
-from equipoise.keys import (
-    PLANES,
-    Anything,
-    Direction,
-    File,
-    Flag,
-    Frozen,
-    Key,
-    Kind,
-    Listing,
-    Named,
-    Number,
-    OneOr,
-    Planes,
-    Point,
-    Quantity,
-    Table,
-    Tables,
-    Text,
-    Told,
-    Whole,
-    all_keys,
-    keys_of,
-)
 from equipoise.quantities import format_exact
-from equipoise.schema.places import Place, written_place, written_point
+from equipoise.schema.numbers import written_point
+from equipoise.schema.reading import Place, within, written_place
 
 Namer = Callable[[str, str, Any], str]
 """Name of the file for the key at a place: takes the place, its sort and what lies in it."""
@@ -47,22 +25,24 @@ class Writer:
     """
 
     names: Mapping[str, str]
-    makers: Mapping[type[Frozen], Callable[[Any], dict[str, Any]]] = field(default_factory=dict)
+    makers: Mapping[type[keys.Frozen], Callable[[Any], dict[str, Any]]] = field(
+        default_factory=dict
+    )
 
-    def content(self, of: type[Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
+    def content(self, of: type[keys.Frozen], value: Any, place: Place = ()) -> dict[str, Any]:
         """Content of the table of an object as plain values."""
         given = _given(self.makers.get(of, of.to_table), value, place)
         table: dict[str, Any] = {}
-        for name, one in keys_of(of).items():
+        for name, one in keys.keys_of(of).items():
             if name not in given:
                 continue
-            if isinstance(one.kind, Table) and one.kind.flat:
+            if isinstance(one.kind, keys.Table) and one.kind.flat:
                 table |= self.content(one.kind.type, given[name], place)
             else:
                 table[name] = self.plain(one.kind, given[name], (*place, name))
         return table
 
-    def plain(self, kind: Kind, value: Any, place: Place) -> Any:
+    def plain(self, kind: keys.Kind, value: Any, place: Place) -> Any:
         """A value as it stands in the file."""
         return WRITERS[type(kind)](kind, value, place, self)
 
@@ -72,51 +52,49 @@ def _given(to_table: Callable[[Any], dict[str, Any]], value: Any, place: Place) 
     try:
         return to_table(value)
     except ModelError as error:
-        within = written_place(place)
-        inner = "." if within and error.where else ""
-        raise ModelError(f"{within}{inner}{error.where}", error.what) from error
+        raise within(place, error) from error
 
 
-def plain_default(one: Key) -> Any:
+def plain_default(one: keys.Key) -> Any:
     """What a key that is left out stands for, as it would be written; None for nothing."""
     if one.shown is not None or one.required or one.default is None or one.endless:
         return one.shown
-    if isinstance(one.kind, Table | Tables | File):
+    if isinstance(one.kind, keys.Table | keys.Tables | keys.File):
         return None
     default = Writer({}).plain(one.kind, one.default, ())
     return None if isinstance(default, list | dict) and not default else default
 
 
-def beside(of: type[Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
+def beside(of: type[keys.Frozen], value: Any) -> Iterator[tuple[str, str, Any, str]]:
     """What lies in files of their own: the key that names each, its sort, itself, and its name."""
-    yield from _beside(Table(of), value, ())
+    yield from _beside(keys.Table(of), value, ())
 
 
-def _beside(kind: Kind, value: Any, place: Place) -> Iterator[tuple[str, str, Any, str]]:
-    if isinstance(kind, File):
+def _beside(kind: keys.Kind, value: Any, place: Place) -> Iterator[tuple[str, str, Any, str]]:
+    if isinstance(kind, keys.File):
         yield written_place(place), kind.sort, value, getattr(value, "file", "")
-    elif isinstance(kind, Planes):
+    elif isinstance(kind, keys.Planes):
         for part, item in _in_planes(value, place):
             yield from _beside(kind.item, item, part)
-    elif isinstance(kind, Tables):
+    elif isinstance(kind, keys.Tables):
         for number, item in enumerate(value):
             yield from _beside(kind.item, item, (*place, number))
-    elif isinstance(kind, Named):
+    elif isinstance(kind, keys.Named):
         for name, item in value.items():
             yield from _beside(kind.item, item, (*place, name))
-    elif isinstance(kind, Table):
+    elif isinstance(kind, keys.Table):
         for name, item in _given(kind.type.to_table, value, place).items():
-            one = keys_of(kind.type)[name]
-            inner = place if isinstance(one.kind, Table) and one.kind.flat else (*place, name)
+            one = keys.keys_of(kind.type)[name]
+            inner = place if isinstance(one.kind, keys.Table) and one.kind.flat else (*place, name)
             for where, sort, found, file in _beside(one.kind, item, inner):
-                named = isinstance(one.kind, File) and one.kind.named
+                named = isinstance(one.kind, keys.File) and one.kind.named
                 yield where, sort, found, getattr(value, named) if named else file
 
 
 def _in_planes(value: tuple[Any, ...], place: Place) -> Iterator[tuple[Place, Any]]:
     """The parts of what is of both planes, each with its place in the file."""
-    if len(value) == len(PLANES):
-        yield from (((*place, plane), one) for plane, one in zip(PLANES, value, strict=True))
+    if len(value) == len(keys.PLANES):
+        yield from (((*place, plane), one) for plane, one in zip(keys.PLANES, value, strict=True))
     else:
         yield from ((place, one) for one in value)
 
@@ -129,123 +107,101 @@ def tidy(value: float) -> float:
     return int(value) if float(value).is_integer() and abs(value) < 1e6 else value
 
 
-def _quantity(kind: Quantity, value: Any, place: Place, writer: Writer) -> Any:
-    return format_exact(value, kind.dimension)
-
-
-def _same(kind: Kind, value: Any, place: Place, writer: Writer) -> Any:
-    return value
-
-
-def _file(kind: File, value: Any, place: Place, writer: Writer) -> Any:
-    return writer.names[written_place(place)]
-
-
-def _point(kind: Point, value: Any, place: Place, writer: Writer) -> Any:
+def _point(kind: keys.Point, value: Any, place: Place, writer: Writer) -> Any:
     if kind.space and value[2]:
         return [format_exact(one, "length") for one in value]
     return written_point((value[0], value[1]))
 
 
-def _direction(kind: Direction, value: Any, place: Place, writer: Writer) -> Any:
+def _direction(kind: keys.Direction, value: Any, place: Place, writer: Writer) -> Any:
     if isinstance(value, tuple):
         return [tidy(component) for component in value]
     return format_exact(value, "angle")
 
 
-def _listing(kind: Listing, value: Any, place: Place, writer: Writer) -> Any:
+def _listing(kind: keys.Listing, value: Any, place: Place, writer: Writer) -> Any:
     return [writer.plain(kind.item, one, place) for one in value]
 
 
-def _one_or(kind: OneOr, value: Any, place: Place, writer: Writer) -> Any:
-    items = _listing(Listing(kind.item), value, place, writer)
+def _one_or(kind: keys.OneOr, value: Any, place: Place, writer: Writer) -> Any:
+    items = _listing(keys.Listing(kind.item), value, place, writer)
     alike = kind.repeat and all(one == value[0] for one in value)
     return items[0] if len(items) == 1 or alike else items
 
 
-def _planes(kind: Planes, value: Any, place: Place, writer: Writer) -> Any:
-    if isinstance(kind.item, Quantity):
+def _planes(kind: keys.Planes, value: Any, place: Place, writer: Writer) -> Any:
+    if isinstance(kind.item, keys.Quantity):
         texts = [writer.plain(kind.item, one, place) for one in value]
-        return texts[0] if value[0] == value[1] else dict(zip(PLANES, texts, strict=True))
+        return texts[0] if value[0] == value[1] else dict(zip(keys.PLANES, texts, strict=True))
     named = [writer.plain(kind.item, one, part) for part, one in _in_planes(value, place)]
-    return named[0] if len(named) == 1 else dict(zip(PLANES, named, strict=False))
+    return named[0] if len(named) == 1 else dict(zip(keys.PLANES, named, strict=False))
 
 
-def _named(kind: Named, value: Any, place: Place, writer: Writer) -> Any:
-    return {name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()}
-
-
-def _table(kind: Table, value: Any, place: Place, writer: Writer) -> Any:
-    return writer.content(kind.type, value, place)
-
-
-def _tables(kind: Tables, value: Any, place: Place, writer: Writer) -> Any:
-    return [writer.plain(kind.item, one, (*place, n)) for n, one in enumerate(value)]
-
-
-def _number(kind: Number, value: Any, place: Place, writer: Writer) -> Any:
-    return tidy(value)
-
-
-WRITERS: dict[type[Kind], Callable[[Any, Any, Place, Writer], Any]] = {
-    Anything: _same,
-    Direction: _direction,
-    File: _file,
-    Flag: _same,
-    Listing: _listing,
-    Named: _named,
-    Number: _number,
-    OneOr: _one_or,
-    Planes: _planes,
-    Point: _point,
-    Quantity: _quantity,
-    Table: _table,
-    Tables: _tables,
-    Text: _same,
-    Told: _same,
-    Whole: _same,
+WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
+    keys.Anything: lambda kind, value, place, writer: value,
+    keys.Direction: _direction,
+    keys.File: lambda kind, value, place, writer: writer.names[written_place(place)],
+    keys.Flag: lambda kind, value, place, writer: value,
+    keys.Listing: _listing,
+    keys.Named: lambda kind, value, place, writer: {
+        name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()
+    },
+    keys.Number: lambda kind, value, place, writer: tidy(value),
+    keys.OneOr: _one_or,
+    keys.Planes: _planes,
+    keys.Point: _point,
+    keys.Quantity: lambda kind, value, place, writer: format_exact(value, kind.dimension),
+    keys.Table: lambda kind, value, place, writer: writer.content(kind.type, value, place),
+    keys.Tables: lambda kind, value, place, writer: [
+        writer.plain(kind.item, one, (*place, n)) for n, one in enumerate(value)
+    ],
+    keys.Text: lambda kind, value, place, writer: value,
+    keys.Told: lambda kind, value, place, writer: value,
+    keys.Whole: lambda kind, value, place, writer: value,
 }
 
 # -- text ------------------------------------------------------------------------------------------
 
 
-def toml_text(of: type[Frozen], content: Mapping[str, Any]) -> str:
+def toml_text(of: type[keys.Frozen], content: Mapping[str, Any]) -> str:
     """Write the content of a file as TOML, with one line a key and one table a link or mount."""
     plain = {name: value for name, value in content.items() if not _is_tables(value)}
     blocks = ["".join(_lines(plain))]
     for name, value in content.items():
         if name not in plain:
-            blocks += _headed(name, all_keys(of)[name].kind, value)
+            blocks += _headed(name, keys.all_keys(of)[name].kind, value)
     return "\n".join(blocks)
 
 
-def _headed(name: str, kind: Kind, value: Any) -> Iterator[str]:
+def _headed(name: str, kind: keys.Kind, value: Any) -> Iterator[str]:
     """Blocks with headers of a table, of a list of them, or of those with names."""
-    if isinstance(kind, Tables):
+    if isinstance(kind, keys.Tables):
         for item in value:
             yield from _blocks(f"[[{name}]]", name, kind.item.type, item)
-    elif isinstance(kind, Named) and not isinstance(kind.item, Table):
+    elif isinstance(kind, keys.Named) and not isinstance(kind.item, keys.Table):
         yield "".join([f"[{name}]\n", *_lines(value)])
-    elif isinstance(kind, Named):
+    elif isinstance(kind, keys.Named):
         for key, item in value.items():
             yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)  # type: ignore[attr-defined]
-    elif isinstance(kind, Table):
+    elif isinstance(kind, keys.Table):
         yield from _blocks(f"[{name}]", name, kind.type, value)
 
 
-def _blocks(header: str, name: str, of: type[Frozen], table: Mapping[str, Any]) -> Iterator[str]:
-    known = all_keys(of)
-    within = {key: item for key, item in table.items() if _has_header(known[key].kind)}
-    own = {key: item for key, item in table.items() if key not in within}
+def _blocks(
+    header: str, name: str, of: type[keys.Frozen], table: Mapping[str, Any]
+) -> Iterator[str]:
+    known = keys.all_keys(of)
+    below = {key: item for key, item in table.items() if _has_header(known[key].kind)}
+    own = {key: item for key, item in table.items() if key not in below}
     yield "".join([header, "\n", *_lines(own)])
-    for key, item in within.items():
+    for key, item in below.items():
         yield from _headed(f"{name}.{key}", known[key].kind, item)
 
 
-def _has_header(kind: Kind) -> bool:
+def _has_header(kind: keys.Kind) -> bool:
     """Whether what is inside of a table is written below a header of its own."""
-    item = kind.item if isinstance(kind, Named | Tables) else kind
-    return isinstance(item, Table) and (item.headed or kind is not item)
+    item = kind.item if isinstance(kind, keys.Named | keys.Tables) else kind
+    return isinstance(item, keys.Table) and (item.headed or kind is not item)
 
 
 def _is_tables(value: Any) -> bool:

@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.steps import Call
-from equipoise.studies.figures import PLACES, Of, Step, resolve
+from equipoise.studies.figures import ABSCISSAE, PLACES, Step, figure_name, resolve
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -67,6 +67,14 @@ def _balanced(model: Machine | Tool, wanted: Wanted) -> Values:
     return balance(cast("Machine", model)).to_dict(wanted)
 
 
+ANSWERS = {
+    "modes": "natural_frequencies eigenvalues places planes notes",
+    "respond": "speed source transmission orders stations largest_moment further",
+    "exposure": "a_hv a8 hands named days equivalents",
+}
+"""Keys of each answer about a tool."""
+
+
 def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
     """`equipoise tool` without further options; only those of its answers that have the keys."""
     from equipoise.handheld.sweep import default_answers
@@ -74,25 +82,9 @@ def _of_tool(model: Machine | Tool, wanted: Wanted) -> Values:
     tool = cast("Tool", model)
     values: dict[str, Any] = {"title": tool.title}
     for name in default_answers(tool):
-        if wanted is None or not ANSWERS[name].isdisjoint(wanted):
+        if wanted is None or not set(ANSWERS[name].split()).isdisjoint(wanted):
             values |= _answer(tool, name, wanted)
     return values
-
-
-ANSWERS = {
-    "modes": {"natural_frequencies", "eigenvalues", "places", "planes", "notes"},
-    "respond": {
-        "speed",
-        "source",
-        "transmission",
-        "orders",
-        "stations",
-        "largest_moment",
-        "further",
-    },
-    "exposure": {"a_hv", "a8", "hands", "named", "days", "equivalents"},
-}
-"""Keys of each answer about a tool."""
 
 
 def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
@@ -104,10 +96,12 @@ def _answer(tool: Tool, name: str, wanted: Wanted) -> Values:
         return vibrate_tool(tool, MODES).to_dict()
     if name == "respond":
         return sweep_tool(tool, _speeds(tool)).to_dict(wanted)
-    ranged = wanted is None or not OVER_SPEEDS.isdisjoint(wanted)
-    speeds = _speeds(tool) if ranged else np.array([_working(tool)])
-    values = expose_tool(tool, speeds).to_dict()
-    return values if ranged else {k: v for k, v in values.items() if k not in OVER_SPEEDS}
+    if wanted is None or not OVER_SPEEDS.isdisjoint(wanted):
+        return expose_tool(tool, _speeds(tool)).to_dict()
+    if tool.operation is None:
+        raise ModelError("operation", "missing; add the table [operation]")
+    values = expose_tool(tool, np.array([tool.operation.speed])).to_dict()
+    return {key: value for key, value in values.items() if key not in OVER_SPEEDS}
 
 
 def _speeds(tool: Tool) -> np.ndarray[Any, Any]:
@@ -119,12 +113,6 @@ def _speeds(tool: Tool) -> np.ndarray[Any, Any]:
     return speeds_between(tool, *ends, SPEEDS)
 
 
-def _working(tool: Tool) -> float:
-    if tool.operation is None:
-        raise ModelError("operation", "missing; add the table [operation]")
-    return tool.operation.speed
-
-
 COMMANDS: dict[str, Callable[[Machine | Tool, Wanted], Values]] = {
     "plant": _planted,
     "respond": _responded,
@@ -132,7 +120,6 @@ COMMANDS: dict[str, Callable[[Machine | Tool, Wanted], Values]] = {
     "tool": _of_tool,
 }
 """By the command's name; `analyze` stands apart, for its crank angles."""
-
 
 ANGLES = 360
 """Crank angles in a turn to begin with."""
@@ -155,23 +142,18 @@ class Request:
 
     @property
     def wanted(self) -> set[str]:
-        along = {"crank_angle", "speed"} if any(is_place(one) for one in self.steps) else set()
+        along = {*ABSCISSAE} if any(figure_name(one) in PLACES for one in self.steps) else set()
         return {str(one[0]) for one in self.steps} | along
 
 
-def check_outputs(study: Study) -> tuple[Request, ...]:
-    """Find every output of a study once, on its model, before time is spent on designs.
+def find_outputs(study: Study, outputs: Sequence[Output]) -> tuple[Request, ...]:
+    """Find some outputs of a study once, on its model, before time is spent on designs.
 
     Raises
     ------
     ModelError : an output leads to no number, or the model cannot be computed; `where` is the key
         of the study file.
     """
-    return find_outputs(study, study.outputs)
-
-
-def find_outputs(study: Study, outputs: Sequence[Output]) -> tuple[Request, ...]:
-    """The same of some of its outputs, whose columns count among these."""
     commands = dict.fromkeys(output.of for output in outputs)
     return tuple(asked for command in commands for asked in _of_command(study, outputs, command))
 
@@ -186,27 +168,14 @@ def _of_command(study: Study, outputs: Sequence[Output], command: str) -> list[R
             with np.errstate(all="ignore"):
                 model = make()
                 steps = _steps(study, asked, model, command)
-        except _NoFigure as error:
-            raise error.sentence from None
         except EquipoiseError as error:
             first = first or error
         else:
+            if isinstance(steps, ModelError):
+                raise steps
             return _parted(study, model, Request(command, columns, steps))
     where = f"outputs[{1 + study.outputs.index(asked[0])}].of"
     raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
-
-
-def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request]:
-    """What can be had of many designs at once, and the rest."""
-    if asked.command != "plant":
-        return [asked]
-    together = can_plant_together(cast("Machine", model), study.paths, asked.steps)
-    parts = []
-    for command, wanted in (("planted", True), ("plant", False)):
-        chosen = [k for k, one in enumerate(together) if one == wanted]
-        columns = tuple(asked.columns[k] for k in chosen)
-        parts.append(Request(command, columns, tuple(asked.steps[k] for k in chosen)))
-    return [part for part in parts if part.columns]
 
 
 OF_ONE = {"visits", "loops", "cusps", "tray_crossings", "forces"} | {
@@ -217,17 +186,26 @@ EACH_ITS_OWN = {"planting.depth", "planting.forward_speed", "planting.hill_spaci
 """Numbers of the field that may differ from machine to machine of a curve."""
 
 
-def can_plant_together(
-    machine: Machine, paths: Sequence[str], figures: Sequence[Sequence[Step]]
-) -> list[bool]:
-    """Which of some figures can be had of many designs at once.
-
-    paths : of the numbers that vary.  figures : as steps through what `plant` gives.
-    """
-    field = {path for path in paths if path.startswith("planting.")}
+def _parted(study: Study, model: Machine | Tool, asked: Request) -> list[Request]:
+    """What can be had of many designs at once, and the rest."""
+    if asked.command != "plant":
+        return [asked]
+    machine = cast("Machine", model)
+    field = {path for path in study.paths if path.startswith("planting.")}
     alike = field <= EACH_ITS_OWN and not machine.gears
     alike = alike and all(isinstance(step, Call) for step in assemble(machine).motion)
-    return [alike and steps[0] not in OF_ONE for steps in figures]
+    parts: dict[str, list[int]] = {"planted": [], "plant": []}
+    for k, steps in enumerate(asked.steps):
+        parts["planted" if alike and steps[0] not in OF_ONE else "plant"].append(k)
+    return [
+        Request(
+            command,
+            tuple(asked.columns[k] for k in chosen),
+            tuple(asked.steps[k] for k in chosen),
+        )
+        for command, chosen in parts.items()
+        if chosen
+    ]
 
 
 def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
@@ -240,17 +218,10 @@ def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
         yield partial(study.model.machine, values)
 
 
-class _NoFigure(Exception):
-    """A path leads nowhere; `sentence` tells."""
-
-    def __init__(self, sentence: ModelError) -> None:
-        self.sentence = sentence
-
-
 def _steps(
     study: Study, asked: Sequence[Output], model: Machine | Tool, command: str
-) -> tuple[tuple[Step, ...], ...]:
-    """Steps to the figures that a command gives of one machine."""
+) -> tuple[tuple[Step, ...], ...] | ModelError:
+    """Steps to the figures that a command gives of one machine, or what leads nowhere."""
     begins = {_FIRST.split(output.value, maxsplit=1)[0] for output in asked}
     values = _values(study, model, command, begins)
     try:
@@ -265,7 +236,7 @@ def _steps(
             where = f"outputs[{1 + study.outputs.index(output)}].value"
             missing = values.get("missing")
             told = f"got {output.value!r}; there are no forces, {missing}" if missing else error
-            raise _NoFigure(ModelError(where, str(told))) from None
+            return ModelError(where, str(told))
     return tuple(found)
 
 
@@ -288,15 +259,3 @@ def _resolved(study: Study, values: Mapping[str, Any], output: Output) -> tuple[
             "fixed; give a figure of the list, such as .max, or angles in [accuracy]"
         )
     return steps
-
-
-def is_place(steps: Sequence[Step]) -> bool:
-    """Whether a figure is where along the abscissa something is."""
-    last = steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
-    return last in PLACES
-
-
-def is_smooth(steps: Sequence[Step]) -> bool:
-    """Whether a figure stands still for good once it does: no extreme, and no place of one."""
-    last = steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
-    return last in ("mean", "rms")

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import isfinite
 from numbers import Real
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Protocol, get_args
 
 import numpy as np
 
@@ -187,6 +187,7 @@ def _check_whole(values: Iterable[float]) -> None:
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]
 Command = Literal["analyze", "plant", "respond", "balance", "tool"]
 Make = Literal["smallest", "largest"]
+METHODS, COMMANDS = get_args(Method), get_args(Command)
 
 
 class Model(Protocol):

@@ -7,13 +7,14 @@ of every command, at some milliseconds a design; the other routes take what they
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isfinite, nan, remainder
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from equipoise.codegen import backends
 from equipoise.codegen.figures import (
     CHANGE_POINT,
     COMPUTED,
@@ -29,16 +30,8 @@ from equipoise.codegen.figures import (
 from equipoise.errors import ChangePointError, EquipoiseError, ModelError, MotionError, RangeError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
-from equipoise.studies.commands import (
-    ANGLES,
-    COMMANDS,
-    Request,
-    analyzed,
-    find_outputs,
-    is_place,
-    is_smooth,
-)
-from equipoise.studies.figures import Step, read, scale
+from equipoise.studies.commands import ANGLES, COMMANDS, Request, analyzed, find_outputs
+from equipoise.studies.figures import PLACES, Step, figure_name, read, scale
 from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:
@@ -59,10 +52,8 @@ FAINT = 1e-9
 """Share of the largest signal beside it below which a signal is rounding."""
 
 
-class Quick(Protocol):
-    """Figures (P, m) and reasons (P,) of designs (P, d), as `Batch` and `MassBatch` give."""
-
-    def __call__(self, values: Array) -> tuple[Array, Array]: ...
+Quick = Callable[[Array], tuple[Array, Array]]
+"""Figures (P, m) and reasons (P,) of designs (P, d), as `Batch` and `MassBatch` give."""
 
 
 def evaluator(study: Study, threads: int | None = None) -> Evaluator:
@@ -99,9 +90,7 @@ class Routes:
     @property
     def engine(self) -> str:
         """What computes: ``numba`` or ``numpy``."""
-        from equipoise.codegen.backends import engine
-
-        return engine()
+        return backends.engine()
 
     def __call__(self, values: Array) -> Outcome:
         found = np.full((len(values), len(self.study.outputs)), np.nan)
@@ -147,7 +136,7 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
 
 
 def one_by_one(study: Study, outputs: Sequence[Output]) -> Evaluator:
-    """The general route to some outputs of a study, in their order; errors as `check_outputs`."""
+    """The general route to some outputs of a study, in their order; errors as `find_outputs`."""
     return _OneByOne(
         study.model, study.paths, find_outputs(study, outputs), study.angles, study.tolerance
     )
@@ -263,7 +252,8 @@ def _figures_of(
     if angles is not None:
         return found, True
     number, calm = ANGLES, 0
-    needed = 1 if all(is_smooth(one) for one in asked.steps) else 2
+    # Extremes, and their places, may stand still once by chance.
+    needed = 1 if all(figure_name(one) in ("mean", "rms") for one in asked.steps) else 2
     most = min(MOST_ANGLES, MOST_SAMPLES // values.get("turns", 1))
     while 2 * number <= most:
         number *= 2
@@ -285,7 +275,7 @@ def _still(
     """Whether figures have kept, within a share of the RMS of the signal that each is of."""
     for one, old, new in zip(steps, before, now, strict=True):
         change = abs(new - old)
-        if is_place(one):
+        if figure_name(one) in PLACES:
             change = abs(remainder(change, 2 * np.pi * values.get("turns", 1)))
         if change == 0 or not (isfinite(old) and isfinite(new)):
             continue  # what is missing will not come with further crank angles

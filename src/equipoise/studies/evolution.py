@@ -13,9 +13,8 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
 from equipoise.studies.design_space import Choices
 from equipoise.studies.extras import needed
-from equipoise.studies.outcomes import Evaluator, Outcome, signs_of
+from equipoise.studies.outcomes import Evaluator, Outcome, far_apart, non_dominated, signs_of
 from equipoise.studies.sampling import values_at
-from equipoise.studies.selection import far_apart, non_dominated
 from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]

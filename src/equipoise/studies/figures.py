@@ -1,4 +1,4 @@
-"""A number out of what a command gives: from a dotted path to the figure.
+"""A number out of what a command gives: from a dotted path to the figure, and what it is.
 
 ``summary.shaking_force.y.rms`` leads through nested values to a number; names may hold dots, or
 stand in quotes; ``[2]`` is the second of a list, ``[order 2]`` the one of order 2, and ``.rms`` a
@@ -11,13 +11,20 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite, nan, pi
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.outputs import declared
+from equipoise.planting.goals import dimension_of as of_planting
 from equipoise.signals import figures
+
+if TYPE_CHECKING:
+    from equipoise.handheld.model import Tool
+    from equipoise.mechanism.model import Machine
+    from equipoise.mechanism.support import Support
 
 Array = np.ndarray[Any, Any]
 Values = Mapping[str, Any]
@@ -89,13 +96,17 @@ def read(values: Values, steps: Sequence[Step]) -> float:
         return nan
 
 
+def figure_name(steps: Sequence[Step]) -> Any:
+    """What is told last, such as ``rms``."""
+    return steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
+
+
 def scale(values: Values, steps: Sequence[Step]) -> float:
     """By what the error of a figure is measured: the RMS of the signal that it is a figure of.
 
     A turn where it is a crank angle, 1 where it is a number by itself.
     """
-    last = steps[-1].name if isinstance(steps[-1], Of) else steps[-1]
-    if last in PLACES or "phases" in steps:
+    if figure_name(steps) in PLACES or "phases" in steps:
         return 2 * pi
     if len(steps) > 2 and steps[0] in ("summary", "by_order"):
         rms = read(values, ("summary", steps[1], "rms"))
@@ -120,11 +131,9 @@ def _figure(numbers: Any, of: Of, whole: Values) -> float:
 
 
 def _abscissa(whole: Values, count: int) -> Array | None:
-    for key in ABSCISSAE:
-        found = whole.get(key)
-        if isinstance(found, np.ndarray) and found.shape == (count,):
-            return found
-    return None
+    """What a list of so many numbers runs along, if it does."""
+    along = (whole.get(key) for key in ABSCISSAE)
+    return next((x for x in along if isinstance(x, np.ndarray) and x.shape == (count,)), None)
 
 
 @dataclass
@@ -141,7 +150,7 @@ class _Finder:
         """Every way to take the rest of a path from here to a number."""
         if isinstance(here, Mapping):
             yield from self.into_table(here, rest)
-        elif _is_list(here):
+        elif isinstance(here, list | tuple) or np.ndim(here) > 0:
             yield from self.into_list(here, rest, above)
         elif rest:
             self.ends(rest, f"a single number stands there, without {rest!r} below it")
@@ -212,10 +221,6 @@ class _Finder:
         self.ends(rest, f"there is no order {number}; the orders are {told} and so on")
 
 
-def _is_list(value: Any) -> bool:
-    return isinstance(value, list | tuple) or (isinstance(value, np.ndarray) and value.ndim > 0)
-
-
 def _of_numbers(values: Any) -> bool:
     if isinstance(values, np.ndarray):
         return values.ndim == 1 and values.dtype.kind in "fiu"
@@ -226,3 +231,116 @@ def _listed(names: Any, most: int = 12) -> str:
     shown = [str(name) for name in names]
     told = ", ".join(shown[:most]) or "none"
     return told if len(shown) <= most else f"{told} and {len(shown) - most} more"
+
+
+# -- what it is ------------------------------------------------------------------------------------
+
+_AT = "|".join(PLACES)
+KINDS: dict[str, dict[str, str | None]] = {
+    "analyze": {
+        r"four_bar\.[abcd]|about\..*": "length",
+        r"four_bar\.(transmission_min|transmission_max|swing)|crank_angle": "angle",
+        rf"by_order\..*\.phases|.*\.({_AT})": "angle",
+        r"four_bar\..*|turns|by_order\.(.*\.)?orders": None,
+        "speed": "angular speed",
+        "acceleration": "angular acceleration",
+    },
+    "plant": {
+        r"visits\.depth|loops\.(y|height|width)": "length",
+        r"loops\.(area|in_soil.*)": None,
+        rf"(cusps|tray_crossings)(\..*)?|(visits|loops)\..*|forces\..*\.({_AT})": "angle",
+    },
+    "respond": {
+        r"(.*\.)?phases": "angle",
+        r"(.*\.)?(orders|transmissibility|transmissibility_by_order|lifts_off)": None,
+        r"((drive\.)?speed|modes\.(natural|damped)_frequency)(\..*)?": "angular speed",
+        r"drive\.torque(\..*)?": "torque",
+        r"energy(\..*)?": "energy",
+        r"joints(\..*)?": "force",
+        r"modes\.hertz(\..*)?": "frequency",
+    },
+    "balance": {
+        r"speed|equivalent_speeds\..*": "angular speed",
+        r"added_mass|(before|after)\.mass": "mass",
+        r"(?!before\.|after\.).*|.*\.area": None,
+    },
+    "tool": {
+        rf"(.*\.)?({_AT})": "angular speed",
+        r"(equivalents|named)(\..*)?": "acceleration",
+        r"stations\..*\.forces\.[^.]*": "force",
+        r"stations\..*\.power\.[^.]*": "power",
+        r"(.*\.)?(a_hv|a8|(acceleration|a_hw)(_vertical|_lateral)?)": "acceleration",
+        r"(.*\.)?(natural_frequencies|frequency)": "frequency",
+        r"(.*\.)?(speed|quiet_speeds|quiet_speeds_lateral)": "angular speed",
+        r"(.*\.)?phase(_lateral)?": "angle",
+        r"(.*\.)?(position|displacement|places?|nodes)": "length",
+        r"(.*\.)?velocity": "speed",
+        r"(.*\.)?moment": "torque",
+        r"(.*\.)?(duration|time_to_(action|limit)|japanese_(limit_)?time)": "time",
+        ".*": None,
+    },
+}
+"""Of each command: paths, without places in lists and what is told of a list, and what they are."""
+
+
+def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
+    """Dimension of the figure at a path of what a command gives; None of plain and unknown ones.
+
+    Nothing is computed for it.
+
+    model : the one of the study, which knows what its gauges and mounts read.
+    of : the command.  value : the path, as in a study file.
+    """
+    whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
+    if of not in ("plant", "respond", "balance", "tool"):
+        of, whole = "analyze", whole.removeprefix("summary.")
+    path = whole if of in ("plant", "balance") else _STATISTIC.sub("", whole)
+    for pattern, dimension in KINDS[of].items():
+        if re.fullmatch(pattern, path):
+            return dimension
+    first, _, rest = path.partition(".")
+    if of == "respond":
+        return _of_support(model, first, rest)
+    if of == "plant" and first != "forces":
+        return of_planting(path)
+    if of == "balance" and rest.startswith("planting."):
+        return of_planting(rest.removeprefix("planting."))
+    if first in ("by_cause", "by_link"):
+        return _of_part(rest)
+    kind, _, name = rest.partition(".")
+    found = _of_support(model, kind, name) if of == "balance" and kind == "gauges" else None
+    plain = of == "analyze" and first != "by_order"
+    return found or _of_output(path if plain else _LAST.sub("", rest))
+
+
+_STATISTIC = re.compile(rf"\.({'|'.join(OF_LISTS)})$")
+_LAST = re.compile(r"(\.in_air|\.in_soil)?\.[^.]*$")
+
+
+def _of_output(name: str) -> str | None:
+    found = declared(name)
+    return None if found is None else found[0].dimension
+
+
+def _of_part(path: str) -> str | None:
+    """Of what a cause or link adds to an output, which stands first."""
+    words = path.split(".")
+    names = (".".join(words[:count]) for count in range(len(words), 0, -1))
+    return next((found[0].dimension for found in map(declared, names) if found), None)
+
+
+def _of_support(model: Machine | Tool, first: str, rest: str) -> str | None:
+    """Of what a gauge or mount reads; names may hold dots, so the longest that fits it is."""
+    support: Support | None = getattr(model, "support", None)
+    places: Mapping[str, Any] = getattr(support, first, {}) if first in ("gauges", "mounts") else {}
+    name = max((name for name in places if f"{rest}.".startswith(f"{name}.")), key=len, default="")
+    if not name:
+        return None
+    turns = places[name].axis is not None
+    if first == "mounts":
+        return "torque" if turns else "force"
+    rate = rest.removeprefix(f"{name}.").partition(".")[0]
+    if rate in ("velocity", "acceleration"):
+        linear = "speed" if rate == "velocity" else "acceleration"
+        return f"angular {linear}" if turns else linear
+    return "angle" if turns else "length"

@@ -19,9 +19,7 @@ import numpy as np
 
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.gauges import Near
-from equipoise.balancing.measures import measured, unit_of
-from equipoise.balancing.multi_row import signals_of
+from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
 from equipoise.balancing.optimisation import pin_of
 from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError

@@ -1,4 +1,4 @@
-"""What came of designs: figures and reasons, sums over them, and how far a run is."""
+"""What came of designs: figures and reasons, which are the best, sums, and how far a run is."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.studies.extras import needed
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make, Output
@@ -79,6 +80,90 @@ def kept(outputs: Sequence[Output], figures: Array) -> Array:
     high = [np.inf if output.at_most is None else output.at_most for output in outputs]
     inside: Array = (figures >= low) & (figures <= high)
     return inside
+
+
+def designs_told(
+    numbers: Sequence[str], values: Array, outputs: Sequence[str], figures: Array
+) -> list[dict[str, Any]]:
+    """Designs (K), each with its values (K, d) of numbers and figures (K, m) of outputs by name."""
+    return [
+        {
+            "values": dict(zip(numbers, row, strict=True)),
+            "figures": dict(zip(outputs, found, strict=True)),
+        }
+        for row, found in zip(values.tolist(), figures.tolist(), strict=True)
+    ]
+
+
+# -- which are the best ----------------------------------------------------------------------------
+
+
+def non_dominated(costs: Array) -> Array:
+    """Places of the rows of costs (n, M) that no other row dominates, in order; all to be small.
+
+    Of equal rows only the first is taken.
+
+    Raises
+    ------
+    UsageError : the library for several costs is not installed.
+    """
+    if costs.shape[1] == 1 or len(costs) < 2:
+        return np.array([np.argmin(costs[:, 0])] if len(costs) else [], np.intp)
+    moocore = needed("moocore", "a choice by several figures")
+    return np.flatnonzero(moocore.is_nondominated(costs, keep_weakly=False))
+
+
+def far_apart(costs: Array, count: int) -> Array:
+    """Places of so many rows of costs (n, M) that lie far from each other, in order.
+
+    The best of each cost first, then whichever is furthest from all that are taken, each cost
+    measured over its range.
+    """
+    if not 0 < count < len(costs):
+        return np.arange(min(count, len(costs)))
+    low, high = costs.min(axis=0), costs.max(axis=0)
+    places = (costs - low) / np.where(high > low, high - low, 1.0)
+    taken = list(dict.fromkeys(int(k) for k in np.argmin(places, axis=0)))[:count]
+    gap = np.min([np.sum((places - places[k]) ** 2, axis=1) for k in taken], axis=0)
+    while len(taken) < count:
+        gap[taken] = -1.0
+        furthest = int(np.argmax(gap))
+        taken.append(furthest)
+        gap = np.minimum(gap, np.sum((places - places[furthest]) ** 2, axis=1))
+    return np.sort(taken)
+
+
+def why_none(
+    outputs: Sequence[Output], reasons: Array, limits: Array, units: Sequence[str] = ()
+) -> str:
+    """Say why no design keeps every limit.
+
+    reasons : number of designs by reason, (256,).  limits : those that keep each output's, (m,).
+    """
+    computed = int(reasons[COMPUTED])
+    if not computed:
+        failed = [f"{what}: {reasons[k]}" for k, what in REASONS.items() if reasons[k]]
+        return (
+            f"no design has figures ({', '.join(failed)}); let the numbers vary closer to those "
+            "of the model"
+        )
+    named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
+    told = [f"{_limit(one, unit)} by {n}" for one, unit, n in named if one.limited]
+    return (
+        f"none of {computed} designs keeps every limit; kept is {', '.join(told)}; loosen a limit, "
+        "or let more vary"
+    )
+
+
+def _limit(output: Output, unit: str) -> str:
+    """Such as ``2 <= lift <= 3 m``."""
+    low, high = output.at_least, output.at_most
+    text = output.name if low is None else f"{low:g} <= {output.name}"
+    text = text if high is None else f"{text} <= {high:g}"
+    return f"{text} {unit}".strip()
+
+
+# -- how far a run is ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True)

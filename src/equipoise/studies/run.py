@@ -15,6 +15,7 @@ from math import nan
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
+from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
 from equipoise.quantities import SI
@@ -220,13 +221,6 @@ def chunk_of(study: Study, compiled: bool) -> int:
         most = NUMBERS // len(study.paths + study.names)
         return min(study.chunk, study.size, most, max(LEAST_CHUNK, -(-study.size // SHARED)))
     return min(study.chunk, SLOW_CHUNK, -(-study.size // SLOW_SHARED))
-
-
-def processors() -> int:
-    """Number of processors that this process may use."""
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1
 
 
 def compute(packed: bytes, designs: range) -> Block:

@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.studies.checks import correlation_matrix
 from equipoise.studies.design_space import LEAST, MOST
+from equipoise.studies.study import correlation_matrix
 
 if TYPE_CHECKING:
     from scipy.stats.qmc import Sobol

@@ -19,9 +19,8 @@ from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution
-from equipoise.studies.outcomes import Evaluator, failures, kept
+from equipoise.studies.outcomes import Evaluator, designs_told, failures, kept, why_none
 from equipoise.studies.sampling import values_at
-from equipoise.studies.selection import why_none
 from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
@@ -71,9 +70,10 @@ class Searched(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        designs = zip(self.values.tolist(), self.figures.tolist(), strict=True)
+        volumes = [None if isnan(one) else one for one in self.volumes.tolist()]
+        study = self.study
         return {
-            "title": self.study.title,
+            "title": study.title,
             "objectives": dict(self.objectives),
             "seed": self.seed,
             "front": self.front,
@@ -81,14 +81,8 @@ class Searched(Result):
             "stood_still": self.stood_still,
             "computed": self.computed,
             "failures": dict(self.failures),
-            "volumes": [None if isnan(one) else one for one in self.volumes.tolist()],
-            "designs": [
-                {
-                    "values": dict(zip(self.study.paths, values, strict=True)),
-                    "figures": dict(zip(self.study.names, figures, strict=True)),
-                }
-                for values, figures in designs
-            ],
+            "volumes": volumes,
+            "designs": designs_told(study.paths, self.values, study.names, self.figures),
         }
 
 

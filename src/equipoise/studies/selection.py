@@ -1,11 +1,19 @@
-"""The best designs of a store: those that keep every limit, by one figure or by several."""
+"""What is taken out of a store: the best of its designs, and all of them as one file.
+
+The best keep every limit, by one figure or by several; a file is Parquet or CSV.
+"""
 
 from __future__ import annotations
 
+import csv
+import io
 import json
-from collections.abc import Mapping, Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from pathlib import Path
+from typing import Any, BinaryIO, ClassVar
 
 import numpy as np
 
@@ -15,49 +23,18 @@ from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.extras import needed
-from equipoise.studies.outcomes import kept, signs_of
-
-if TYPE_CHECKING:
-    from equipoise.studies.outcomes import Block
-    from equipoise.studies.store import Store
+from equipoise.studies.outcomes import (
+    Block,
+    designs_told,
+    far_apart,
+    non_dominated,
+    signs_of,
+    why_none,
+)
+from equipoise.studies.outcomes import kept as keep
+from equipoise.studies.store import REASON, UNKNOWN, Store, as_usage_error
 
 Array = np.ndarray[Any, Any]
-
-
-def non_dominated(costs: Array) -> Array:
-    """Places of the rows of costs (n, M) that no other row dominates, in order; all to be small.
-
-    Of equal rows only the first is taken.
-
-    Raises
-    ------
-    UsageError : the library for several costs is not installed.
-    """
-    if costs.shape[1] == 1 or len(costs) < 2:
-        return np.array([np.argmin(costs[:, 0])] if len(costs) else [], np.intp)
-    moocore = needed("moocore", "a choice by several figures")
-    return np.flatnonzero(moocore.is_nondominated(costs, keep_weakly=False))
-
-
-def far_apart(costs: Array, count: int) -> Array:
-    """Places of so many rows of costs (n, M) that lie far from each other, in order.
-
-    The best of each cost first, then whichever is furthest from all that are taken, each cost
-    measured over its range.
-    """
-    if not 0 < count < len(costs):
-        return np.arange(min(count, len(costs)))
-    low, high = costs.min(axis=0), costs.max(axis=0)
-    places = (costs - low) / np.where(high > low, high - low, 1.0)
-    taken = list(dict.fromkeys(int(k) for k in np.argmin(places, axis=0)))[:count]
-    gap = np.min([np.sum((places - places[k]) ** 2, axis=1) for k in taken], axis=0)
-    while len(taken) < count:
-        gap[taken] = -1.0
-        furthest = int(np.argmax(gap))
-        taken.append(furthest)
-        gap = np.minimum(gap, np.sum((places - places[furthest]) ** 2, axis=1))
-    return np.sort(taken)
-
 
 COUNT = 10
 """Designs that are told, if not told otherwise."""
@@ -91,21 +68,15 @@ class Best(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
-        rows = zip(self.designs.tolist(), self.values.tolist(), self.figures.tolist(), strict=True)
+        told = designs_told(self.numbers, self.values, self.outputs, self.figures)
+        numbered = zip(self.designs.tolist(), told, strict=True)
         return {
             "by": dict(self.by),
             "front": self.front,
             "kept": self.kept,
             "computed": self.computed,
             "stored": self.stored,
-            "designs": [
-                {
-                    "design": design,
-                    "values": dict(zip(self.numbers, values, strict=True)),
-                    "figures": dict(zip(self.outputs, figures, strict=True)),
-                }
-                for design, values, figures in rows
-            ],
+            "designs": [{"design": number, **design} for number, design in numbered],
         }
 
 
@@ -125,12 +96,10 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     if count < 1:
         raise UsageError(f"got {count} designs; give 1 or more")
     outputs = outputs_of(store)
-    ways = _ways(store, outputs, by)
-    search = _Choice(store, outputs, ways, count)
+    choice = _Choice(store, outputs, _ways(store, outputs, by), count)
     for start, block in store.in_blocks():
-        search.add(start, block)
-    search.check()
-    return search.result()
+        choice.add(start, block)
+    return choice.result()
 
 
 def outputs_of(store: Store) -> tuple[Output, ...]:
@@ -177,87 +146,157 @@ class _Choice:
         self.reasons += block.outcome.counts
         computed = np.flatnonzero(block.outcome.computed)
         figures = block.outcome.figures[computed]
-        inside = kept(self.outputs, figures)
+        inside = keep(self.outputs, figures)
         self.limits += np.sum(inside, axis=0)
         good = np.all(inside, axis=1)
         self.kept += int(np.sum(good))
         rows = np.hstack([block.values[computed[good]], figures[good]])
         self.designs = np.concatenate([self.designs, start + computed[good]])
         self.rows = np.concatenate([self.rows, rows])
-        best_so_far = self.best()
-        self.designs, self.rows = self.designs[best_so_far], self.rows[best_so_far]
+        if len(self.ways) > 1:
+            self.keep_only(non_dominated(self.costs))
+        else:
+            self.keep_only(np.argsort(self.costs[:, 0], kind="stable")[: self.count])
 
     @property
     def costs(self) -> Array:
         costs: Array = self.rows[:, self.places] * self.signs
         return costs
 
-    def best(self) -> Array:
-        """Places of the rows that may still be among the best."""
-        if len(self.ways) > 1:
-            return non_dominated(self.costs)
-        return np.argsort(self.costs[:, 0], kind="stable")[: self.count]
+    def keep_only(self, places: Array) -> None:
+        self.designs, self.rows = self.designs[places], self.rows[places]
 
-    def check(self) -> None:
-        """Say why there is no best design, if there is none."""
-        if self.kept:
-            return
-        where = self.store.path
-        if not np.any(self.reasons[list(REASONS)]):
+    def result(self) -> Best:
+        """The best of all; `UsageError` says why there is none."""
+        where, stored = self.store.path, int(np.sum(self.reasons[list(REASONS)]))
+        if not stored:
             raise UsageError(
                 f"{where}: nothing is computed yet; go on with: equipoise resume {where}"
             )
-        units = [self.store.units.get(output.name, "") for output in self.outputs]
-        raise UsageError(f"{where}: {why_none(self.outputs, self.reasons, self.limits, units)}")
-
-    def result(self) -> Best:
-        size = len(self.designs) if len(self.ways) > 1 else 1
-        told = far_apart(self.costs, self.count) if len(self.ways) > 1 else slice(None)
-        designs, rows = self.designs[told], self.rows[told]
+        if not self.kept:
+            units = [self.store.units.get(output.name, "") for output in self.outputs]
+            raise UsageError(f"{where}: {why_none(self.outputs, self.reasons, self.limits, units)}")
+        front = len(self.designs) if len(self.ways) > 1 else 1
         if len(self.ways) > 1:
-            order = np.argsort(self.costs[told][:, 0], kind="stable")
-            designs, rows = designs[order], rows[order]
-        split = len(self.store.numbers)
-        stored = sum(int(self.reasons[k]) for k in REASONS)
+            self.keep_only(far_apart(self.costs, self.count))
+            self.keep_only(np.argsort(self.costs[:, 0], kind="stable"))
+        values, figures = np.split(self.rows, [len(self.store.numbers)], axis=1)
         return Best(
             by=dict(self.ways),
             numbers=self.store.numbers,
             outputs=self.store.outputs,
-            designs=designs,
-            values=rows[:, :split],
-            figures=rows[:, split:],
-            front=size,
+            designs=self.designs,
+            values=values,
+            figures=figures,
+            front=front,
             kept=self.kept,
             computed=int(self.reasons[COMPUTED]),
             stored=stored,
         )
 
 
-def why_none(
-    outputs: Sequence[Output], reasons: Array, limits: Array, units: Sequence[str] = ()
-) -> str:
-    """Say why no design keeps every limit.
+# -- as one table ----------------------------------------------------------------------------------
 
-    reasons : number of designs by reason, (256,).  limits : those that keep each output's, (m,).
+Write = Callable[[Any], None]
+"""Takes a table of some rows."""
+
+
+def export(store: Store, path: str | os.PathLike[str], *, kept: bool = False) -> int:
+    """Write every design that is stored into a file, one a row; returns how many those are.
+
+    Columns are `design`, its number from 0, all varied numbers and outputs in SI units, and
+    `reason` in words.  Figures that a design lacks are empty.  Units stand in the header of a CSV
+    file, and in the metadata of each column of a Parquet file.
+
+    Parameters
+    ----------
+    path : of a file whose name ends in .csv or .parquet; one that is there is replaced.
+    kept : only those designs that have figures and keep every limit of the study.
+
+    Raises
+    ------
+    UsageError : pyarrow is not installed, or the file cannot be written.
     """
-    computed = int(reasons[COMPUTED])
-    if not computed:
-        failed = [f"{what}: {reasons[k]}" for k, what in REASONS.items() if reasons[k]]
-        return (
-            f"no design has figures ({', '.join(failed)}); let the numbers vary closer to those "
-            "of the model"
-        )
-    named = zip(outputs, units or [""] * len(outputs), limits, strict=True)
-    told = [f"{_limit(one, unit)} by {n}" for one, unit, n in named if one.limited]
-    return (
-        f"none of {computed} designs keeps every limit; kept is {', '.join(told)}; loosen a limit, "
-        "or let more vary"
+    target = Path(path)
+    writers = {".csv": _csv, ".parquet": _parquet}
+    if target.suffix.lower() not in writers:
+        raise UsageError(f"{target}: give the name of a file that ends in .csv or .parquet")
+    schema = _schema(store)
+    outputs = outputs_of(store)
+    rows = 0
+    with (
+        as_usage_error(target, "the file cannot be written", "choose another place or name"),
+        _replaced(target) as file,
+        writers[target.suffix.lower()](file, schema, store) as write,
+    ):
+        for start, block in store.in_blocks():
+            wanted = block.outcome.reason != UNKNOWN
+            if kept:
+                wanted = keep(outputs, block.outcome.figures).all(axis=1)
+            table = _table(schema, start, block, np.flatnonzero(wanted))
+            write(table)
+            rows += len(table)
+    return rows
+
+
+def _schema(store: Store) -> Any:
+    arrow = needed("pyarrow", "an export")
+    units = {name: {"unit": unit} for name, unit in store.units.items()}
+    numbers = [
+        arrow.field(name, arrow.float64(), metadata=units.get(name))
+        for name in (*store.numbers, *store.outputs)
+    ]
+    reason = arrow.field(REASON, arrow.dictionary(arrow.int8(), arrow.string()))
+    about = {"study": json.dumps(dict(store.texts), ensure_ascii=False)}
+    return arrow.schema([arrow.field("design", arrow.int64()), *numbers, reason], metadata=about)
+
+
+def _table(schema: Any, start: int, block: Block, rows: Array) -> Any:
+    """Some rows of designs."""
+    arrow = needed("pyarrow", "an export")
+    reason = block.outcome.reason
+    columns = [
+        arrow.array(column[rows], from_pandas=True)  # NaN is what is lacking
+        for column in (*block.values.T, *block.outcome.figures.T)
+    ]
+    words = arrow.DictionaryArray.from_arrays(
+        arrow.array(reason[rows].astype(np.int8)), [REASONS[k] for k in range(len(REASONS))]
     )
+    return arrow.Table.from_arrays([arrow.array(start + rows), *columns, words], schema=schema)
 
 
-def _limit(output: Output, unit: str) -> str:
-    """Such as ``2 <= lift <= 3 m``."""
-    low, high = output.at_least, output.at_most
-    text = output.name if low is None else f"{low:g} <= {output.name}"
-    text = text if high is None else f"{text} <= {high:g}"
-    return f"{text} {unit}".strip()
+@contextmanager
+def _parquet(file: BinaryIO, schema: Any, _: Store) -> Iterator[Write]:
+    parquet = needed("pyarrow.parquet", "an export")
+    with parquet.ParquetWriter(file, schema, compression="zstd") as writer:
+        yield writer.write_table
+
+
+@contextmanager
+def _csv(file: BinaryIO, schema: Any, store: Store) -> Iterator[Write]:
+    arrow_csv = needed("pyarrow.csv", "an export")
+    units = store.units
+    header = io.StringIO()
+    csv.writer(header, lineterminator="\n").writerow(
+        f"{name} [{units[name]}]" if name in units else name for name in schema.names
+    )
+    file.write(header.getvalue().encode())
+    # No reason has a sign in it that would need quotes.
+    options = arrow_csv.WriteOptions(include_header=False, quoting_style="none")
+    with arrow_csv.CSVWriter(file, schema, write_options=options) as writer:
+        yield writer.write_table
+
+
+@contextmanager
+def _replaced(path: Path) -> Iterator[BinaryIO]:
+    """A file that takes its place once it is whole."""
+    target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
+    partial = target.with_name(f".{target.name}.{os.getpid()}.tmp")
+    try:
+        with open(partial, "wb") as file:
+            yield file
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, target)
+    finally:
+        partial.unlink(missing_ok=True)

@@ -1,38 +1,43 @@
-"""A study as a value: what varies of which model, how it is sampled, and what is computed."""
+"""A study as a value: what varies of which model, how it is sampled, and what is computed; and its
+checks: what contradicts itself, and what cannot be computed.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass, field, replace
-from math import prod
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, fields, replace
+from math import inf, isfinite, prod
+from typing import Any
 
 import numpy as np
 
-from equipoise.errors import ModelError
-from equipoise.mechanism.checks import wrong_text
-from equipoise.studies import checks
-from equipoise.studies.checks import check_numbers, shape_of
+from equipoise.errors import ModelError, UsageError
+from equipoise.mechanism.checks import unknown, wrong_text
 from equipoise.studies.design_space import (
+    COMMANDS,
     KEYS,
+    METHODS,
     SPREADS,
+    Choices,
     Correlation,
     Model,
     Output,
     Range,
     Sampling,
-    Spread,
     Vary,
 )
-
-if TYPE_CHECKING:
-    pass
 
 Array = np.ndarray[Any, Any]
 
 CHUNK, SLOW_CHUNK = 65_536, 256
 """Designs that are computed and stored together: of analyses, and of whatever takes longer."""
+MOST_DESIGNS = 1_000_000_000
+MOST_VARIED, MOST_OUTPUTS, MOST_CHUNK, MOST_SEED = 1000, 1000, 10_000_000, 2**32 - 1
+ANGLES, TOLERANCE = (8, 65_536), (1e-12, 0.1)
+"""Fewest and most crank angles in a turn; least and largest tolerance of the figures."""
+RESERVED = ("design", "done", "kept", "reason")
+"""Names of columns that a store of designs has anyway."""
 
 
 @dataclass(frozen=True)
@@ -64,7 +69,7 @@ class Study:
     def __post_init__(self) -> None:
         for name in ("vary", "outputs", "correlations"):
             object.__setattr__(self, name, tuple(getattr(self, name)))
-        numbers = check_numbers(self.model, self.vary)
+        numbers = _numbers(self.model, self.vary)
         vary = tuple(_as_in(one, *number) for one, number in zip(self.vary, numbers, strict=True))
         object.__setattr__(self, "vary", vary)
         for problem in _problems(self):
@@ -86,7 +91,7 @@ class Study:
     @property
     def shape(self) -> tuple[int, ...]:
         """Of a grid: values of each number; the last runs fastest."""
-        return shape_of(self.vary)
+        return tuple(len(one.spread.levels) for one in self.vary)
 
     @property
     def size(self) -> int:
@@ -111,16 +116,68 @@ class Study:
         }
 
 
-def _problems(study: Study) -> Iterator[ModelError]:
-    """What is wrong with a study beside its numbers, the first things first."""
-    method = study.sampling.method
-    yield from wrong_text("title", study.title)
-    for number, one in enumerate(study.vary, 1):
-        yield from checks.wrong_spread(f"vary[{number}]", one, study.model, method)
-    yield from checks.wrong_sampling(study.sampling, study.vary)
-    yield from checks.wrong_correlations(study.correlations, study.vary, method)
-    yield from checks.wrong_outputs(study.outputs, study.paths, study.model.kind)
-    yield from checks.wrong_accuracy(study.angles, study.tolerance, study.chunk)
+# -- as plain values -------------------------------------------------------------------------------
+
+
+def to_plain(study: Study) -> dict[str, Any]:
+    """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
+    plain = {one.name: getattr(study, one.name) for one in fields(study)}
+    for name in ("outputs", "correlations"):
+        plain[name] = [asdict(one) for one in plain[name]]
+    plain["vary"] = [
+        {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
+        for one in study.vary
+    ]
+    plain["sampling"] = asdict(study.sampling)
+    return {name: value for name, value in plain.items() if name not in ("model", "file")}
+
+
+def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
+    """The study of `to_plain`, exactly."""
+    vary = []
+    for one in plain["vary"]:
+        spread = dict(one["spread"])
+        vary.append(Vary(**{**one, "spread": SPREADS[spread.pop("kind")](**spread)}))
+    made = {
+        "vary": tuple(vary),
+        "outputs": tuple(Output(**one) for one in plain["outputs"]),
+        "sampling": Sampling(**plain["sampling"]),
+        "correlations": tuple(Correlation(**one) for one in plain["correlations"]),
+    }
+    return Study(**{**plain, **made}, model=model, file=file)
+
+
+# -- what varies, and how --------------------------------------------------------------------------
+
+
+def _numbers(model: Model, vary: Sequence[Vary]) -> list[tuple[float, str | None]]:
+    """Number and dimension of everything that varies, as the model has it."""
+    if not vary:
+        raise ModelError("vary", "there is none; give at least one [[vary]]")
+    if len(vary) > MOST_VARIED:
+        raise ModelError("vary", f"got {len(vary)}; at most {MOST_VARIED} numbers may vary")
+    places: dict[str, str] = {}
+    numbers = []
+    for number, one in enumerate(vary, 1):
+        where, path = f"vary[{number}]", one.path
+        if path in places:
+            told = f"{path} varies in {places[path]} already; leave one of them out"
+            raise ModelError(f"{where}.path", told)
+        if "/" in path:
+            told = f"got {path!r}; no column can have / in its name, rename it"
+            raise ModelError(f"{where}.path", told)
+        try:
+            numbers.append(model.number(path))
+        except ModelError as error:
+            raise ModelError(f"{where}.path", error.what) from error
+        places[path] = where
+    try:
+        model.machine({path: value for path, (value, _) in zip(places, numbers, strict=True)})
+    except ModelError as error:
+        if error.where in places:
+            raise ModelError(f"{places[error.where]}.path", error.what) from error
+        raise ModelError("model", f"{error.where}: {error.what}") from error
+    return numbers
 
 
 def _as_in(one: Vary, value: float, dimension: str | None) -> Vary:
@@ -131,45 +188,162 @@ def _as_in(one: Vary, value: float, dimension: str | None) -> Vary:
     return replace(one, spread=spread, dimension=dimension)
 
 
-# -- as plain values -------------------------------------------------------------------------------
+def _problems(study: Study) -> Iterator[ModelError]:
+    """What is wrong with a study beside its numbers, the first things first."""
+    yield from wrong_text("title", study.title)
+    for number, one in enumerate(study.vary, 1):
+        yield from _wrong_spread(f"vary[{number}]", one, study)
+    yield from _wrong_sampling(study)
+    yield from _wrong_correlations(study)
+    yield from _wrong_outputs(study)
+    yield from _beyond("accuracy.angles", study.angles, *ANGLES, " in a turn")
+    yield from _beyond("accuracy.tolerance", study.tolerance, *TOLERANCE)
+    yield from _beyond("chunk", study.chunk or None, 1, MOST_CHUNK, " designs")
 
 
-def to_plain(study: Study) -> dict[str, Any]:
-    """All but the model and the file as plain values, such as JSON takes; numbers in SI units."""
-    vary = [
-        {**asdict(one), "spread": {"kind": KEYS[type(one.spread)], **asdict(one.spread)}}
-        for one in study.vary
-    ]
-    return {
-        "title": study.title,
-        "vary": vary,
-        "outputs": [asdict(output) for output in study.outputs],
-        "sampling": asdict(study.sampling),
-        "correlations": [asdict(correlation) for correlation in study.correlations],
-        "angles": study.angles,
-        "tolerance": study.tolerance,
-        "chunk": study.chunk,
-    }
+def _beyond(
+    where: str, given: float | None, least: float, most: float, of: str = ""
+) -> Iterator[ModelError]:
+    if given is not None and not least <= given <= most:
+        got, low, high = (n if isinstance(n, int) else f"{n:g}" for n in (given, least, most))
+        yield ModelError(where, f"got {got}; give {low} to {high}{of}")
 
 
-def from_plain(plain: Mapping[str, Any], model: Model, file: str = "") -> Study:
-    """The study of `to_plain`, exactly."""
-    return Study(
-        title=plain["title"],
-        model=model,
-        vary=tuple(
-            Vary(one["path"], _spread(one["spread"]), one["dimension"]) for one in plain["vary"]
-        ),
-        outputs=tuple(Output(**output) for output in plain["outputs"]),
-        sampling=Sampling(**plain["sampling"]),
-        correlations=tuple(Correlation(**one) for one in plain["correlations"]),
-        angles=plain["angles"],
-        tolerance=plain["tolerance"],
-        chunk=plain["chunk"],
-        file=file,
+def _wrong_spread(where: str, one: Vary, study: Study) -> Iterator[ModelError]:
+    spread, method = one.spread, study.sampling.method
+    key = f"{where}.{KEYS[type(spread)]}"
+    if isinstance(study.model.number(one.path)[0], int):
+        if spread.tolerance:
+            yield ModelError(key, f"{one.path} is a whole number; give a range or a list")
+        if isinstance(spread, Choices) and not all(map(float.is_integer, spread.values)):
+            yield ModelError(key, f"{one.path} is a whole number; give whole numbers")
+    grid = method == "grid"
+    if isinstance(spread, Range) and grid != (spread.steps is not None):
+        missing = "missing; a grid needs the number of values"
+        other = f"goes with a grid, not with {method}; leave it out"
+        yield ModelError(f"{where}.steps", missing if grid else other)
+    elif grid:
+        try:
+            _ = spread.levels
+        except UsageError as error:
+            yield ModelError(key, str(error))
+
+
+def _wrong_sampling(study: Study) -> Iterator[ModelError]:
+    sampling = study.sampling
+    if sampling.method not in METHODS:
+        yield ModelError("sampling.method", unknown(sampling.method, METHODS, "method"))
+    if sampling.method == "grid":
+        if sampling.designs is not None:
+            told = f"a grid has as many as its steps make, here {study.size}; leave it out"
+            yield ModelError("sampling.designs", told)
+        if study.size > MOST_DESIGNS:
+            yield ModelError(
+                "sampling.method",
+                f"the grid has {study.size:.3g} designs; at most {MOST_DESIGNS:.0e} are computed, "
+                "give fewer steps, or another method",
+            )
+    elif sampling.designs is None:
+        yield ModelError("sampling.designs", "missing; give how many, such as 65536")
+    else:
+        yield from _beyond("sampling.designs", sampling.designs, 1, MOST_DESIGNS)
+        yield from _beyond("sampling.seed", sampling.seed, 0, MOST_SEED)
+
+
+def _wrong_correlations(study: Study) -> Iterator[ModelError]:
+    given: dict[frozenset[str], int] = {}
+    spreads = {one.path: one.spread for one in study.vary}
+    for number, one in enumerate(study.correlations, 1):
+        where = f"correlations[{number}]"
+        if study.sampling.method == "grid":
+            yield ModelError(where, "a grid has no correlations; leave them out, or take sobol")
+        for end, path in enumerate((one.first, one.second), 1):
+            if path not in spreads:
+                yield ModelError(f"{where}.between[{end}]", unknown(path, spreads, "[[vary]]"))
+            elif isinstance(spreads[path], Choices):
+                yield ModelError(
+                    f"{where}.between[{end}]",
+                    f"{path} is chosen from a list, which cannot be correlated; give it a range or "
+                    "a tolerance",
+                )
+        pair = frozenset((one.first, one.second))
+        if len(pair) == 1:
+            yield ModelError(f"{where}.between", "got one number twice; give two different ones")
+        if pair in given:
+            told = f"is given in correlations[{given[pair]}] already; leave one out"
+            yield ModelError(f"{where}.between", told)
+        given[pair] = number
+        if not -1 < one.coefficient < 1:
+            yield ModelError(
+                f"{where}.coefficient",
+                f"got {one.coefficient:g}; give a number between -1 and 1, without these",
+            )
+    try:
+        np.linalg.cholesky(correlation_matrix(study.paths, study.correlations)[1])
+    except np.linalg.LinAlgError:
+        yield ModelError(
+            "correlations",
+            "the coefficients contradict each other, no numbers can have them all at once (their "
+            "matrix is not positive definite); make some of them smaller",
+        )
+
+
+def correlation_matrix(
+    paths: Sequence[str], correlations: Sequence[Correlation]
+) -> tuple[list[int], np.ndarray[Any, Any]]:
+    """Which of the varied numbers are correlated, and the matrix of these, (k, k)."""
+    columns = sorted(
+        {paths.index(path) for one in correlations for path in (one.first, one.second)}
     )
+    matrix = np.eye(len(columns))
+    for one in correlations:
+        i, j = (columns.index(paths.index(path)) for path in (one.first, one.second))
+        matrix[i, j] = matrix[j, i] = one.coefficient
+    return columns, matrix
 
 
-def _spread(plain: Mapping[str, Any]) -> Spread:
-    given = dict(plain)
-    return SPREADS[given.pop("kind")](**given)
+# -- what is computed ------------------------------------------------------------------------------
+
+
+def _wrong_outputs(study: Study) -> Iterator[ModelError]:
+    outputs = study.outputs
+    if not outputs:
+        yield ModelError("outputs", "there is none; give at least one [[outputs]]")
+    if len(outputs) > MOST_OUTPUTS:
+        yield ModelError("outputs", f"got {len(outputs)}; at most {MOST_OUTPUTS} are computed")
+    taken: dict[str, str] = {
+        path: f"the path of vary[{n}]" for n, path in enumerate(study.paths, 1)
+    }
+    taken |= dict.fromkeys(RESERVED, "what every store of designs has")
+    for number, output in enumerate(outputs, 1):
+        where = f"outputs[{number}]"
+        yield from _wrong_output(where, output, study.model.kind)
+        if output.name in taken:
+            told = f"got {output.name!r}, which is {taken[output.name]}; give another name"
+            yield ModelError(f"{where}.name", told)
+        taken[output.name] = f"the name of {where}"
+
+
+def _wrong_output(where: str, output: Output, kind: str) -> Iterator[ModelError]:
+    if not output.value.strip():
+        yield ModelError(f"{where}.value", "is empty; give the place of a figure")
+    yield from wrong_text(f"{where}.value", output.value)
+    yield from wrong_text(f"{where}.name", output.name)
+    if not output.name.strip() or not {"/", "\\"}.isdisjoint(output.name) or output.name[0] == ".":
+        told = f"got {output.name!r}; give a name without / and without a point in front"
+        yield ModelError(f"{where}.name", told)
+    if output.of not in COMMANDS:
+        yield ModelError(f"{where}.of", unknown(output.of, COMMANDS, "command"))
+    elif (output.of == "tool") != (kind == "tool"):
+        right = "tool" if kind == "tool" else "analyze, plant, respond or balance"
+        told = f"got {output.of!r}, but the model is a {kind}; give {right}"
+        yield ModelError(f"{where}.of", told)
+    if output.make not in (None, "smallest", "largest"):
+        yield ModelError(f"{where}.make", f"got {output.make!r}; give smallest or largest")
+    low = -inf if output.at_least is None else output.at_least
+    high = inf if output.at_most is None else output.at_most
+    for key, limit in (("at_least", output.at_least), ("at_most", output.at_most)):
+        if limit is not None and not isfinite(limit):
+            yield ModelError(f"{where}.{key}", f"got {limit}; give a finite number")
+    if low > high:
+        yield ModelError(where, "at_least is above at_most")

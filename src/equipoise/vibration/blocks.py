@@ -1,76 +1,60 @@
-"""What vibration on the support shows: at one speed, over speeds, free, and in time."""
+"""What vibration on the support shows at one speed, and in time."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import pi
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import say
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.analysis_blocks import loud
-from equipoise.results.blocks import (
-    Block,
-    Cell,
-    Column,
-    Facts,
-    Notes,
-    Table,
-    Text,
-    Value,
-)
+from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven
+from equipoise.vibration.response import MODELS, Model
 
 if TYPE_CHECKING:
     from equipoise.signals import Periodic
-    from equipoise.vibration.mode_shapes import Mode
-    from equipoise.vibration.response import GaugeSignals, Response
+    from equipoise.vibration.response import Mode, Response
     from equipoise.vibration.transient import Transient
 
 Array = np.ndarray[Any, Any]
+Kind = tuple[Dimension, str | None]
+"""A dimension, and the unit in which it is usual here."""
 
-MODELS = {
-    "linear": to_say("the shaking force at the drive's pivot; equation (59) of Yamashita et al."),
-    "torque": to_say(
-        "the shaking force at the drive's pivot, and the drive torque; equation (57) of "
-        "Yamashita et al."
-    ),
-    "moment": to_say("the whole force and moment of the joints on the frame"),
-    "coupled": to_say(
-        "as torque, with the torque that the motion of the support takes; equation (54) of "
-        "Yamashita et al."
-    ),
-    "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
-}
-"""What each model of the support stands for."""
 NOTHING = 1e-2
 """m, rad and their rates: scale beside which what is smaller than atoms is rounding."""
 PARTS = 5
 """Equal stretches of a time, of which the first and the last show whether it has settled."""
+MOVED: tuple[Kind, ...] = (("length", "mm"), ("speed", "mm/s"), ("acceleration", "m/s^2"))
+TURNED: tuple[Kind, ...] = (
+    ("angle", "mrad"),
+    ("angular speed", None),
+    ("angular acceleration", None),
+)
+"""Of a gauge's displacement, velocity and acceleration, along a line or about an axis."""
 
 
-class Units(NamedTuple):
-    """Dimensions of a gauge's displacement, velocity and acceleration, and their usual units."""
-
-    dimensions: tuple[Dimension, Dimension, Dimension]
-    names: tuple[str | None, str | None, str | None]
-
-    def columns(self, *labels: str) -> tuple[Column, ...]:
-        """Two columns for each of the three."""
-        kinds = (kind for kind in zip(self.dimensions, self.names, strict=True) for _ in range(2))
-        pairs = zip(labels, kinds, strict=True)
-        return tuple(Column(label, kind, unit) for label, (kind, unit) in pairs)
-
-
-MOVED = Units(("length", "speed", "acceleration"), ("mm", "mm/s", "m/s^2"))
-TURNED = Units(("angle", "angular speed", "angular acceleration"), ("mrad", None, None))
-
-
-def model_told(model: str) -> str:
+def model_told(model: Model) -> str:
     """Which model answers, and what it stands for."""
     return say("Vibration by the model {model}: {what}", model=model, what=say(MODELS[model]))
+
+
+def reading(
+    value: float, rotation: bool, scale: float = NOTHING, speed: float | None = None
+) -> Value:
+    """What a gauge reads, m or rad, as a cell of its own kind; and at which speed of the crank."""
+    kind, unit = (TURNED if rotation else MOVED)[0]
+    return Value(value, scale, speed, dimension=kind, unit=unit)
+
+
+def _row(name: str, values: Iterable[float], kind: Kind) -> tuple[Cell, ...]:
+    """Values of a kind of their own in a row, rounded beside the largest."""
+    values = [*map(float, values)]
+    scale, (dimension, unit) = max(map(abs, values)), kind
+    return (name, *(Value(value, scale, dimension=dimension, unit=unit) for value in values))
 
 
 # -- at one speed ----------------------------------------------------------------------------------
@@ -84,13 +68,13 @@ def response_blocks(
     yield Text(model_told(response.model))
     if response.modes:
         yield modes_table(response.modes)
-    yield from gauge_tables(response)
+    yield from _gauges(response)
     if response.gauges:
         yield _orders(response)
     if others:
         yield _by_model(response, others)
     if response.mounts:
-        yield mounts_table(response)
+        yield _mounts(response)
     yield from _drive(response)
     if response.joints:
         yield _joints(response)
@@ -116,17 +100,10 @@ def modes_table(modes: Iterable[Mode]) -> Table:
     for count, mode in enumerate(modes, 1):
         rate = mode.natural_frequency
         damping = Value(mode.damping_ratio, 1e-6) if rate else None
-        sizes = (Value(rate), Value(rate / 2 / pi), Value(rate / PER_RPM))
-        rows.append((str(count), *sizes, damping, _kind(mode)))
-    columns = (
-        Column(say("mode")),
-        Column("rad/s"),
-        Column("Hz"),
-        Column("1/min"),
-        Column(say("damping ratio")),
-        Column(""),
-    )
-    return Table(say("Natural frequencies"), columns, tuple(rows))
+        rates = map(Value, (rate, rate / 2 / pi, rate / PER_RPM))
+        rows.append((str(count), *rates, damping, _kind(mode)))
+    columns = (say("mode"), "rad/s", "Hz", "1/min", say("damping ratio"), "")
+    return Table.of(say("Natural frequencies"), columns, rows)
 
 
 def _kind(mode: Mode) -> str:
@@ -137,57 +114,45 @@ def _kind(mode: Mode) -> str:
     return "" if mode.swings else say("overdamped")
 
 
-def gauge_tables(response: Response) -> Iterator[Table]:
+def _gauges(response: Response) -> Iterator[Table]:
     """What gauges read: first those that move along a line, then those that turn."""
-    labels = (say("peak to peak"), say("RMS"))
-    rates = (say("velocity, peak to peak"), say("RMS"))
-    further = (say("acceleration, peak to peak"), say("RMS"))
-    for title, units, rotation in (
+    labels = (
+        say("peak to peak"),
+        say("velocity, peak to peak"),
+        say("acceleration, peak to peak"),
+    )
+    for title, kinds, rotation in (
         (say("Gauges; RMS about the mean"), MOVED, False),
         (say("Gauges of rotation; RMS about the mean"), TURNED, True),
     ):
-        rows: tuple[tuple[Cell, ...], ...] = tuple(
-            (name, *(cell for signal in _signals(gauge) for cell in _ranges(signal)))
-            for name, gauge in response.gauges.items()
-            if gauge.rotation is rotation
-        )
+        rows: list[tuple[Cell, ...]] = []
+        for name, gauge in response.gauges.items():
+            if gauge.rotation is rotation:
+                signals = (gauge.displacement, gauge.velocity, gauge.acceleration)
+                sizes = ((signal.peak_to_peak, signal.vibration_rms) for signal in signals)
+                rows.append((name, *(Value(float(x), NOTHING) for pair in sizes for x in pair)))
         if rows:
-            columns = (Column(""), *units.columns(*labels, *rates, *further))
-            yield Table(title, columns, rows)
-
-
-def _signals(gauge: GaugeSignals) -> tuple[Periodic, Periodic, Periodic]:
-    return gauge.displacement, gauge.velocity, gauge.acceleration
-
-
-def _ranges(signal: Periodic) -> tuple[Value, Value]:
-    sizes = (float(signal.peak_to_peak), float(signal.vibration_rms))
-    return Value(sizes[0], NOTHING), Value(sizes[1], NOTHING)
+            heads = (
+                Column(what, *kind)
+                for label, kind in zip(labels, kinds, strict=True)
+                for what in (label, say("RMS"))
+            )
+            yield Table.of(title, ("", *heads), rows)
 
 
 def _orders(response: Response) -> Table:
     """Amplitude of the first orders that there are, at each gauge."""
-    gauges = response.gauges
-    count = max(len(gauge.displacement.orders) for gauge in gauges.values())
-    padded = {
-        name: np.pad(gauge.displacement.sizes, (0, count - len(gauge.displacement.sizes)))
-        for name, gauge in gauges.items()
-    }
+    sizes = {name: gauge.displacement.sizes for name, gauge in response.gauges.items()}
+    count = max(map(len, sizes.values()))
+    padded = {name: np.pad(size, (0, count - len(size))) for name, size in sizes.items()}
     places = loud(list(padded.values()))
     rows: list[tuple[Cell, ...]] = []
-    for name, sizes in padded.items():
-        scale = max(1e3 * float(np.max(sizes[1:], initial=0.0)), NOTHING)
-        cells = (reading(float(sizes[k]), gauges[name].rotation, scale) for k in places)
-        rows.append((name, *cells))
-    labels = (f"{k / response.turns:.4g}" for k in places)
-    columns = (Column(say("order")), *map(Column, labels))
-    return Table(say("Gauges by order; amplitude"), columns, tuple(rows))
-
-
-def reading(value: float, rotation: bool, scale: float = NOTHING) -> Value:
-    """What a gauge reads, m or rad, as a cell of its own kind."""
-    kind = (TURNED if rotation else MOVED).dimensions[0]
-    return Value(value, scale, dimension=kind, unit=(TURNED if rotation else MOVED).names[0])
+    for name, size in padded.items():
+        scale = max(1e3 * float(np.max(size[1:], initial=0.0)), NOTHING)
+        rotation = response.gauges[name].rotation
+        rows.append((name, *(reading(float(size[k]), rotation, scale) for k in places)))
+    columns = (say("order"), *(f"{k / response.turns:.4g}" for k in places))
+    return Table.of(say("Gauges by order; amplitude"), columns, rows)
 
 
 def _by_model(response: Response, others: Mapping[str, Response | None]) -> Table:
@@ -201,76 +166,60 @@ def _by_model(response: Response, others: Mapping[str, Response | None]) -> Tabl
             for other in others.values()
         )
         rows.append((name, *cells))
-    columns = (Column(""), *map(Column, others))
-    return Table(say("Gauges by each model; peak to peak"), columns, tuple(rows))
+    return Table.of(say("Gauges by each model; peak to peak"), ("", *others), rows)
 
 
-def mounts_table(response: Response) -> Table:
+def _mounts(response: Response) -> Table:
     """Forces of the mounts, and what they hand on."""
     rows: list[tuple[Cell, ...]] = []
     lifting = any(mount.lifts_off for mount in response.mounts.values())
     for name, mount in response.mounts.items():
-        kind: Dimension = "torque" if mount.torsional else "force"
         force = mount.force
         values = (float(force.mean), mount.largest, mount.smallest, float(force.vibration_rms))
         scale = 100 * max(map(abs, values))
-        cells = (Value(value, scale, dimension=kind) for value in values)
+        kind: Dimension = "torque" if mount.torsional else "force"
         ratio = None if np.isnan(mount.whole) else Value(mount.whole, 1.0)
         off = Value(100 * mount.lifts_off, after=0) if mount.least == 0 else None
+        cells = (Value(value, scale, dimension=kind) for value in values)
         rows.append((name, *cells, ratio, *([off] if lifting else [])))
     labels = (say("mean"), say("largest"), say("smallest"), say("RMS"), say("transmissibility"))
-    columns = (Column(""), *map(Column, labels))
-    columns += (Column(say("in the air"), unit="%"),) if lifting else ()
+    in_air = (Column(say("in the air"), unit="%"),) if lifting else ()
     title = say(
         "Mounts: force on the support, RMS about the mean; what they hand on of the shaking force"
     )
-    return Table(title, columns, tuple(rows))
+    return Table.of(title, ("", *labels, *in_air), rows)
 
 
 def _drive(response: Response) -> Iterator[Block]:
-    rows = [_extremes(say("drive torque"), response.drive.torque, "torque")]
-    speed = response.drive.speed
-    if speed is not None:
-        rows.append(_extremes(say("crank speed"), speed, "angular speed", "rpm"))
+    drive = response.drive
+    rows = [_extremes(say("drive torque"), drive.torque, ("torque", None))]
+    if drive.speed is not None:
+        rows.append(_extremes(say("crank speed"), drive.speed, ("angular speed", "rpm")))
     labels = ("", say("mean"), say("largest"), say("smallest"), say("peak to peak"))
-    yield Table(say("Drive, all rows together"), tuple(map(Column, labels)), tuple(rows))
-    if speed is None:
+    yield Table.of(say("Drive, all rows together"), labels, rows)
+    if drive.speed is None:
         return
-    yield Text(
-        say(
-            "The speed fluctuates by {share} % of its mean.",
-            share=f"{100 * response.drive.fluctuation:.3g}",
-        )
-    )
-    shift = response.drive.shift
-    if abs(shift) > 1e-9 * abs(response.speed):
+    share = f"{100 * drive.fluctuation:.3g}"
+    yield Text(say("The speed fluctuates by {share} % of its mean.", share=share))
+    if abs(drive.shift) > 1e-9 * abs(response.speed):
+        shift = number(drive.shift / PER_RPM)
         yield Text(
-            say(
-                "The motor's curve is shifted by {shift} rpm to hold the mean.",
-                shift=number(shift / PER_RPM),
-            )
+            say("The motor's curve is shifted by {shift} rpm to hold the mean.", shift=shift)
         )
 
 
-def _extremes(
-    name: str, signal: Periodic, kind: Dimension, unit: str | None = None
-) -> tuple[Cell, ...]:
+def _extremes(name: str, signal: Periodic, kind: Kind) -> tuple[Cell, ...]:
     high, low = float(signal.extreme(1)[0]), float(signal.extreme(-1)[0])
-    scale = max(abs(high), abs(low))
-    values = (float(signal.mean), high, low, high - low)
-    return (name, *(Value(value, scale, dimension=kind, unit=unit) for value in values))
+    return _row(name, (float(signal.mean), high, low, high - low), kind)
 
 
 def _joints(response: Response) -> Table:
-    columns = (
-        Column(""),
-        Column(say("here"), "force"),
-        Column(say("on solid ground, constant speed"), "force"),
-    )
-    rows = tuple(
+    labels = (say("here"), say("on solid ground, constant speed"))
+    rows = (
         (name, Value(joint.peak), Value(joint.on_ground)) for name, joint in response.joints.items()
     )
-    return Table(say("Largest force in each joint of the first row"), columns, rows)
+    columns = ("", *(Column(label, "force") for label in labels))
+    return Table.of(say("Largest force in each joint of the first row"), columns, rows)
 
 
 def _solution(response: Response) -> Iterator[str]:
@@ -291,6 +240,9 @@ def _solution(response: Response) -> Iterator[str]:
         )
 
 
+# -- in time ---------------------------------------------------------------------------------------
+
+
 def transient_blocks(found: Transient) -> Iterator[Block]:
     """Extremes of every gauge and mount, in the first and the last stretch of the time."""
     yield Text(
@@ -302,33 +254,20 @@ def transient_blocks(found: Transient) -> Iterator[Block]:
     )
     rows = []
     for name, values in found.gauges.items():
-        units = MOVED if found.unit(name) == "m" else TURNED
-        rows.append(_stretch(name, values, units.dimensions[0], units.names[0]))
+        rows.append(_stretch(name, values, (MOVED if found.unit(name) == "m" else TURNED)[0]))
     for name, values in found.mounts.items():
-        rows.append(_stretch(name, values, "force" if found.along(name) else "torque"))
-    rows.append(_stretch(say("crank speed"), found.crank_speed, "angular speed", "rpm"))
-    labels = (
-        "",
-        say("smallest"),
-        say("largest"),
-        say("range in the first fifth"),
-        say("range in the last fifth"),
-    )
-    yield Table(say("Gauges, mounts and drive"), tuple(map(Column, labels)), tuple(rows))
+        kind: Kind = ("force" if found.along(name) else "torque", None)
+        rows.append(_stretch(name, values, kind))
+    rows.append(_stretch(say("crank speed"), found.crank_speed, ("angular speed", "rpm")))
+    ranges = (say("range in the first fifth"), say("range in the last fifth"))
+    labels = ("", say("smallest"), say("largest"), *ranges)
+    yield Table.of(say("Gauges, mounts and drive"), labels, rows)
 
 
-def _stretch(
-    name: str, values: Array, kind: Dimension, unit: str | None = None
-) -> tuple[Cell, ...]:
-    stretch = max(1, len(values) // PARTS)
-    low, high = float(np.min(values)), float(np.max(values))
-    ranges = (float(np.ptp(values[:stretch])), float(np.ptp(values[-stretch:])))
-    scale = max(abs(low), abs(high))
-    cells = (low, high, *ranges)
-    return (name, *(Value(value, scale, dimension=kind, unit=unit) for value in cells))
+def _stretch(name: str, values: Array, kind: Kind) -> tuple[Cell, ...]:
+    count = max(1, len(values) // PARTS)
+    ranges = np.ptp(values[:count]), np.ptp(values[-count:])
+    return _row(name, (np.min(values), np.max(values), *ranges), kind)
 
 
-SHOWS = {
-    "Response": response_blocks,
-    "Transient": transient_blocks,
-}
+SHOWS = {"Response": response_blocks, "Transient": transient_blocks}

@@ -1,7 +1,5 @@
 """Linear response: what linkages do to the support, and its small motion under it, by orders.
 
-What the linkages do to the support, in each of the paper's steps and as a whole.
-
 Steps of Yamashita, Ichikawa and Mori, from the plainest: (59) ``linear``, the shaking force at the
 drive's pivot alone; (57) ``torque``, with the torque that the drive takes from the support;
 ``moment``, the whole force and moment of all joints on the frame.  In the first two the linkage's
@@ -13,7 +11,8 @@ mass rides at the drive's pivot, in the third it is spread as it is in the mean 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import add
 from typing import Any, Literal
 
 import numpy as np
@@ -24,10 +23,10 @@ from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
-from equipoise.signals import Periodic
+from equipoise.signals import Periodic, highest_at
 from equipoise.vibration.body import Body, Rest, at_rest, moved, rigid_mass
 from equipoise.vibration.linkages import rows_of, spread
-from equipoise.vibration.mode_shapes import Mode, find_modes
+from equipoise.vibration.response import Mode
 
 Array = np.ndarray[Any, Any]
 Step = Literal["linear", "torque", "moment"]
@@ -35,6 +34,13 @@ STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
 
 ANGLES = 720
 """Crank angles in a turn from which orders are taken; more where loads may set in at once."""
+SINGULAR = 1e10
+"""Condition of an order's equations above which it meets an undamped mode."""
+STILL = 1e-7
+"""Share of the largest frequency below which a motion counts as free, without a spring."""
+
+
+# -- what the linkages do --------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,38 +59,40 @@ class Excitation:
 
     @cached_property
     def motion(self) -> Motion:
-        planting = self.machine.planting
-        sudden = bool(self.machine.loads) or (planting is not None and planting.soil is not None)
+        sudden = bool(self.machine.loads) or self._in_soil
         return move(self.machine, ANGLES * (8 if sudden else 1), acceleration=0.0)
+
+    @property
+    def _in_soil(self) -> bool:
+        planting = self.machine.planting
+        return planting is not None and planting.soil is not None
 
     @cached_property
     def pivot(self) -> complex:
         """The drive's pivot in the frame."""
         return complex(*self.machine.frame[self.motion.linkage.pivot])
 
+    def pivot_of(self, row: Row) -> Array:
+        """The drive's pivot (3,) of a row, m."""
+        x, y = row.offset
+        return np.array([self.pivot.real + x, self.pivot.imag + y, row.lateral])
+
     @cached_property
     def mass(self) -> Array:
         """Mass matrix (6, 6) of the linkages."""
-        return np.sum([self._row_mass(row) for row in rows_of(self.machine)], axis=0)  # type: ignore[no-any-return]
-
-    def _row_mass(self, row: Row) -> Array:
-        if self.step == "moment":
-            origin = np.array([*row.offset, row.lateral])
-            return moved(self._spread, origin - self.body.reference)
-        arm = self.pivot_of(row) - self.body.reference
-        return rigid_mass(self._links_mass, arm, np.zeros((3, 3)))
+        total = np.zeros((6, 6))
+        for row in rows_of(self.machine):
+            if self.step == "moment":
+                origin = np.array([*row.offset, row.lateral])
+                total += moved(self._spread, origin - self.body.reference)
+            else:
+                arm = self.pivot_of(row) - self.body.reference
+                total += rigid_mass(self.machine.mass, arm, np.zeros((3, 3)))
+        return total
 
     @cached_property
     def _spread(self) -> Array:
         return spread(self.machine, self.motion.crank_angle)
-
-    @cached_property
-    def _links_mass(self) -> float:
-        return self.machine.mass
-
-    def pivot_of(self, row: Row) -> Array:
-        x, y = row.offset
-        return np.array([self.pivot.real + x, self.pivot.imag + y, row.lateral])
 
     @cached_property
     def weights(self) -> list[tuple[Array, Array]]:
@@ -97,28 +105,24 @@ class Excitation:
             if self.step == "moment":
                 center = self._mean_center + complex(*row.offset)
                 place = np.array([center.real, center.imag, row.lateral])
-            found.append((self._links_mass * gravity, place))
+            found.append((self.machine.mass * gravity, place))
         return found
 
     @cached_property
     def _mean_center(self) -> complex:
         """Mean place of the links' common centre of mass."""
-        if not self._links_mass:
+        if not self.machine.mass:
             return self.pivot
         sx, sy = self._spread[1, 5], -self._spread[0, 5]
-        return complex(sx, sy) / self._links_mass
+        return complex(sx, sy) / self.machine.mass
 
     def at(self, speed: float) -> Periodic:
         """Wrench (6, K + 1) about the support's reference point at a speed, rad/s.
 
         Without the weight itself, which the mounts carry at rest.
         """
-        total = None
-        for row in rows_of(self.machine):
-            here = self._of_row(speed, row).shifted(row.phase)
-            total = here if total is None else total + here
-        assert total is not None
-        return total
+        rows = rows_of(self.machine)
+        return reduce(add, (self._of_row(speed, row).shifted(row.phase) for row in rows))
 
     def samples(self, theta: Array, speed: float) -> Array:
         """The same (6, P) at crank angles (P,), rad, not by orders."""
@@ -146,8 +150,7 @@ class Excitation:
 
     def _on_pivot(self, speed: float) -> Periodic:
         """Force along x and y, and moment about the pivot, of one linkage; (3, K + 1)."""
-        planting = self.machine.planting
-        if planting is not None and planting.soil is not None:
+        if self._in_soil:
             return Periodic.of(self._signals(self.motion.at(speed)), self.motion.turns)
         still, moving = self._parts
         return Periodic(still + speed**2 * moving, self.motion.turns)
@@ -171,18 +174,47 @@ class Excitation:
             return np.zeros(len(found.motion.crank_angle))
         if self.step == "torque":
             return -found.drive_torque
-        varying: Array = found.frame_moment - self._mean_weight_moment
-        return varying
-
-    @cached_property
-    def _mean_weight_moment(self) -> float:
-        """About the pivot, N m: what the mounts carry at rest."""
         gravity = complex(*self.machine.gravity)
-        return self._links_mass * float(cross(self._mean_center - self.pivot, gravity))
+        # what the mounts carry at rest
+        mean = self.machine.mass * float(cross(self._mean_center - self.pivot, gravity))
+        return np.asarray(found.frame_moment - mean)
 
 
-SINGULAR = 1e10
-"""Condition of an order's equations above which it meets an undamped mode."""
+# -- free vibration --------------------------------------------------------------------------------
+
+
+def find_modes(mass: Array, damping: Array, stiffness: Array) -> tuple[Mode, ...]:
+    """Modes of M x'' + C x' + K x = 0, by frequency; overdamped and growing ones are told twice.
+
+    mass, damping, stiffness : (D, D).
+    """
+    count = len(mass)
+    system = np.zeros((2 * count, 2 * count))
+    system[:count, count:] = np.eye(count)
+    system[count:, :count] = -np.linalg.solve(mass, stiffness)
+    system[count:, count:] = -np.linalg.solve(mass, damping)
+    values, vectors = np.linalg.eig(system)
+    least = STILL * float(np.max(np.abs(values), initial=0.0))
+    # Eigenvectors of a zero that stands twice, for standing and drifting, are one; the stiffness
+    # tells free motions apart.
+    _, sizes, shapes = np.linalg.svd(stiffness)
+    free = sizes <= STILL**2 * np.max(sizes, initial=0.0)
+    found = [Mode(0j, _scaled(shape)) for shape in shapes[free].astype(complex)]
+    for value, vector in zip(values, vectors.T, strict=True):
+        if abs(value) > least and value.imag >= -STILL * abs(value):
+            swinging = value.imag > STILL * abs(value)
+            eigenvalue = complex(value if swinging else value.real)
+            found.append(Mode(eigenvalue, _scaled(vector[:count])))
+    return tuple(sorted(found, key=lambda mode: (mode.natural_frequency, mode.eigenvalue.real)))
+
+
+def _scaled(shape: Array) -> Array:
+    """The shape with its largest part 1."""
+    largest = shape[highest_at(np.abs(shape), smooth=False)]
+    return np.asarray(shape / largest) if largest else shape
+
+
+# -- forced vibration ------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -217,8 +249,7 @@ class Linear:
     @cached_property
     def stiffness(self) -> Array:
         """Of the mounts that carry something, of preloads and of weights."""
-        mounts = self._of_mounts("spring")
-        return self._free(mounts + self.rest.stiffness)
+        return self._free(self._of_mounts("spring") + self.rest.stiffness)
 
     def _of_mounts(self, part: Literal["spring", "damper"]) -> Array:
         total = np.zeros((6, 6))
@@ -288,14 +319,13 @@ class Linear:
     def _mean(self, load: Array) -> Array:
         scale = float(np.linalg.norm(self.excitation.weights[0][0])) + float(np.linalg.norm(load))
         mean = np.linalg.lstsq(self.stiffness, load, rcond=1e-12)[0]
-        over = np.abs(self.stiffness @ mean - load)
-        if np.max(over, initial=0.0) > 1e-9 * scale:
-            names = self.body.support.coordinates
-            loose = [name for name, value in zip(names, over, strict=True) if value > 1e-9 * scale]
+        over = np.abs(self.stiffness @ mean - load) > 1e-9 * scale
+        if np.any(over):
+            names = zip(self.body.support.coordinates, over, strict=True)
+            loose = " and ".join(name for name, is_over in names if is_over)
             raise ModelError(
                 "support.mounts",
-                f"a constant force drives the support away in {' and '.join(loose)}; add a mount "
-                "there",
+                f"a constant force drives the support away in {loose}; add a mount there",
             )
         return mean
 
@@ -308,15 +338,12 @@ def gauges_of(body: Body) -> dict[str, Gauge]:
     """The gauges of the model; the free coordinates at the reference point where it has none."""
     if body.support.gauges:
         return dict(body.support.gauges)
-    x, y, z = (float(part) for part in body.reference)
-    units = np.eye(3)
+    x, y, z = map(float, body.reference)
     found = {}
     for name in body.support.coordinates:
         if name in AXES:
             found[name] = Gauge(axis=name)
         else:
-            direction = units[FREEDOMS.index(name)]
-            found[name] = Gauge(
-                (x, y, z), (float(direction[0]), float(direction[1]), float(direction[2]))
-            )
+            first, second, third = map(float, np.eye(3)[FREEDOMS.index(name)])
+            found[name] = Gauge((x, y, z), (first, second, third))
     return found

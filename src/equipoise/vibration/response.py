@@ -1,8 +1,8 @@
-"""How the support answers at one speed of the crank."""
+"""What is told of vibration: modes, and how the support answers at one speed of the crank."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import pi
 from typing import Any, Literal
@@ -13,21 +13,108 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
 from equipoise.signals import Periodic
-from equipoise.vibration.mode_shapes import Mode
 
 Array = np.ndarray[Any, Any]
+Values = dict[str, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
+MODELS: dict[Model, str] = {
+    "linear": to_say("the shaking force at the drive's pivot; equation (59) of Yamashita et al."),
+    "torque": to_say(
+        "the shaking force at the drive's pivot, and the drive torque; equation (57) of "
+        "Yamashita et al."
+    ),
+    "moment": to_say("the whole force and moment of the joints on the frame"),
+    "coupled": to_say(
+        "as torque, with the torque that the motion of the support takes; equation (54) of "
+        "Yamashita et al."
+    ),
+    "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
+}
+"""What each model of the support stands for, from the plainest on."""
 NEUTRAL = 1e-9
 """How near to 1 a multiplier is told as 1."""
-MODELS: tuple[Model, ...] = ("linear", "torque", "moment", "coupled", "exact")
-EQUATIONS: dict[Model, str] = {
-    "linear": "(59): shaking force at the drive's pivot",
-    "torque": "(57): shaking force at the drive's pivot, and drive torque",
-    "moment": "whole force and moment of the joints on the frame",
-    "coupled": "(54): as (57), with the torque that the support's motion takes",
-    "exact": "(37) to (45): all bodies, large motion",
-}
-"""What each model stands for; numbers are those of Yamashita, Ichikawa and Mori."""
+LEAST_ORDERS = 10
+SMALL = 1e-9
+"""Share of the largest amplitude below which higher orders are left out."""
+
+
+# -- modes -----------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, eq=False)
+class Mode:
+    """One way in which the support vibrates by itself, growing as exp(eigenvalue * t).
+
+    eigenvalue : 1/s, of the pair that one with positive imaginary part; real where it does not
+        swing back.
+    shape : (D,) complex, of the free coordinates (m and rad).
+    """
+
+    eigenvalue: complex
+    shape: Array
+
+    @property
+    def natural_frequency(self) -> float:
+        """Angular frequency without damping, rad/s: the absolute value of the eigenvalue."""
+        return abs(self.eigenvalue)
+
+    @property
+    def damped_frequency(self) -> float:
+        """Angular frequency of the free motion, rad/s."""
+        return self.eigenvalue.imag
+
+    @property
+    def damping_ratio(self) -> float:
+        """Share of the critical damping; 1 and more do not swing, below 0 grows."""
+        size = abs(self.eigenvalue)
+        return -self.eigenvalue.real / size if size else 0.0
+
+    @property
+    def swings(self) -> bool:
+        return self.eigenvalue.imag > 0
+
+    @property
+    def cycles_per_second(self) -> float:
+        """Natural frequency, Hz."""
+        return self.natural_frequency / (2 * pi)
+
+    def to_dict(self) -> Values:
+        """In SI units; the eigenvalue and the shape as real and imaginary parts."""
+        return {
+            "natural_frequency": self.natural_frequency,
+            "hertz": self.cycles_per_second,
+            "damped_frequency": self.damped_frequency,
+            "damping_ratio": self.damping_ratio,
+            "eigenvalue": [self.eigenvalue.real, self.eigenvalue.imag],
+            "shape": [[part.real, part.imag] for part in self.shape.tolist()],
+        }
+
+
+def swings_in_a_turn(modes: Iterable[Mode], speed: float) -> float:
+    """How often the fastest mode swings while the crank turns once at a speed, rad/s."""
+    return max((mode.damped_frequency for mode in modes), default=0.0) / abs(speed)
+
+
+# -- signals of a response -------------------------------------------------------------------------
+
+
+def by_order(signal: Periodic) -> Values:
+    """Figures of one signal and its amplitudes by order; RMS is about the mean."""
+    sizes = signal.sizes
+    varying = sizes[1:]
+    above = np.flatnonzero(varying > SMALL * np.max(varying, initial=0.0))
+    last = max(int(above[-1]) + 1 if above.size else 0, LEAST_ORDERS * signal.turns)
+    keep = slice(0, min(last, len(sizes) - 1) + 1)
+    return {
+        "mean": float(signal.mean),
+        "peak_to_peak": float(signal.peak_to_peak),
+        "max": float(signal.extreme(1)[0]),
+        "min": float(signal.extreme(-1)[0]),
+        "rms": float(signal.vibration_rms),
+        "orders": signal.orders[keep].tolist(),
+        "harmonics": sizes[keep].tolist(),
+        "phases": signal.phases[keep].tolist(),
+    }
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +125,13 @@ class GaugeSignals:
     velocity: Periodic
     acceleration: Periodic
     rotation: bool
+
+    def to_dict(self) -> Values:
+        """Figures of the displacement, and below them those of its derivatives."""
+        quantity = "rotation" if self.rotation else "displacement"
+        values = {"quantity": quantity, **by_order(self.displacement)}
+        rates = {"velocity": self.velocity, "acceleration": self.acceleration}
+        return values | {name: by_order(signal) for name, signal in rates.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +164,15 @@ class MountForce:
         """N or N m."""
         return max(float(self.force.extreme(-1)[0]), self.least)
 
+    def to_dict(self) -> Values:
+        """Figures of the force, and what it hands on; None where there is nothing to hand on."""
+        told = by_order(self.force)
+        told |= {"min": self.smallest, "peak_to_peak": self.largest - self.smallest}
+        ratios = self.transmissibility[: len(told["orders"])]
+        told["transmissibility_by_order"] = [None if np.isnan(r) else float(r) for r in ratios]
+        told["transmissibility"] = None if np.isnan(self.whole) else self.whole
+        return told | {"lifts_off": self.lifts_off}
+
 
 @dataclass(frozen=True, eq=False)
 class Energy:
@@ -98,6 +201,14 @@ class DriveSignals:
             return 0.0
         return float(self.speed.peak_to_peak / abs(self.speed.mean))
 
+    def to_dict(self) -> Values:
+        """Figures of the torque, and of the speed where it is not constant."""
+        values: Values = {"torque": by_order(self.torque)}
+        if self.speed is not None:
+            values["speed"] = by_order(self.speed)
+            values |= {"fluctuation": self.fluctuation, "curve_shift": self.shift}
+        return values
+
 
 @dataclass(frozen=True, eq=False)
 class Joint:
@@ -105,6 +216,9 @@ class Joint:
 
     peak: float
     on_ground: float
+
+
+# -- the response ----------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -145,10 +259,10 @@ class Response(Result):
             "model": self.model,
             "speed": self.speed,
             "turns": self.turns,
-            "gauges": {name: _gauge(gauge) for name, gauge in self.gauges.items()},
-            "mounts": {name: _mount(mount) for name, mount in self.mounts.items()},
-            "modes": [mode_values(mode) for mode in self.modes],
-            "drive": self._drive(),
+            "gauges": {name: gauge.to_dict() for name, gauge in self.gauges.items()},
+            "mounts": {name: mount.to_dict() for name, mount in self.mounts.items()},
+            "modes": [mode.to_dict() for mode in self.modes],
+            "drive": self.drive.to_dict(),
         }
         if self.joints:
             values["joints"] = {
@@ -161,7 +275,7 @@ class Response(Result):
             values["stable"] = self.stable
             values["multipliers"] = [[m.real, m.imag] for m in self.multipliers.tolist()]
         if self.energy is not None:
-            values["energy"] = {"fed_in": self.energy.fed_in, "lost": self.energy.lost}
+            values["energy"] = dict(vars(self.energy))
         values["notes"] = list(map(str, self.notes))
         return values
 
@@ -193,14 +307,6 @@ class Response(Result):
             add("drive.speed", "rad/s", self.drive.speed)
         return found
 
-    def _drive(self) -> Values:
-        values: Values = {"torque": by_order(self.drive.torque)}
-        if self.drive.speed is not None:
-            values["speed"] = by_order(self.drive.speed)
-            values["fluctuation"] = self.drive.fluctuation
-            values["curve_shift"] = self.drive.shift
-        return values
-
 
 def in_words(multipliers: Array) -> list[Note]:
     """What to say of multipliers that are not below 1, the largest of them first."""
@@ -212,65 +318,9 @@ def in_words(multipliers: Array) -> list[Note]:
     return []
 
 
-def _gauge(gauge: GaugeSignals) -> Values:
-    values: Values = {"quantity": "rotation" if gauge.rotation else "displacement"}
-    values |= by_order(gauge.displacement)
-    for name in ("velocity", "acceleration"):
-        values[name] = by_order(getattr(gauge, name))
-    return values
-
-
-def _mount(mount: MountForce) -> Values:
-    told = by_order(mount.force)
-    told |= {"min": mount.smallest, "peak_to_peak": mount.largest - mount.smallest}
-    ratios = mount.transmissibility[: len(told["orders"])]
-    told["transmissibility_by_order"] = [None if np.isnan(r) else float(r) for r in ratios]
-    told["transmissibility"] = None if np.isnan(mount.whole) else mount.whole
-    told["lifts_off"] = mount.lifts_off
-    return told
-
-
-Values = dict[str, Any]
-
-LEAST_ORDERS = 10
-SMALL = 1e-9
-"""Share of the largest amplitude below which higher orders are left out."""
-
-
 def range_shown(speeds: Sequence[float]) -> str:
     """From which to which speed, rad/s, as a text."""
     first, last = (
         f"{speed * 30 / pi:.4g} rpm ({speed:.4g} rad/s)" for speed in (speeds[0], speeds[-1])
     )
     return f"at {first}" if len(speeds) == 1 else f"from {first} to {last}"
-
-
-def by_order(signal: Periodic) -> Values:
-    """Figures of one signal and its amplitudes by order; RMS is about the mean."""
-    sizes = signal.sizes
-    varying = sizes[1:]
-    above = np.flatnonzero(varying > SMALL * np.max(varying, initial=0.0))
-    last = max(int(above[-1]) + 1 if above.size else 0, LEAST_ORDERS * signal.turns)
-    keep = slice(0, min(last, len(sizes) - 1) + 1)
-    return {
-        "mean": float(signal.mean),
-        "peak_to_peak": float(signal.peak_to_peak),
-        "max": float(signal.extreme(1)[0]),
-        "min": float(signal.extreme(-1)[0]),
-        "rms": float(signal.vibration_rms),
-        "orders": signal.orders[keep].tolist(),
-        "harmonics": sizes[keep].tolist(),
-        "phases": signal.phases[keep].tolist(),
-    }
-
-
-def mode_values(mode: Mode) -> Values:
-    """Figures of a mode; the shape as real and imaginary parts."""
-    return {
-        "natural_frequency": mode.natural_frequency,
-        "hertz": mode.cycles_per_second,
-        "damped_frequency": mode.damped_frequency,
-        "damping_ratio": mode.damping_ratio,
-        "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
-        "shape": [[part.real, part.imag] for part in mode.shape.tolist()],
-    }

@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.i18n import say
-from equipoise.quantities import PER_RPM, number
+from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.blocks import Block, Cell, Column, Many, Notes, Span, Table, Text, Value
-from equipoise.vibration.blocks import MOVED, NOTHING, TURNED, model_told, modes_table
+from equipoise.vibration.blocks import model_told, modes_table, reading
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.sweep import Sweep
 
+Array = np.ndarray[Any, Any]
 
 MOST_PEAKS = 6
 """Peaks that are told of each gauge."""
 MET_ORDERS = (1, 2, 3, 4)
 """Orders of which the speeds that meet a mode are told."""
+CRANK: tuple[Dimension, str] = ("angular speed", "rpm")
+
 # -- over speeds -----------------------------------------------------------------------------------
 
 
@@ -50,7 +53,7 @@ def sweep_blocks(sweep: Sweep) -> Iterator[Block]:
 
 def resonances_table(sweep: Sweep) -> Table:
     """Where orders of the crank meet modes."""
-    rows = tuple(
+    rows = (
         (
             Value(one.speed),
             f"{one.order:.4g}",
@@ -62,12 +65,12 @@ def resonances_table(sweep: Sweep) -> Table:
         for one in sweep.resonances
     )
     columns = (
-        Column(say("crank speed"), "angular speed", "rpm"),
-        Column(say("order")),
-        Column(say("mode")),
+        Column(say("crank speed"), *CRANK),
+        say("order"),
+        say("mode"),
         Column(say("frequency"), "frequency"),
         Column(say("share"), unit="%"),
-        Column(say("keep away from"), "angular speed", "rpm"),
+        Column(say("keep away from"), *CRANK),
     )
     title = (
         say("Resonances of small motion: crank speeds at which an order meets a mode")
@@ -75,34 +78,25 @@ def resonances_table(sweep: Sweep) -> Table:
         else say("Resonances: crank speeds at which an order meets a mode")
     )
     what = say("share of the loudest; to be kept away from where amplified more than three times")
-    return Table(f"{title} ({what})", columns, rows)
+    return Table.of(f"{title} ({what})", columns, rows)
 
 
 def _peaks(sweep: Sweep) -> Table:
-    rows = []
+    rows: list[tuple[Cell, ...]] = []
     for name, curve in sweep.gauges.items():
-        tops = tuple(
-            reading_at(value, speed, curve.rotation)
-            for speed, value in sweep.peaks[name][:MOST_PEAKS]
-        )
         k = int(np.nanargmin(curve.peak_to_peak))
-        lowest = reading_at(float(curve.peak_to_peak[k]), float(sweep.speed[k]), curve.rotation)
-        rows.append((name, lowest, Many(tops) if tops else say("none")))
-    columns = (
-        Column(""),
-        Column(say("smallest"), at=("angular speed", "rpm")),
-        Column(say("peaks, the largest first"), at=("angular speed", "rpm")),
-    )
-    return Table(say("Gauges: peak to peak, at the speed of the crank"), columns, tuple(rows))
+        lowest = float(sweep.speed[k]), float(curve.peak_to_peak[k])
+        least, *tops = (
+            reading(value, curve.rotation, speed=speed)
+            for speed, value in (lowest, *sweep.peaks[name][:MOST_PEAKS])
+        )
+        rows.append((name, least, Many(tuple(tops)) if tops else say("none")))
+    labels = (say("smallest"), say("peaks, the largest first"))
+    columns = ("", *(Column(label, at=CRANK) for label in labels))
+    return Table.of(say("Gauges: peak to peak, at the speed of the crank"), columns, rows)
 
 
-def reading_at(value: float, speed: float, rotation: bool) -> Value:
-    """What a gauge reads at a speed of the crank."""
-    units = TURNED if rotation else MOVED
-    return Value(value, NOTHING, speed, dimension=units.dimensions[0], unit=units.names[0])
-
-
-# -- free, and in time -----------------------------------------------------------------------------
+# -- free ------------------------------------------------------------------------------------------
 
 
 def free_blocks(free: FreeVibration) -> Iterator[Block]:
@@ -115,37 +109,32 @@ def free_blocks(free: FreeVibration) -> Iterator[Block]:
     yield Text(model_told(step))
     yield modes_table(free.modes)
     yield _met(free)
-    yield from _shapes(free)
+    title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
+    parts = np.transpose([mode.shape for mode in free.modes])
+    yield _shapes(title, dict(zip(free.coordinates, parts, strict=True)))
+    yield _shapes(say("Shapes at the gauges"), free.gauges)
     yield _rest(free)
 
 
 def _met(free: FreeVibration) -> Block:
-    rows: tuple[tuple[Cell, ...], ...] = tuple(
+    rows = [
         (str(count), *(Value(mode.natural_frequency / order) for order in MET_ORDERS))
         for count, mode in enumerate(free.modes, 1)
         if mode.swings
-    )
+    ]
     if not rows:
         return Text(say("No mode swings, so no crank speed meets one."))
-    heads = (say("order {order}", order=order) for order in MET_ORDERS)
-    columns = (Column(say("mode")), *(Column(head, "angular speed", "rpm") for head in heads))
-    return Table(say("Crank speeds that meet a mode"), columns, rows)
+    columns = (Column(say("order {order}", order=order), *CRANK) for order in MET_ORDERS)
+    return Table.of(say("Crank speeds that meet a mode"), (say("mode"), *columns), rows)
 
 
-def _shapes(free: FreeVibration) -> Iterator[Table]:
-    """Each mode in the coordinates and at the gauges; the largest coordinate is 1."""
-    shapes: tuple[tuple[Cell, ...], ...] = tuple(
-        (str(count), *map(_part, mode.shape.tolist())) for count, mode in enumerate(free.modes, 1)
+def _shapes(title: str, parts: Mapping[str, Array]) -> Table:
+    """Parts (modes,) of each mode's shape; its largest coordinate is 1."""
+    rows = (
+        (str(count), *map(_part, map(complex, shape)))
+        for count, shape in enumerate(zip(*parts.values(), strict=True), 1)
     )
-    title = say("Shapes; displacements in m beside rotations in rad, amplitude and phase")
-    yield Table(title, tuple(map(Column, (say("mode"), *free.coordinates))), shapes)
-    gauges: tuple[tuple[Cell, ...], ...] = tuple(
-        (str(count), *(_part(complex(values[count - 1])) for values in free.gauges.values()))
-        for count in range(1, len(free.modes) + 1)
-    )
-    yield Table(
-        say("Shapes at the gauges"), tuple(map(Column, (say("mode"), *free.gauges))), gauges
-    )
+    return Table.of(title, (say("mode"), *parts), rows)
 
 
 def _part(value: complex) -> Value:
@@ -160,18 +149,14 @@ def _part(value: complex) -> Value:
 
 
 def _rest(free: FreeVibration) -> Table:
-    mounts = free.linear.body.support.mounts
-    scale = max((abs(value) for value in free.preloads.values()), default=0.0)
-    rows = tuple(
-        (
-            name,
-            Value(force, scale, dimension="force" if mounts[name].axis is None else "torque"),
-            "" if free.linear.rest.carries(name, mounts[name]) else say("does not touch"),
-        )
-        for name, force in free.preloads.items()
-    )
-    columns = (Column(""), Column(say("force on the support")), Column(""))
-    return Table(say("Mounts at rest"), columns, rows)
+    mounts, rest = free.linear.body.support.mounts, free.linear.rest
+    scale = max(map(abs, free.preloads.values()), default=0.0)
+    rows: list[tuple[Cell, ...]] = []
+    for name, force in free.preloads.items():
+        kind: Dimension = "force" if mounts[name].axis is None else "torque"
+        touching = "" if rest.carries(name, mounts[name]) else say("does not touch")
+        rows.append((name, Value(force, scale, dimension=kind), touching))
+    return Table.of(say("Mounts at rest"), ("", say("force on the support"), ""), rows)
 
 
 SHOWS: dict[str, Any] = {"Sweep": sweep_blocks, "FreeVibration": free_blocks}

@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.measures import unit_of as si_unit
+from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem

@@ -19,10 +19,9 @@ from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import display_rules
 from equipoise.schema.documents import dumps
-from equipoise.schema.files import LARGEST, printable
+from equipoise.schema.files import LARGEST, printable, to_csv
 from equipoise.schema.models import load_linkage, loads_linkage
 from equipoise.schema.opening import examples, kind_of_text, opened
-from equipoise.schema.output import to_csv
 from equipoise.web.balanced import balanced, balanced_design, balanced_told, nothing_gained
 from equipoise.web.design import Design, History, Step
 from equipoise.web.edits import Solved, edited, settled, solved

@@ -8,8 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from equipoise.balancing.branch_and_bound import Best, minimise
-from equipoise.balancing.design_variables import Square
+from equipoise.balancing.branch_and_bound import Best, Square, minimise
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 
 

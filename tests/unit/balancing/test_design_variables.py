@@ -9,9 +9,11 @@ import pytest
 from scipy.optimize import minimize
 
 import equipoise as eq
-from equipoise.balancing.design_variables import Change, FreeSpring, Square, with_parameters
-from equipoise.balancing.measures import measured
+from equipoise.balancing.branch_and_bound import Square
+from equipoise.balancing.design_variables import FreeSpring, with_parameters
+from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
+from equipoise.balancing.workshop import Change
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.parameters import parameter_values

@@ -12,8 +12,7 @@ from scipy.optimize import minimize
 
 import equipoise as eq
 from equipoise.balancing.effects import ANGLES, Effects
-from equipoise.balancing.gauges import Near, _by_numbers, gauge_signals, supports_more
-from equipoise.balancing.measures import measured
+from equipoise.balancing.objectives import Near, _by_numbers, measured, signals_of, supports_more
 from equipoise.balancing.problem import Problem
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.balance import (
@@ -183,7 +182,7 @@ def read(machine: eq.Machine, name: str, measure: str) -> float:
 )
 def test_a_signal_is_what_the_gauge_reads(machine: eq.Machine, name: str, measure: str) -> None:
     objective = Objective(f"gauges.{name}", measure)  # type: ignore[arg-type]
-    (signal,) = gauge_signals(Effects(machine, ()), objective, Near(machine))
+    (signal,) = signals_of(Effects(machine, ()), objective, Near(machine))
     within = EXACT if measure == "ripple" else BETWEEN
     assert measured(signal.start, objective.measure) == pytest.approx(
         read(machine, name, measure), rel=within
@@ -210,11 +209,11 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
     x = np.concatenate(numbers)
     changed = problem.machine_with(numbers)
     near = problem.near(numbers)
-    (signal,) = gauge_signals(problem.effects, wish, near.close)
+    (signal,) = signals_of(problem.effects, wish, near.close)
     assert measured(signal.at(x), "ripple") == pytest.approx(
         read(changed, name, "ripple"), rel=EXACT
     )
-    (wanted,) = gauge_signals(Effects(changed, ()), wish, Near(changed))
+    (wanted,) = signals_of(Effects(changed, ()), wish, Near(changed))
     assert signal.at(x) == pytest.approx(wanted.start, abs=EXACT * np.max(np.abs(wanted.start)))
     step = 1e-4
     for k in range(len(x)):
@@ -223,7 +222,7 @@ def test_numbers_near_a_machine(machine: eq.Machine) -> None:
             moved = x.copy()
             moved[k] += sign * step
             one = problem.machine_with(np.split(moved, [4, 8]))
-            there.append(gauge_signals(Effects(one, ()), wish, Near(one))[0].start)
+            there.append(signals_of(Effects(one, ()), wish, Near(one))[0].start)
         slope = (there[0] - there[1]) / (2 * step)
         scale = np.max(np.abs(slope)) + 1e-4 * np.max(np.abs(wanted.start))
         assert np.max(np.abs(signal.columns[k] - slope)) < 1e-6 * scale
@@ -337,6 +336,6 @@ def test_shafts_for_a_gauge() -> None:
 def test_gauges_need_a_support() -> None:
     machine = eq.load("yamashita-1")
     with pytest.raises(ModelError, match="support"):
-        gauge_signals(Effects(machine, ()), RIPPLE, Near(machine))
+        signals_of(Effects(machine, ()), RIPPLE, Near(machine))
     with pytest.raises(ModelError, match="gauge"):
-        gauge_signals(Effects(RIG, ()), Objective("gauges.other"), Near(RIG))
+        signals_of(Effects(RIG, ()), Objective("gauges.other"), Near(RIG))

@@ -11,13 +11,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.measures import (
-    Signal,
-    bound_measure,
-    mean_square_rows,
-    measured,
-    unit_of,
-)
+from equipoise.balancing.effects import Signal
+from equipoise.balancing.objectives import bound_measure, mean_square_rows, measured, unit_of
 from equipoise.balancing.program import Affine, Program
 from equipoise.mechanism.balance import MEASURES, Measure, Objective
 

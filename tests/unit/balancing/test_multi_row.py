@@ -13,7 +13,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.balancing.effects import Effects
-from equipoise.balancing.multi_row import of_all_rows
+from equipoise.balancing.objectives import of_all_rows
 from equipoise.balancing.phase_search import choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError

@@ -11,8 +11,8 @@ from math import pi
 import numpy as np
 import pytest
 
-from equipoise.balancing.pieces import pieces_of
 from equipoise.balancing.weights import AddedWeight
+from equipoise.balancing.workshop import pieces_of
 from equipoise.mechanism.balance import SHAPES, Shape, Weight
 from unit.balancing.bodies import PLATE, ROOMS, Array, farthest, moments_of, part_of, random_numbers
 

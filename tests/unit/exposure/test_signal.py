@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from equipoise.errors import UsageError
-from equipoise.exposure.signal import FADE, fade, signal, uneven
-from equipoise.exposure.spectra import weigh_signal
+from equipoise.exposure.spectra import FADE, fade, signal, uneven, weigh_signal
 
 RATE = 5000.0
 TIME = np.arange(int(9 * RATE)) / RATE

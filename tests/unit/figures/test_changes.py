@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.design_variables import Change
+from equipoise.balancing.workshop import Change
 from equipoise.figures.changes import changes, grams, sector
 from equipoise.figures.linkage import linkage
 from equipoise.results.charts import Chart, Outline

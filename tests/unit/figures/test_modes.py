@@ -12,7 +12,7 @@ from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
 from equipoise.figures.pictures import pictures_of
 from equipoise.results.charts import Chart
 from equipoise.symbols.scene import Scene
-from equipoise.vibration.mode_shapes import Mode
+from equipoise.vibration.response import Mode
 from unit.figures.samples import words
 from unit.figures.test_pictures import views
 from unit.figures.vibration_samples import (

@@ -18,7 +18,7 @@ from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import changed, determinant_chart, vary_tool
-from equipoise.handheld.transmission import transmit
+from equipoise.handheld.sweep import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel
 from equipoise.schema.models import load_tool

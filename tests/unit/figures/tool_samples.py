@@ -13,7 +13,7 @@ from equipoise.handheld.model import Absorber, Excitation, Hand, Station, Tool, 
 from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import respond_tool
 from equipoise.handheld.studies import determinant_chart, vary_tool
-from equipoise.handheld.transmission import transmit
+from equipoise.handheld.sweep import transmit
 from equipoise.results.charts import Chart
 from equipoise.schema.models import load_tool
 

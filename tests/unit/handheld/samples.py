@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool
-from equipoise.handheld.section import Section, Theory, Tube
-from equipoise.handheld.shaft import Segment, Shaft
+from equipoise.handheld.shaft import Section, Segment, Shaft, Theory, Tube
 from support.beam_reference import Attached, Piece, Reference
 
 Array = np.ndarray[Any, Any]

@@ -9,10 +9,20 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.handheld.chain import Carried, Chain, Pair, carry, count, log_determinant, solve
+from equipoise.handheld.chain import (
+    Carried,
+    Chain,
+    Pair,
+    carry,
+    count,
+    log_determinant,
+    longest,
+    shear_transfer,
+    solve,
+    transfer,
+)
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.layout import Layout
-from equipoise.handheld.segment import longest, shear_transfer, transfer
 from unit.handheld.samples import THEORIES, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

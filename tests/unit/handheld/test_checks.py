@@ -22,8 +22,7 @@ from equipoise.handheld.model import (
     Tool,
     Work,
 )
-from equipoise.handheld.section import Section, Tube
-from equipoise.handheld.shaft import Segment, Shaft
+from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
 
 SECTION = Section(980.0, 2.3)
 TUBE = Tube(0.026, 0.023, 70e9, 2700.0)

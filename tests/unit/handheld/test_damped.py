@@ -22,7 +22,7 @@ from equipoise.handheld.frequencies import (
 from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import Absorber, Station, Tool
 from equipoise.handheld.modes import SLOWEST, ToolModes, vibrate_tool
-from equipoise.handheld.section import Section
+from equipoise.handheld.shaft import Section
 from unit.handheld.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

@@ -17,8 +17,7 @@ from equipoise.handheld.frequencies import (
 )
 from equipoise.handheld.model import Absorber, Hand, Harness, Impedance, Station, Tool
 from equipoise.handheld.modes import rigid_names
-from equipoise.handheld.section import Section, Tube
-from equipoise.handheld.shaft import Segment, Shaft
+from equipoise.handheld.shaft import Section, Segment, Shaft, Tube
 from unit.handheld.samples import HARD, THEORIES, bare, both, clamp, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 
 from equipoise.errors import ModelError
-from equipoise.handheld.chain import carry, log_determinant
+from equipoise.handheld.chain import carry, log_determinant, longest
 from equipoise.handheld.duals import stacked, value_of, variables
 from equipoise.handheld.layout import Layout, check_coverage, impedance
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Impedance, Station, Tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.segment import longest
 from equipoise.handheld.shaft import Segment
-from equipoise.handheld.transmission import transmit
+from equipoise.handheld.sweep import transmit
 from unit.handheld.samples import SECTION, THEORIES, bare, both, pieces_of, random_tool
 
 Array = np.ndarray[Any, Any]

@@ -14,8 +14,7 @@ from equipoise.handheld.chain import Pair, States
 from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool
 from equipoise.handheld.response import ToolResponse, _check_finite, respond_tool
-from equipoise.handheld.section import Section
-from equipoise.handheld.shaft import Shaft
+from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.sweep import speeds_between, sweep_tool
 from unit.handheld.samples import THEORIES, bare, both, random_tool
 

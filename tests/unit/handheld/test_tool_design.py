@@ -18,8 +18,7 @@ from equipoise.handheld.design_plan import DesignLimit, DesignPlan, DesignVariab
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Station, Tool
 from equipoise.handheld.response import respond_tool
-from equipoise.handheld.section import Section
-from equipoise.handheld.shaft import Shaft
+from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.studies import changed, number_of
 from unit.handheld.samples import both
 

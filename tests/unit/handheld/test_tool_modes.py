@@ -13,7 +13,7 @@ from equipoise.handheld import frequencies
 from equipoise.handheld.frequencies import scale_of
 from equipoise.handheld.model import Absorber, Hand, Impedance, Station, Tool
 from equipoise.handheld.modes import PlaneModes, vibrate_tool
-from equipoise.handheld.section import Section
+from equipoise.handheld.shaft import Section
 from unit.handheld.samples import HARD, THEORIES, bare, both, clamp, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

@@ -13,9 +13,8 @@ import pytest
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.frequencies import natural_frequencies
 from equipoise.handheld.model import Excitation, Hand, Harness, Station, Tool
-from equipoise.handheld.section import Section
-from equipoise.handheld.shaft import Shaft
-from equipoise.handheld.transmission import source_of, transmit
+from equipoise.handheld.shaft import Section, Shaft
+from equipoise.handheld.sweep import source_of, transmit
 from unit.handheld.samples import THEORIES, attached_of, bare, both, random_tool, reference, still
 
 Array = np.ndarray[Any, Any]

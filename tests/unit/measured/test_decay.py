@@ -13,7 +13,7 @@ from scipy.integrate import solve_ivp
 
 import equipoise as eq
 from equipoise.measured.decay import _on_methods
-from equipoise.measured.estimate import Quantity
+from equipoise.measured.fits import Quantity
 from unit.measured.samples import OMEGA, held, noisy, simulated
 
 NAMES = [

@@ -190,9 +190,7 @@ def same_forces(one: eq.Machine, other: eq.Machine, slider: str, swapped: str) -
 def test_block_and_guide_change_roles_in_a_swinging_guide() -> None:
     one = quick_return("forward")
     other = replace(
-        one,
-        sliders=(eq.Slider("lever", "D", "block", "B", 0.0, 0.0),),
-        assembly={"D": "backward"},
+        one, sliders=(eq.Slider("lever", "D", "block", "B", 0.0, 0.0),), assembly={"D": "backward"}
     )
     same_forces(one, other, "block on lever", "lever on block")
 

@@ -11,9 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import MassError, UsageError
-from equipoise.mechanism.applied import load_at
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.model import FRAME
+from equipoise.mechanism.reactions import load_at
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 

@@ -79,8 +79,7 @@ def test_no_free_motion() -> None:
     """A four-bar whose coupler is held by a third link to the frame."""
     four = crank_rocker()
     tied = replace(
-        linked(four, tie=body(E=ORIGIN, P=(1.0, 0.0))),
-        frame={**four.frame, "E": (0.5, -1.0)},
+        linked(four, tie=body(E=ORIGIN, P=(1.0, 0.0))), frame={**four.frame, "E": (0.5, -1.0)}
     )
     coupler = replace(four.links["coupler"], points={**four.links["coupler"].points, "P": (1, 1)})
     assert refused(linked(tied, coupler=coupler)) == (
@@ -153,11 +152,7 @@ def test_gears_turn_on_their_carrier() -> None:
     """A wheel that is geared to a crank over a carrier that does not hold the crank."""
     given = machine(
         {"A": ORIGIN, "E": (0.5, 0.0)},
-        {
-            "crank": body(A=ORIGIN),
-            "wheel2": body(E=ORIGIN, F=(0.2, 0.0)),
-            "planet": body(F=ORIGIN),
-        },
+        {"crank": body(A=ORIGIN), "wheel2": body(E=ORIGIN, F=(0.2, 0.0)), "planet": body(F=ORIGIN)},
         gears=(
             eq.Gear("crank", "wheel2", -1.0),
             eq.Gear("crank", "planet", -2.0, carrier="wheel2"),

@@ -96,14 +96,7 @@ def test_a_linkage_that_never_closes() -> None:
 
 @pytest.mark.parametrize(
     ("gap", "lean"),
-    [
-        (1e-3, 0.0),
-        (1e-3, 0.25),
-        (1e-6, 0.0),
-        (1e-6, 0.1),
-        (1e-6, 0.25),
-        (1e-9, 0.25),
-    ],
+    [(1e-3, 0.0), (1e-3, 0.25), (1e-6, 0.0), (1e-6, 0.1), (1e-6, 0.25), (1e-9, 0.25)],
 )
 def test_a_narrow_gap(gap: float, lean: float) -> None:
     """Stretched, the dyad falls short only within a small angle, wherever the frame points."""

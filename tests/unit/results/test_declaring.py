@@ -22,8 +22,8 @@ from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
 from equipoise.results.outputs import documented, unit_of
 from equipoise.schema.documents import dumps
-from equipoise.schema.output import json_text, to_csv
-from equipoise.studies.dimensions import dimension_of
+from equipoise.schema.files import json_text, to_csv
+from equipoise.studies.figures import dimension_of
 from equipoise.web.messages import message_of
 from equipoise.web.session import Session, opened_example
 from support.printing import words

@@ -16,9 +16,9 @@ from equipoise.handheld.model import Impedance
 from equipoise.mechanism.field import Soil, SoilTable
 from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.model import Load, LoadTable, Machine
-from equipoise.schema import dumps, load, loads, save, tables
-from equipoise.schema.saving import files_of, parts_of
-from equipoise.schema.tables import format_load, format_motor, parse_load, read_load
+from equipoise.schema import dumps, load, loads, save
+from equipoise.schema.models import files_of, parts_of
+from equipoise.schema.tables import format_table, parse_table, read_beside
 from unit.schema.samples import FOUR_BAR, PLANTING
 from unit.schema.tool_samples import TOOL
 
@@ -28,14 +28,14 @@ FORCES = "crank_angle [deg],force_x [N],force_y [N]\n0,1,2\n90,3,-4.5\n"
 
 
 def test_forces_and_torques() -> None:
-    assert parse_load(FORCES) == LoadTable((0.0, pi / 2), ((1.0, 3.0), (2.0, -4.5)))
-    torque = parse_load("torque [N mm], crank_angle [turn]\r\n\r\n1000,0\r\n2e3,.5\r\n")
+    assert parse_table("load", FORCES) == LoadTable((0.0, pi / 2), ((1.0, 3.0), (2.0, -4.5)))
+    torque = parse_table("load", "torque [N mm], crank_angle [turn]\r\n\r\n1000,0\r\n2e3,.5\r\n")
     assert torque == LoadTable((0.0, pi), ((1.0, 2.0),))
 
 
 def test_the_order_of_columns_does_not_matter() -> None:
     swapped = "force_y [N],crank_angle [deg],force_x [N]\n2,0,1\n-4.5,90,3\n"
-    assert parse_load(swapped) == parse_load(FORCES)
+    assert parse_table("load", swapped) == parse_table("load", FORCES)
 
 
 SORTS = {
@@ -145,8 +145,7 @@ PUSH = LoadTable((0.0, 1.0, 2.5), ((1.0, 0.1, -3.0), (0.5, 1e-7, 1 / 3)), "f.csv
 
 def table_of(machine: Machine, sort: str) -> Any:
     """The table of a sort that a machine has."""
-    tables = {part.sort: part.value for part in parts_of(machine)}
-    return tables[sort]
+    return next(part.value for part in parts_of(machine) if part.sort == sort)
 
 
 @pytest.mark.parametrize(
@@ -205,7 +204,7 @@ def test_tables_are_named_in_the_text() -> None:
 
 
 def test_a_curve_is_written_in_handy_units() -> None:
-    assert format_motor(CURVE) == MOTOR_CSV.replace("0,2\n", "0,2.0\n", 1)
+    assert format_table(CURVE) == MOTOR_CSV.replace("0,2\n", "0,2.0\n", 1)
 
 
 SIZES = st.floats(1e-20, 1e20)
@@ -231,13 +230,13 @@ def test_random_tables_survive(
     columns = (data.draw(st.tuples(*[other] * len(at))) for other in others)
     table = of(tuple(at), *columns)
     folder = tmp_path_factory.getbasetemp()
-    (folder / f"random-{sort}.csv").write_text(getattr(tables, f"format_{sort}")(table))
-    assert getattr(tables, f"read_{sort}")(f"random-{sort}.csv", folder) == table
+    (folder / f"random-{sort}.csv").write_text(format_table(table))
+    assert read_beside(sort, f"random-{sort}.csv", folder) == table
 
 
 def complaint(text: str) -> str:
     try:
-        parse_load(text)
+        parse_table("load", text)
     except ModelError as error:
         return str(error)
     return "read"
@@ -256,12 +255,14 @@ def test_any_text_is_refused_with_a_sentence(text: str) -> None:
 def test_tables_survive(angles: list[float], value: float) -> None:
     angles = sorted(angle for angle in angles if angle > 1e-20) or [0.0]
     table = LoadTable(tuple(angles), ((value,) * len(angles), (-value,) * len(angles)))
-    assert parse_load(format_load(table)) == table
+    assert parse_table("load", format_table(table)) == table
 
 
 def test_whole_degrees_are_written_as_degrees() -> None:
-    assert format_load(parse_load(FORCES)).startswith("crank_angle [deg],force_x [N],force_y [N]")
-    assert "\n90,3.0,-4.5\n" in format_load(parse_load(FORCES))
+    assert format_table(parse_table("load", FORCES)).startswith(
+        "crank_angle [deg],force_x [N],force_y [N]"
+    )
+    assert "\n90,3.0,-4.5\n" in format_table(parse_table("load", FORCES))
 
 
 def test_errors_name_model_and_table(tmp_path: Path) -> None:
@@ -278,5 +279,5 @@ def test_errors_name_model_and_table(tmp_path: Path) -> None:
         load(path)
     assert str(caught.value).startswith(f"{path}: loads[1].table: ")
     table.write_text("\ufeff" + FORCES, encoding="utf-8")
-    assert load(path).loads[0].table == parse_load(FORCES, "f.csv")
-    assert read_load("f.csv", tmp_path).file == "f.csv"
+    assert load(path).loads[0].table == parse_table("load", FORCES, "f.csv")
+    assert read_beside("load", "f.csv", tmp_path).file == "f.csv"

@@ -20,9 +20,8 @@ from equipoise.handheld.model import Tool
 from equipoise.mechanism.model import Machine
 from equipoise.quantities.units import KINDS
 from equipoise.schema.finding import is_whole
-from equipoise.schema.numbers import OF_UNIT
+from equipoise.schema.numbers import OF_UNIT, from_polar
 from equipoise.schema.opening import examples
-from equipoise.schema.places import from_polar
 from equipoise.schema.template import Template
 from unit.schema.samples import FOUR_BAR, SUPPORT
 from unit.schema.tool_samples import TOOL

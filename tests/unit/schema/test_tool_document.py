@@ -13,7 +13,7 @@ from jsonschema import Draft202012Validator
 from equipoise.errors import ModelError
 from equipoise.handheld.design_plan import DesignLimit, DesignVariable
 from equipoise.handheld.model import Harness, Impedance, Tool
-from equipoise.handheld.section import Section, Tube
+from equipoise.handheld.shaft import Section, Tube
 from equipoise.schema import examples, load, loads
 from equipoise.schema.documents import dumps
 from equipoise.schema.models import load_linkage, load_tool, loads_tool

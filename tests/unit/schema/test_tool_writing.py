@@ -14,12 +14,11 @@ from hypothesis import strategies as st
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.model import Hand, Impedance, Tool
-from equipoise.handheld.section import Section
+from equipoise.handheld.shaft import Section
 from equipoise.mechanism.model import LoadTable, Machine
 from equipoise.schema import examples, load
 from equipoise.schema.documents import dumps, save
-from equipoise.schema.models import load_tool, loads_tool
-from equipoise.schema.saving import files_of
+from equipoise.schema.models import files_of, load_tool, loads_tool
 from unit.schema.tool_samples import EVERY_TOOL, TOOL
 
 TABLE = Impedance((20.0, 40.0, 1e3 / 3), (0.0, 150.0, 1 / 3), (-80.0, 1e-7, 10.0), "hand.csv")

@@ -16,11 +16,10 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import SI
 from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
-from equipoise.studies.commands import check_outputs
+from equipoise.studies.commands import find_outputs
 from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
-from equipoise.studies.dimensions import dimension_of
 from equipoise.studies.evaluate import one_by_one
-from equipoise.studies.figures import read, resolve, scale
+from equipoise.studies.figures import dimension_of, read, resolve, scale
 from equipoise.studies.outcomes import Outcome
 from equipoise.studies.study import Study
 from surface.running import equipoise, example_text, succeeded
@@ -369,7 +368,7 @@ def test_what_cannot_be_computed() -> None:
 def test_outputs_that_lead_nowhere(path: str, told: str) -> None:
     given = study("yamashita-1", "drive.speed", "drive_torque.rms", path)
     with pytest.raises(ModelError, match=re.escape(told)) as refused:
-        check_outputs(given)
+        find_outputs(given, given.outputs)
     assert str(refused.value).startswith(f"outputs[2].value: got {path!r}")
 
 
@@ -378,14 +377,14 @@ def test_without_masses() -> None:
     given = study(Template(text), "drive.speed", "turns", "drive_torque.rms")
     sentence = "outputs[2].value: got 'drive_torque.rms'; there are no forces, "
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}.*mass"):
-        check_outputs(given)
+        find_outputs(given, given.outputs)
 
 
 def test_a_model_that_cannot_be_computed() -> None:
     given = study("yamashita-1", "drive.speed", "turns", *asked("balance", "gap"))
     sentence = "outputs[2].of: equipoise balance cannot compute the model: nothing is free to"
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}"):
-        check_outputs(given)
+        find_outputs(given, given.outputs)
 
 
 def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:
@@ -429,6 +428,9 @@ def test_dimensions_of_an_analysis(name: str) -> None:
         ("yamashita-1", "analyze", "by_order.shaking_force.x.harmonics[order 1]", "force"),
         ("yamashita-1", "analyze", "by_link.shaking_force.crank.x.rms", "force"),
         ("yamashita-1", "analyze", "by_cause.drive_torque.weight.rms", "torque"),
+        ("yamashita-1", "analyze", "by_cause.drive_torque.weight.peak_at", "angle"),
+        ("transplanter", "plant", "cusps.max", "angle"),
+        ("yamashita-rig", "respond", "gauges.gauge.phases.max", "angle"),
         ("transplanter", "plant", "soil.hole_length", "length"),
         ("transplanter", "plant", "entry.velocity.size", "speed"),
         ("transplanter", "plant", "visits[1].depth", "length"),

@@ -14,9 +14,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.model import Machine
 from equipoise.studies.design_space import Choices, Correlation, Make, Normal, Output, Range, Vary
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Evaluator, Outcome, kept
+from equipoise.studies.outcomes import Evaluator, Outcome, kept, non_dominated
 from equipoise.studies.search import search_designs
-from equipoise.studies.selection import non_dominated
 from equipoise.studies.study import Study
 from unit.studies.samples import LENGTH, MASS, PATHS, study
 

@@ -13,9 +13,9 @@ import pytest
 from equipoise.codegen.figures import NO_ASSEMBLY, NO_FULL_TURN
 from equipoise.errors import UsageError
 from equipoise.studies.design_space import Make, Output, Range
-from equipoise.studies.outcomes import Block, Outcome
+from equipoise.studies.outcomes import Block, Outcome, far_apart, non_dominated
 from equipoise.studies.run import create_store
-from equipoise.studies.selection import best, far_apart, non_dominated
+from equipoise.studies.selection import best
 from equipoise.studies.store import Store
 from unit.studies.samples import LENGTH, MASS, study
 

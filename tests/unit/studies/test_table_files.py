@@ -17,8 +17,8 @@ from equipoise.errors import UsageError
 from equipoise.studies.outcomes import Block
 from equipoise.studies.run import create_store
 from equipoise.studies.sampling import samples
+from equipoise.studies.selection import export
 from equipoise.studies.store import Store
-from equipoise.studies.table_files import export
 from support.studies import LENGTH, MASS, SPEED, Formulas, short_study
 
 STUDY = short_study(250)

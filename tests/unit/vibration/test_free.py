@@ -14,9 +14,8 @@ from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Row
 from equipoise.vibration.forced import respond
 from equipoise.vibration.free import AMPLIFIED, Resonance, resonances
-from equipoise.vibration.linear import Linear
-from equipoise.vibration.mode_shapes import Mode, find_modes
-from equipoise.vibration.response import Model
+from equipoise.vibration.linear import Linear, find_modes
+from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
 from unit.vibration.build import STIFFNESS, Array, Gauge, Mount, block, cart, rig, springs
 

@@ -1,4 +1,4 @@
-"""The command `exposure`."""
+"""The commands `decay` and `exposure`: what was measured of a machine, and at its handles."""
 
 from __future__ import annotations
 
@@ -9,21 +9,127 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import blaming, check_belonging, quantity, read_by
+from equipoise.cli.options import (
+    SIGNED,
+    Many,
+    blaming,
+    check_belonging,
+    quantity,
+    read_by,
+    size,
+    time_a_day,
+)
 from equipoise.cli.outputs import Drawn
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from equipoise.exposure.daily import Exposure, Task
+    from equipoise.exposure.daily import Exposure
     from equipoise.exposure.weighting import Weighted
-    from equipoise.figures import Picture
     from equipoise.schema.records import Accelerations
 
-DURATION = Parameter(negative="", consume_multiple=False, allow_leading_hyphen=True)
+# -- decay -----------------------------------------------------------------------------------------
+
+Arm = Annotated[float | None, size("length", "give more than 0")]
+
+
+def _stiffness(option: str, text: str) -> tuple[float, bool, str]:
+    """A stiffness, N/m or N m/rad, whether it is torsional, and how it was given."""
+    from equipoise.quantities import KINDS, plain_unit
+
+    unit = plain_unit(text.partition(" ")[2].strip())
+    torsional = unit in KINDS["torsional stiffness"].units
+    value = quantity(option, text, "torsional stiffness" if torsional else "stiffness")
+    if value <= 0:
+        raise UsageError(f"{option}: got {text!r}; give more than 0")
+    return value, torsional, text
+
+
+def decay(
+    csv: Annotated[str, Parameter(name="CSV")],
+    /,
+    *,
+    stiffness: Annotated[Any, read_by(_stiffness)] = None,
+    arm: Arm = None,
+    spring_arm: Arm = None,
+    confidence: Annotated[float, SIGNED] = 0.95,
+    outputs: Drawn = Drawn(),
+) -> None:
+    """Frequency, inertia, viscous damping and Coulomb friction from a recorded free decay.
+
+    Parameters
+    ----------
+    csv
+        Path of a record: columns "time [s]" and "displacement [mm]" or "angle [deg]".
+    stiffness
+        Of the spring, such as "12 N/mm", or of a pivot, "500 N m/rad"; adds inertia and forces.
+    arm
+        Distance from the pivot at which the displacement was read; makes an angle of it.
+    spring_arm
+        Distance from the pivot at which the spring acts; its stiffness is then in N/m.
+    confidence
+        Of the intervals.
+    """
+    from equipoise.figures import measured as pictures
+    from equipoise.measured.decay import identify_decay
+    from equipoise.schema.files import printable
+    from equipoise.schema.records import read_record
+
+    check_belonging("--stiffness", stiffness is not None, spring_arm=spring_arm)
+    if not 0 < confidence < 1:
+        raise UsageError(f"--confidence: got {confidence:g}; give 0.95, or another between 0 and 1")
+    record = read_record(csv)
+    if arm is not None and record.kind == "angle":
+        raise UsageError(
+            "--arm makes an angle of a length, but the record has angles; leave it out"
+        )
+    value = None
+    if stiffness is not None:
+        value, torsional, text = stiffness
+        _check_stiffness(text, torsional, record.kind == "angle" or arm is not None, spring_arm)
+    with blaming(printable(csv)):
+        found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
+    title = printable(os.path.basename(csv))
+    outputs.draw(lambda: pictures.decay_charts(found, title))
+    outputs.print(title, found.to_dict, found.blocks)
+
+
+def _check_stiffness(text: str, torsional: bool, angles: bool, spring_arm: float | None) -> None:
+    """The stiffness has to suit the record."""
+    if torsional and spring_arm is not None:
+        raise UsageError(
+            f"--spring-arm belongs to a stiffness in N/m, but --stiffness is {text!r}; leave one "
+            "of them out, or change it"
+        )
+    if torsional and not angles:
+        raise UsageError(
+            f"--stiffness: got {text!r}, but the record has lengths; give a stiffness in N/m, or "
+            "by --arm how far from the pivot they were read"
+        )
+    if not torsional and angles and spring_arm is None:
+        raise UsageError(
+            f"--stiffness: got {text!r}, but the record has angles; give a stiffness in N m/rad, "
+            "or by --spring-arm how far from the pivot the spring acts"
+        )
+    if spring_arm is not None and not angles:
+        raise UsageError(
+            "--spring-arm belongs to a record of angles; give by --arm how far from the pivot the "
+            "lengths were read, or leave it out"
+        )
+
+
+# -- exposure --------------------------------------------------------------------------------------
+
 VALUE = re.compile(r"(?:(?P<name>[^:]*[^:\s])\s*:\s+)?(?P<a_hv>.*\S)\s+for\s+(?P<duration>.*)")
 LOOKS_LIKE_A_VALUE = re.compile(r"(?:[^:]+:\s)?\s*[+-]?[0-9.]+(?: .*)?")
+OWNERS = {
+    "weighted": "a signal or a spectrum",
+    "single_axis": "a signal or a spectrum of one or two axes",
+    "bands": "a spectrum",
+    "periodic": "a signal",
+}
+"""What options are of use for."""
 
 
 @dataclass(frozen=True)
@@ -34,16 +140,6 @@ class Told:
     a_hv: float
     duration: float | None = None
     weighted: Weighted | None = None
-
-
-@dataclass(frozen=True)
-class Options:
-    """What the values of files are, and what is to be made of them."""
-
-    weighted: bool
-    single_axis: bool
-    bands: bool
-    periodic: bool
 
 
 def _acceleration(option: str, text: str) -> float:
@@ -57,8 +153,8 @@ Acceleration = Annotated[float | None, read_by(_acceleration)]
 
 
 def exposure(
-    *inputs: Annotated[str, Parameter(name="INPUT", negative="")],
-    duration: Annotated[list[str] | None, DURATION] = None,
+    *inputs: Annotated[str, Parameter(name="INPUT")],
+    duration: Annotated[Many, SIGNED] = None,
     idle: Acceleration = None,
     racing: Acceleration = None,
     bands: bool = False,
@@ -96,7 +192,12 @@ def exposure(
 
     check_belonging("--racing", racing is not None, idle=idle)
     check_belonging("--idle", idle is not None, racing=racing)
-    options = Options(weighted, single_axis, bands, periodic)
+    options = {
+        "weighted": weighted,
+        "single_axis": single_axis,
+        "bands": bands,
+        "periodic": periodic,
+    }
     told = [each for text in inputs for each in _told(text, options)]
     if idle is not None and racing is not None:
         told.append(Told("idling and racing", equivalent(idle, racing)))
@@ -108,22 +209,19 @@ def exposure(
 
 def _give(told: list[Told], outputs: Drawn) -> None:
     """Draw, then print."""
+    from equipoise.exposure.blocks import told_blocks
+    from equipoise.figures import measured as pictures
+
     day = _day(told)
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
 
-    def drawings() -> Mapping[str, Picture]:
-        from equipoise.figures import measured as pictures
-
-        return pictures.exposure_charts(measured, tools, day)
-
-    def show() -> None:
-        from equipoise.exposure.blocks import told_blocks
-        from equipoise.present import show_blocks
-
-        show_blocks("", told_blocks(measured, tools, day))
-
-    outputs.give(drawings, lambda: _values(measured, tools, day), show)
+    outputs.draw(lambda: pictures.exposure_charts(measured, tools, day))
+    outputs.print(
+        "",
+        lambda: _values(measured, tools, day),
+        lambda: told_blocks(measured, tools, day),
+    )
 
 
 def _values(
@@ -143,18 +241,19 @@ def _values(
     return {"measured": files, "tasks": tasks, "a_hv": a_hv, "a8": None}
 
 
-# -- what is told of tasks -------------------------------------------------------------------------
-
-
-def _told(text: str, options: Options) -> list[Told]:
+def _told(text: str, options: Mapping[str, bool]) -> list[Told]:
     """Tasks that an argument stands for: one value, one file of accelerations, or one of tasks."""
     from equipoise.schema.records import Accelerations, read_accelerations
 
-    match = None if os.path.lexists(text) else VALUE.fullmatch(text)
-    if match is not None:
-        return [_value(text, match)]
-    if LOOKS_LIKE_A_VALUE.fullmatch(text) and not os.path.lexists(text):
-        raise UsageError(f'got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"')
+    if not os.path.lexists(text):
+        if match := VALUE.fullmatch(text):
+            a_hv = quantity(repr(text), match["a_hv"], "acceleration")
+            duration = quantity(repr(text), match["duration"], "time")
+            if a_hv < 0:
+                raise UsageError(f"got {text!r}; give an acceleration of 0 or more")
+            return [Told(match["name"] or match["a_hv"], a_hv, duration)]
+        if LOOKS_LIKE_A_VALUE.fullmatch(text):
+            raise UsageError(f'got {text!r}; say for how long a day, as in "7.4 m/s^2 for 2.5 h"')
     found = read_accelerations(text)
     if isinstance(found, Accelerations):
         weighted = _weighted(text, found, options)
@@ -162,27 +261,19 @@ def _told(text: str, options: Options) -> list[Told]:
     return [Told(task.name, task.acceleration, task.duration) for task in found]
 
 
-def _value(text: str, match: re.Match[str]) -> Told:
-    a_hv = quantity(repr(text), match["a_hv"], "acceleration")
-    duration = quantity(repr(text), match["duration"], "time")
-    if a_hv < 0:
-        raise UsageError(f"got {text!r}; give an acceleration of 0 or more")
-    return Told(match["name"] or match["a_hv"], a_hv, duration)
-
-
-def _weighted(path: str, found: Accelerations, options: Options) -> Weighted:
+def _weighted(path: str, found: Accelerations, options: Mapping[str, bool]) -> Weighted:
     from equipoise.exposure.spectra import weigh_signal, weigh_spectrum
     from equipoise.schema.files import printable
 
-    single = options.single_axis and len(found.axes) < 3
-    shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options.weighted}
+    single = options["single_axis"] and len(found.axes) < 3
+    shared: Any = {"axes": found.axes, "single_axis": single, "weighted": options["weighted"]}
     with blaming(printable(path)):
         if found.kind == "time":
-            return weigh_signal(found.at, found.values, periodic=options.periodic, **shared)
-        return weigh_spectrum(found.at, found.values, bands=options.bands, **shared)
+            return weigh_signal(found.at, found.values, periodic=options["periodic"], **shared)
+        return weigh_spectrum(found.at, found.values, bands=options["bands"], **shared)
 
 
-def _check_options(told: list[Told], options: Options) -> None:
+def _check_options(told: list[Told], options: Mapping[str, bool]) -> None:
     """An option that would do nothing is told, not passed over."""
     files = [each.weighted for each in told if each.weighted is not None]
     of_use = {
@@ -191,21 +282,15 @@ def _check_options(told: list[Told], options: Options) -> None:
         "bands": any(file.kind == "bands" for file in files),
         "periodic": any(file.kind == "signal" for file in files),
     }
-    owners = {
-        "weighted": "a signal or a spectrum",
-        "single_axis": "a signal or a spectrum of one or two axes",
-        "bands": "a spectrum",
-        "periodic": "a signal",
-    }
-    for name, owner in owners.items():
-        if getattr(options, name) and not of_use[name]:
+    for name, owner in OWNERS.items():
+        if options[name] and not of_use[name]:
             option = name.replace("_", "-")
             raise UsageError(f"--{option} belongs to {owner}; give one, or leave it out")
 
 
 def _timed(told: list[Told], durations: list[str]) -> list[Told]:
     """With the times of exposure that are given by an option."""
-    times = [_positive(text) for text in durations]
+    times = [time_a_day("--duration", text) for text in durations]
     open_ended = [each for each in told if each.duration is None]
     if times and not open_ended:
         raise UsageError(
@@ -225,16 +310,9 @@ def _timed(told: list[Told], durations: list[str]) -> list[Told]:
     ]
 
 
-def _positive(text: str) -> float:
-    value = quantity("--duration", text, "time")
-    if value <= 0:
-        raise UsageError(f"--duration: got {text!r}; give more than 0 and at most 24 h a day")
-    return value
-
-
 def _day(told: list[Told]) -> Exposure | None:
     """The exposure of a day; None if no time is told."""
-    from equipoise.exposure.daily import daily_exposure
+    from equipoise.exposure.daily import Task, daily_exposure
 
     known = [each for each in told if each.duration is not None]
     if not known:
@@ -245,11 +323,8 @@ def _day(told: list[Told]) -> Exposure | None:
                 f"{each.name}: the time of exposure is missing; give it by --duration, as for the "
                 "other tasks"
             )
-    return daily_exposure(_task(each) for each in known)
-
-
-def _task(each: Told) -> Task:
-    from equipoise.exposure.daily import Task
-
-    with blaming(each.name):
-        return Task(each.name, each.a_hv, each.duration or 0.0)
+    tasks = []
+    for each in known:
+        with blaming(each.name):
+            tasks.append(Task(each.name, each.a_hv, each.duration or 0.0))
+    return daily_exposure(tasks)

@@ -1,0 +1,329 @@
+"""What an objective asks: its signals, of all rows and of gauges too, and measures of them.
+
+The linkages' force and moment are linear in the free numbers.  How the support answers depends on
+its whole mass, and with it on added masses: it is taken from a machine near the solution, with the
+derivative by each number there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from equipoise.balancing.design_variables import with_parameters
+from equipoise.balancing.effects import Effects, Signal
+from equipoise.balancing.program import Affine, Block, Program
+from equipoise.errors import ModelError
+from equipoise.mechanism.balance import Measure, Objective
+from equipoise.mechanism.checks import unknown
+from equipoise.mechanism.dynamics import place_of
+from equipoise.mechanism.kernels import cross
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import Motion
+from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of, quantity_of
+from equipoise.mechanism.parameters import parameter_values
+from equipoise.mechanism.support import Row
+from equipoise.quantities import SI
+from equipoise.signals import Array, Periodic
+from equipoise.vibration.forced import usual_step
+from equipoise.vibration.linear import Linear, gauges_of
+from equipoise.vibration.linkages import rows_of
+
+SAMPLES = 1440
+"""Of a gauge's signal in a turn."""
+PADDING, LIGHT, STEP, ROUNDING = 1.0, 1e-6, 1e-3, 1e-10
+"""Inertia of all links by which a link is padded; mass, of that of all, which counts as none; a
+difference's step, over the link's mass; and what of a difference is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class Near:
+    """A machine near the solution, and its numbers (K,); None where they are not known."""
+
+    machine: Machine
+    numbers: Array | None = None
+
+
+def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
+    """Signals whose largest measure an objective is: one for each speed at which it is read."""
+    output, about = objective.output, objective.about
+    if output.startswith(GAUGES):
+        found = _gauge_signals(effects, objective, near)
+    elif output in OF_ROWS or (len(effects.machine.rows) > 1 and not output.startswith(JOINTS)):
+        found = [of_all_rows(effects, output, about)]
+    else:
+        found = [effects.signal(output, about)]
+    return [signal.kept(objective.orders) for signal in found]
+
+
+def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
+    """An output summed over all rows in their phases."""
+    kind, _, axis = output.rpartition(".")
+    if axis in {"x", "y"} and kind:
+        whole = of_all_rows(effects, kind, about)
+        part = np.real if axis == "x" else np.imag
+        return Signal(part(whole.start), part(whole.columns), whole.turns)
+    force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
+    one = force if output in OF_ROWS else effects.signal(output)
+    start: Array = 0.0 * one.start
+    columns: Array = 0.0 * one.columns
+    if output in OF_ROWS:
+        start, columns = start.real, columns.real
+    for row in effects.machine.rows:
+        here = one
+        if output.endswith("_moment"):
+            arm = arm_of(effects.machine, effects.motion, row, about)
+            there = moment_of_row(output, row, arm, force.start, one.start)
+            by_number = moment_of_row(output, row, arm, force.columns, one.columns)
+            here = Signal(there, by_number, one.turns)
+        here = here.ahead_by(row.phase)
+        start, columns = start + here.start, columns + here.columns
+    return Signal(start, columns, one.turns)
+
+
+def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
+    """From the point about which moments are taken to a row's drive pivot, m."""
+    pivot = complex(*machine.frame[motion.linkage.pivot])
+    return pivot + complex(*row.offset) - (pivot if about is None else place_of(machine, about))
+
+
+def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Array) -> Array:
+    """What a row adds to a moment: (x, y, z) x F, with (x, y) the arm and z to the side, N m.
+
+    force : complex, in the row's plane, N.  moment : of the row about its own drive pivot, N m.
+    """
+    if output == "roll_moment":
+        return np.asarray(-row.lateral * force.imag)
+    if output == "yaw_moment":
+        return np.asarray(row.lateral * force.real)
+    return np.asarray(moment + cross(arm, force))
+
+
+# -- gauges of the support -------------------------------------------------------------------------
+
+
+def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
+    """A gauge's displacement (m or rad, without its mean) at each of the objective's speeds."""
+    like = near.machine
+    if like.support is None:
+        raise ModelError("support", "missing; a gauge needs a support that it stands on")
+    linear = Linear.of(like, usual_step(like))
+    gauges, name = gauges_of(linear.body), objective.output.removeprefix(GAUGES)
+    if name not in gauges:
+        raise ModelError("support.gauges", unknown(name, gauges, "gauge"))
+    row = linear.body.row(gauges[name])[linear.body.free]
+    speeds = objective.speeds or (effects.machine.drive.speed,)
+    return [_read(effects, linear, row, speed, near.numbers) for speed in speeds]
+
+
+def _read(
+    effects: Effects, linear: Linear, row: Array, speed: float, numbers: Array | None
+) -> Signal:
+    """What a reading (D,) of the free coordinates sees at a speed, rad/s."""
+    wrench = _wrench(effects.at(speed), linear)  # (6, 1 + K, orders)
+    frequency = wrench.orders[1:] * speed
+    along = np.broadcast_to(row[:, None], (len(frequency), len(row), 1))
+    seen = np.linalg.solve(linear.impedance(frequency), along)[..., 0]
+    free = wrench.amplitudes[linear.body.free][..., 1:]
+    amplitudes = np.zeros(wrench.amplitudes.shape[1:], complex)
+    amplitudes[:, 1:] = np.einsum("nd,dkn->kn", seen, free)
+    if numbers is not None and len(numbers):
+        whole = (free[:, 0] + np.einsum("k,dkn->dn", numbers, free[:, 1:])).T
+        there = np.linalg.solve(linear.impedance(frequency), whole[..., None])[..., 0]
+        mass, stiffness = _by_numbers(effects, linear.body.machine)
+        impedance = stiffness[:, None] - frequency[:, None, None] ** 2 * mass[:, None]
+        bent = np.einsum("nd,knde,ne->kn", seen, impedance, there)
+        amplitudes[1:, 1:] -= bent
+        amplitudes[0, 1:] += numbers @ bent
+    samples = Periodic(amplitudes, wrench.turns).samples(SAMPLES * wrench.turns)
+    return Signal(samples[0], samples[1:], wrench.turns)
+
+
+def supports_more(effects: Effects, machine: Machine) -> bool:
+    """Whether what the support has to carry depends on the numbers."""
+    return any(np.any(one) for one in _by_numbers(effects, machine))
+
+
+def _by_numbers(effects: Effects, machine: Machine) -> tuple[Array, Array]:
+    """Mass and stiffness (K, D, D) that a unit of each number adds to the support, at a machine.
+
+    By differences.  Links are padded with inertia, in which both are linear, so that all of them
+    are bodies that there can be; and with mass where they have none.
+    """
+    step, padded = usual_step(machine), machine
+    order = list(machine.links)
+    values = parameter_values(machine).reshape(-1, 4).copy()
+    whole = np.sum(values, axis=0)
+    for link in {part.link for part in effects.parts}:
+        own = values[order.index(link)]
+        own += [whole[0] if own[0] < LIGHT * whole[0] else 0.0, 0.0, 0.0, PADDING * whole[3]]
+        padded = with_parameters(padded, link, own)
+    start = Linear.of(padded, step)
+    mass, stiffness = [], []
+    for part in effects.parts:
+        own = values[order.index(part.link)]
+        for row in part.effect:
+            share = STEP * own[0] / max(whole[0], float(np.max(np.abs(row[:3]), initial=0.0)))
+            ends = (own + share * row, own - share * row)
+            one, other = (Linear.of(with_parameters(padded, part.link, e), step) for e in ends)
+            mass.append((one.mass - other.mass) / (2 * share))
+            stiffness.append((one.stiffness - other.stiffness) / (2 * share))
+    return _tidy(np.array(mass), start.mass), _tidy(np.array(stiffness), start.stiffness)
+
+
+def _tidy(columns: Array, whole: Array) -> Array:
+    """Columns without what is rounding beside the whole."""
+    return np.where(np.abs(columns) > ROUNDING * np.max(np.abs(whole)), columns, 0.0)
+
+
+def _wrench(effects: Effects, linear: Linear) -> Periodic:
+    """Wrench (6, 1 + K, orders) on the support: of what is there, and of a unit of each number.
+
+    The machine's weight is no part of it; its moment is as the step has it, about the drive's
+    pivot.
+    """
+    excitation, machine = linear.excitation, effects.machine
+    force = effects.signal("frame_force").start - machine.mass * complex(*machine.gravity)
+    forces = np.vstack([force, effects.signal("shaking_force").columns])
+    signals = np.stack([forces.real, forces.imag, _moments(effects, linear)])
+    one = Periodic.of(signals, effects.motion.turns)
+    flat, total = one.amplitudes.reshape(3, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
+    for place in rows_of(linear.body.machine):
+        here = excitation.about_reference(flat, place).reshape(6, *one.amplitudes.shape[1:])
+        total = total + Periodic(here, one.turns).shifted(place.phase)
+    return total
+
+
+def _moments(effects: Effects, linear: Linear) -> Array:
+    """Moment (1 + K, N) about the drive's pivot, as the step has it."""
+    step = linear.excitation.step
+    if step == "linear":
+        return np.zeros((1 + effects.count, len(effects.motion.crank_angle)))
+    signal = effects.signal("drive_torque" if step == "torque" else "frame_moment")
+    both = np.vstack([signal.start, signal.columns])
+    if step == "torque":
+        return -both
+    weight = effects.weight_moment(linear.excitation.pivot)
+    means = np.mean(np.vstack([weight.start, weight.columns]), axis=1, keepdims=True)
+    return np.asarray(both - means)
+
+
+def read_rows(linear: Linear, reading: Array, speed: float) -> Array:
+    """What a reading (D,) of the free coordinates sees of each row, (m, K + 1), at a speed, rad/s.
+
+    (K - (n w)^2 M + i n w C) q_n = W_n, whose matrices do not depend on the phases.  They are
+    symmetric, so that the answer to the reading itself serves all rows.
+    """
+    linear.motion(speed)  # refuses what resonates, or drives the support away
+    one = linear.excitation.of_one(speed)
+    impedance = linear.impedance(one.orders[1:] * speed)
+    along = np.broadcast_to(reading[:, None], (len(impedance), len(reading), 1))
+    answer = np.zeros((6, len(one.orders)), complex)
+    answer[linear.body.free, 1:] = np.linalg.solve(impedance, along)[..., 0].T
+    rows = rows_of(linear.excitation.machine)
+    found = np.zeros((len(rows), len(one.orders)), complex)
+    for k, row in enumerate(rows):
+        wrench = one.amplitudes.copy()
+        wrench[3:] += np.cross((*row.offset, row.lateral), wrench[:3].T).T
+        found[k] = np.sum(answer * wrench, axis=0)
+    return found
+
+
+# -- measures --------------------------------------------------------------------------------------
+
+
+def measured(values: Array, measure: Measure) -> float:
+    """Measure of a signal (N,) over a whole cycle."""
+    if measure == "ripple":
+        return measured(values - np.mean(values), "rms")
+    if measure == "rms":
+        return float(np.sqrt(np.mean(np.abs(values) ** 2)))
+    if measure == "peak":
+        return float(np.max(np.abs(values)))
+    if measure == "peak_to_peak":
+        return float(np.max(values) - np.min(values))
+    return float(2 * pi * np.mean(np.abs(values)))
+
+
+def unit_of(objective: Objective, machine: Machine) -> str:
+    """SI unit of a measure of an output."""
+    quantity = quantity_of(objective, machine)
+    if quantity is None:  # the area under what is no torque
+        return f"{SI[output_of(objective.output, machine).dimension]} rad"
+    return SI[quantity]
+
+
+def mean_square_rows(signal: Signal, measure: Measure) -> tuple[Array, Array]:
+    """Matrix (R, K) and vector (R,), R <= K + 1, of which |matrix numbers + vector| is the RMS.
+
+    By the orthogonal factor of all samples, so that few rows are left and no digits are lost as in
+    a Gram matrix.
+    """
+    both = np.vstack([signal.columns, signal.start])
+    if measure == "ripple":
+        both = both - np.mean(both, axis=1, keepdims=True)
+    samples = np.concatenate([both.real, both.imag], axis=1) if np.iscomplexobj(both) else both
+    upper = np.linalg.qr(samples.T, mode="r") / np.sqrt(both.shape[1])
+    return upper[:, :-1], upper[:, -1]
+
+
+def bound_measure(
+    program: Program,
+    numbers: Array,
+    signal: Signal,
+    measure: Measure,
+    bound: Affine,
+    name: str = "",
+) -> None:
+    """Keep a measure of a signal at or below a bound.
+
+    Parameters
+    ----------
+    numbers : (K,) places of the signal's numbers in the program.
+    bound : one row; where it is a limit by itself, `name` is the limit's, in the bound's unit.
+    """
+    count, one = len(signal.start), Affine.fixed(1.0)
+    value = Affine(signal.columns.T, numbers, signal.start)
+    if measure in {"rms", "ripple"}:
+        matrix, vector = mean_square_rows(signal, measure)
+        rows = _beside(bound, 1, Affine(matrix, numbers, vector))
+        program.cones(rows, len(vector) + 1, name, Affine.fixed(np.eye(1, len(vector) + 1)[0]))
+    elif measure == "peak" and np.iscomplexobj(signal.start):
+        parts, starts = (
+            np.stack([both.real, both.imag], axis=-1) for both in (signal.columns, signal.start)
+        )
+        inner = Affine(parts.reshape(len(parts), -1).T, numbers, starts.ravel())
+        rows, slope = _beside(bound, count, inner), Affine.fixed(np.tile([1.0, 0.0, 0.0], count))
+        program.gradually(Block("second-order", rows, 3, name, slope))
+    elif measure == "peak":
+        for sign in (1.0, -1.0):
+            slope = Affine.fixed(np.ones(count))
+            program.gradually(Block("nonnegative", bound + sign * value, 1, name, slope))
+    elif measure == "peak_to_peak":
+        high, low = program.numbers(2)
+        for place, sign in ((high, -1.0), (low, 1.0)):
+            program.gradually(Block("nonnegative", Affine.of(place, 1.0) + sign * value))
+        program.nonnegative(bound - Affine.of([high, low], [1.0, 1.0]), name, one)
+    else:
+        from scipy import sparse
+
+        sizes = program.numbers(count)
+        columns, each = np.concatenate([sizes, numbers]), sparse.eye_array(count)
+        for sign in (1.0, -1.0):
+            factors = sparse.hstack([each, sign * value.factors])
+            program.nonnegative(Affine(factors, columns, sign * value.constant))
+        program.nonnegative(bound - Affine.of(sizes, np.full(count, 2 * pi / count)), name, one)
+
+
+def _beside(bound: Affine, count: int, inner: Affine) -> Affine:
+    """The bound as first row of each of `count` cones, followed by that cone's share of `inner`."""
+    columns = np.concatenate([bound.columns, inner.columns])
+    split = len(bound.columns)
+    size = len(inner.constant) // count + 1
+    factors, constant = np.zeros((count, size, len(columns))), np.zeros((count, size))
+    factors[:, 0, :split], constant[:, 0] = bound.factors[0], bound.constant[0]
+    factors[:, 1:, split:] = inner.factors.reshape(count, size - 1, -1)
+    constant[:, 1:] = inner.constant.reshape(count, size - 1)
+    return Affine(factors.reshape(count * size, -1), columns, constant.ravel())

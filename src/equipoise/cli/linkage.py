@@ -1,0 +1,246 @@
+"""The commands `analyze`, and `modes`, `respond` and `simulate` of a machine on its support."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Annotated, Any
+
+from cyclopts import Parameter
+
+from equipoise.cli.options import (
+    Angle,
+    File,
+    Model,
+    ShownIn,
+    Speed,
+    SupportFile,
+    Text,
+    check_belonging,
+    count,
+    ends_of_range,
+    linkage_of,
+    naming,
+    quantities,
+    quantity,
+    read_by,
+    size,
+)
+from equipoise.cli.outputs import (
+    Drawn,
+    Outputs,
+    Printed,
+    check_result_file,
+    sources_of,
+    write_text,
+)
+from equipoise.cli.progress import counted
+from equipoise.errors import EquipoiseError, UsageError
+
+if TYPE_CHECKING:
+    from equipoise.mechanism.model import Machine
+    from equipoise.vibration.response import Response
+
+MOST_ORDERS = 100
+QUICK = 40
+"""Free swings of the support in a turn, up to which the exact model answers in a moment."""
+
+
+def _angles(option: str, text: str) -> int | list[float]:
+    if re.fullmatch("[+-]?[0-9]{1,20}", text):
+        return int(text)
+    try:
+        return quantities(option, text, "angle")
+    except UsageError as error:
+        raise UsageError(f'{error}; give a number, or angles such as "0 deg, 45 deg"') from error
+
+
+def analyze(
+    file: File,
+    /,
+    *,
+    angles: Annotated[Any, read_by(_angles), Parameter(show_default=True)] = 360,
+    speed: Speed = None,
+    acceleration: Annotated[float | None, size("angular acceleration")] = None,
+    about: Text = None,
+    split: bool = False,
+    csv: str | None = None,
+    orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
+    crank_zero: Angle = None,
+    outputs: Printed = Printed(),
+) -> None:
+    """Motion, shaking force and moment, drive torque and every joint force over a turn.
+
+    Parameters
+    ----------
+    angles
+        Number of crank angles a turn, or the angles: "0 deg, 45 deg, 90 deg".
+    acceleration
+        Acceleration of the crank instead of the file's, such as "10 rad/s^2".
+    about
+        Point about which moments are taken: a point of the frame, or "10 mm, 20 mm".
+    split
+        With --json: add every force by cause and by link.
+    csv
+        Write every signal against crank angle to this file.
+    orders
+        Print the harmonics of forces, moment and torque up to this order instead.
+    crank_zero
+        With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
+    """
+    from equipoise.results.analysis import analyze as analyzed
+    from equipoise.results.analysis import order_values
+
+    check_belonging("--json", outputs.json, split=split or None)
+    check_belonging("--orders", orders is not None, crank_zero=crank_zero)
+    machine = linkage_of(file)
+    zero = crank_zero or 0.0
+    if csv is not None:
+        check_result_file("--csv", csv, sources_of(machine, file))
+    place = None if about is None else _place(machine, about)
+    with naming(file):
+        analysis = analyzed(machine, angles, speed, acceleration, place)
+        by_order = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
+    if csv is not None:
+        from equipoise.schema.files import to_csv
+
+        write_text(csv, to_csv(analysis))
+    outputs.print(
+        analysis.title,
+        lambda: analysis.to_dict(split) | by_order,
+        lambda: analysis.blocks(orders=orders, zero=zero),
+    )
+
+
+def _place(machine: Machine, text: str) -> str | tuple[float, float]:
+    if "," not in text or text in machine.frame:
+        return text
+    parts = quantities("--about", text, "length")
+    if len(parts) != 2:
+        raise UsageError(f'--about: got {text!r}; give a point, or x and y: "10 mm, 20 mm"')
+    return parts[0], parts[1]
+
+
+# -- on the support --------------------------------------------------------------------------------
+
+
+def modes(file: SupportFile, /, *, model: Model | None = None, outputs: Drawn = Drawn()) -> None:
+    """Natural frequencies, damping and shapes of a machine on its support.
+
+    Parameters
+    ----------
+    model
+        linear or torque: the linkages' mass at the drive's pivot; moment: spread as in the mean.
+    """
+    from equipoise.vibration import free
+
+    machine = linkage_of(file)
+    with naming(file):
+        found = free.modes(machine, model)
+    outputs.give(found)
+
+
+def _speeds(option: str, text: str) -> list[float]:
+    """One speed, or the two ends of a range; a unit may stand after the second only."""
+    wrong = f"{option}: got {text!r}; "
+    parts = ends_of_range(text)
+    if not parts:
+        raise UsageError(f'{wrong}give a speed, "193 rpm", or a range: "20 rpm : 400 rpm"')
+    ends = [quantity(option, part, "angular speed") for part in parts[::-1]][::-1]
+    if ends == [0.0]:
+        raise UsageError(f"{wrong}a crank that stands still shakes nothing; give another speed")
+    if len(ends) == 2 and (ends[0] * ends[1] <= 0 or abs(ends[0]) >= abs(ends[1])):
+        raise UsageError(
+            f"{wrong}give a range of speeds of the same sign that are not 0, the slower one first"
+        )
+    return ends
+
+
+def respond(
+    file: SupportFile,
+    /,
+    *,
+    model: Model | None = None,
+    speed: Annotated[Any, read_by(_speeds)] = None,
+    speeds: Annotated[int | None, count(2, 20_000)] = None,
+    drive: bool = False,
+    units: ShownIn = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """How the support of a machine vibrates under its linkages, at one speed or over a range.
+
+    Parameters
+    ----------
+    model
+        linear (shaking force at the drive's pivot), torque (with the drive torque), moment (whole
+        force and moment), coupled (with the torque that the motion takes), exact (all bodies).
+    speed
+        Speed of the crank instead of the file's: "193 rpm", or a range: "20 rpm : 400 rpm".
+    speeds
+        With a range: number of speeds, 200 if not given; more are added about resonances.
+    drive
+        Let the speed follow from the motor in [drive.motor], by the model exact.
+    """
+    from equipoise.vibration import forced, sweep
+
+    ends: list[float] = speed or []
+    if speeds is not None and len(ends) != 2:
+        raise UsageError('--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both')
+    machine = linkage_of(file)
+    outputs.check(sources_of(machine, file))
+    with naming(file):
+        if len(ends) == 2:
+            with counted("speed") as told:
+                count = speeds or sweep.SPEEDS
+                over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, told)
+            outputs.give(over_speed, units)
+        else:
+            found = forced.respond(machine, ends[0] if ends else None, model, drive)
+            others = None if drive or outputs.json else _others(machine, found)
+            outputs.give(found, units, others=others)
+
+
+def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
+    """The response by every model that costs little, for comparison; None where there is none."""
+    from equipoise.vibration.forced import models_of
+    from equipoise.vibration.forced import respond as solve
+    from equipoise.vibration.response import swings_in_a_turn
+
+    swings = swings_in_a_turn(found.modes, found.speed)
+    others: dict[str, Response | None] = {}
+    for model in models_of(machine):
+        if model == found.model:
+            others[model] = found
+        elif model != "exact" or swings < QUICK:
+            try:
+                others[model] = solve(machine, found.speed, model)
+            except EquipoiseError:
+                others[model] = None
+    return others
+
+
+def simulate(
+    file: SupportFile,
+    duration: Annotated[float, size("time", "give a time of more than 0", "DURATION")],
+    /,
+    *,
+    speed: Speed = None,
+    drive: bool = False,
+    units: ShownIn = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """How the support vibrates when the machine starts from rest, by the model exact.
+
+    Parameters
+    ----------
+    duration
+        How long the machine is followed, such as "5 s".
+    drive
+        Let the speed follow from the motor in [drive.motor].
+    """
+    from equipoise.vibration import transient
+
+    machine = linkage_of(file)
+    outputs.check(sources_of(machine, file))
+    with naming(file):
+        found = transient.simulate(machine, duration, speed, drive)
+    outputs.give(found, units)
