@@ -11,7 +11,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.figures.svg import animated_svg
+from equipoise.figures.animation import animated_svg
 from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
 from unit.animation.samples import analyzed, of_three_turns, prepared

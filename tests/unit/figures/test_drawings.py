@@ -11,9 +11,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
+from equipoise.figures.animation import laid_out
 from equipoise.figures.linkage import linkage
 from equipoise.figures.modes import SHOWN_SIZE, ModeShape, described
-from equipoise.figures.moving import laid_out
 from equipoise.figures.path import Paths, path
 from equipoise.figures.pictures import pictures_of
 from equipoise.figures.stage import Arrow
@@ -123,7 +123,7 @@ def test_matplotlib_waits_until_it_is_needed() -> None:
         "from equipoise.planting.summary import plant\n"
         "plant(eq.load('kim-chung-a'))\n"
         "assert not any(name.startswith('matplotlib') for name in sys.modules)\n"
-        "import equipoise.figures.planting\n"
+        "import equipoise.figures.animation, equipoise.figures.planting\n"
         "from equipoise.figures import render\n"
         "analysis = eq.analyze(eq.load('kim-chung-a'))\n"
         "from equipoise.figures.points import curves\n"
