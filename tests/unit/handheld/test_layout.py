@@ -300,26 +300,6 @@ def test_a_table_for_each_plane() -> None:
     np.testing.assert_allclose(impedance((TABLE, OTHER), planes)[:, 0], [80 - 20j, 48 + 19j])
 
 
-def test_a_mass_a_spring_and_a_damper_as_a_table() -> None:
-    """Z = c + i (w m - k / w) is a straight line in w but for k; then the force is Z v."""
-    hertz = (10.0, 40.0, 80.0)
-    table = Impedance(hertz, (30.0,) * 3, tuple(2 * pi * f * 0.4 for f in hertz))
-    station = Station("grip", 0.5, hand=Hand(impedance=(table,), hands=2))
-    source = Station("a", 0.0, mass=1.0)
-    cause = (Excitation("e", "a", unbalance=1e-3),)
-    measured = replace(bare(source, station), excitations=cause)
-    known = replace(
-        bare(source, Station("grip", 0.5, hand=Hand(0.4, both(0.0), both(30.0), hands=2))),
-        excitations=cause,
-    )
-    speeds = 2 * pi * np.array([10.0, 33.0, 80.0])
-    one, other = (respond_tool(tool, speeds) for tool in (measured, known))
-    for name in ("a", "grip"):
-        np.testing.assert_allclose(one.displacement(name), other.displacement(name), rtol=1e-11)
-    np.testing.assert_allclose(one.forces("grip")["hand"], other.forces("grip")["hand"], rtol=1e-11)
-    np.testing.assert_allclose(one.power("grip")["hand"], other.power("grip")["hand"], rtol=1e-9)
-
-
 @pytest.mark.parametrize("ends", [(10.0, 50.0), (12.0, 13.0), (10.0 * (1 - 1e-10), 30.0)])
 def test_covered(ends: tuple[float, float]) -> None:
     """Up to both ends, rounding included."""

@@ -234,27 +234,6 @@ def test_a_tool_that_is_alike_is_told_once() -> None:
     assert found.planes[0] is found.planes[1]
 
 
-def test_planes_are_tools_of_their_own() -> None:
-    """Each as in a tool whose other plane is the same."""
-    station = Station("a", 0.5, mass=1.0, stiffness=(9e3, 2e3), damping=(9.0, 30.0))
-    found = vibrate_tool(bare(station), 4).planes
-    for plane in range(2):
-        alone = Station(
-            "a",
-            0.5,
-            mass=1.0,
-            stiffness=both(station.stiffness[plane]),
-            damping=both(station.damping[plane]),
-        )
-        wanted = vibrate_tool(bare(alone), 4).planes[0]
-        np.testing.assert_allclose(found[plane].frequency, wanted.frequency, rtol=5e-9)
-        np.testing.assert_allclose(
-            [mode.eigenvalue for mode in found[plane].damped],
-            [mode.eigenvalue for mode in wanted.damped],
-            rtol=1e-10,
-        )
-
-
 def test_notes(monkeypatch: pytest.MonkeyPatch) -> None:
     table = Impedance((1.0, 100.0), (10.0, 30.0), (-5.0, 5.0))
     measured = bare(Station("grip", 0.5, hand=Hand(impedance=(table,))))
