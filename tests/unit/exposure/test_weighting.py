@@ -95,10 +95,10 @@ def test_negative_frequencies_are_conjugates() -> None:
     np.testing.assert_array_equal(weighting(-SPAN), np.conj(weighting(SPAN)))
 
 
-def test_what_is_no_number_is_refused() -> None:
-    for function in (factor, weighting):
-        with pytest.raises(UsageError, match="got a value that is no number"):
-            function([1.0, np.nan])
+@pytest.mark.parametrize("function", [factor, weighting])
+def test_what_is_no_number_is_refused(function: Any) -> None:
+    with pytest.raises(UsageError, match="got a value that is no number"):
+        function([1.0, np.nan])
 
 
 def test_limits() -> None:
