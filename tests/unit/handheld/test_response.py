@@ -16,16 +16,12 @@ from equipoise.handheld.model import Absorber, Excitation, Hand, Harness, Statio
 from equipoise.handheld.response import ToolResponse, _check_finite, respond_tool
 from equipoise.handheld.shaft import Section, Shaft
 from equipoise.handheld.sweep import speeds_between, sweep_tool
-from unit.handheld.samples import THEORIES, bare, both, random_tool
+from unit.handheld.samples import THEORIES, bare, both, random_tool, shaken
 
 RIGID = Section(1e9, 2.0)
 PLAIN = Section(1000.0, 2.0)
 LENGTH = 1.5
 SPEEDS = np.array([40.0, 150.0, 900.0])
-
-
-def shaken(tool: Tool, *excitations: Excitation) -> Tool:
-    return replace(tool, excitations=excitations)
 
 
 # -- a rigid shaft ---------------------------------------------------------------------------------
@@ -300,7 +296,7 @@ def test_speeds_between() -> None:
 def test_beside_a_resonance_without_damping() -> None:
     """However near, the answer is finite, and the nearer the larger."""
     tool = bare(Station("a", 0.0, stiffness=both(400.0)))
-    tool = replace(tool, excitations=(Excitation("push", "a", force=1.0),))
+    tool = shaken(tool, Excitation("push", "a", force=1.0))
     omega = float(natural_frequencies(tool, 3)[0, 2])
     sizes = [
         abs(respond_tool(tool, omega * (1 + beside)).displacement("a")[0, 0, 0])
@@ -313,7 +309,7 @@ def test_beside_a_resonance_without_damping() -> None:
 def test_on_a_resonance_without_damping() -> None:
     """What is not finite is no answer; told with speed and order."""
     tool = bare(Station("a", 0.0, stiffness=both(400.0)))
-    tool = replace(tool, excitations=(Excitation("push", "a", force=1.0, ratio=2.0),))
+    tool = shaken(tool, Excitation("push", "a", force=1.0, ratio=2.0))
     found = respond_tool(tool, np.array([100.0, 150.0]))
     motion = [Pair(pair.across.copy(), pair.turning) for pair in found.field.states.motion]
     motion[0].across[0, 1] = np.inf

@@ -8,7 +8,7 @@ import pytest
 from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import natural_frequencies, scale_of
-from equipoise.handheld.model import Absorber, Hand, Harness, Impedance, Station, Tool
+from equipoise.handheld.model import Hand, Impedance, Station, Tool
 from equipoise.handheld.studies import (
     changed,
     determinant_chart,
@@ -16,18 +16,7 @@ from equipoise.handheld.studies import (
     vary_tool,
     without_damping,
 )
-from unit.handheld.samples import THEORIES, bare, both, random_tool, still
-
-FULL = Station(
-    "full",
-    0.4,
-    mass=0.7,
-    inertia=(0.01, 0.02),
-    stiffness=(300.0, 500.0),
-    absorber=Absorber(0.2, (3e3, 4e3), (1.5, 2.5)),
-    hand=Hand(0.3, (900.0, 800.0), (30.0, 20.0)),
-    harness=Harness((110.0, 120.0), (13.0, 14.0)),
-)
+from unit.handheld.samples import FULL, THEORIES, bare, both, random_tool, still
 
 
 @pytest.mark.parametrize("key", KEYS)
