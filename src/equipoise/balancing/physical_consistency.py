@@ -106,9 +106,10 @@ class ConsistentMasses:
         program.nonnegative(Affine.of(share, [[1.0], [-1.0]], [0.0, 1.0]))
         program.cost = {int(share): -1.0}  # with a cost the solver is surer than without one
         try:
-            return bool(program.solve())
+            program.solve()
         except NoSolutionError:
             return False
+        return True
 
     def _program(self) -> tuple[Program, Array, Any]:
         """Parameters (L, 4) that meet the conditions, and the share of inertia that is kept."""
