@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.errors import needed
 from equipoise.studies.design_space import Choices
-from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Evaluator, Outcome, far_apart, non_dominated, signs_of
 from equipoise.studies.sampling import values_at
 from equipoise.studies.study import Study
