@@ -151,31 +151,47 @@ export interface StateMessage {
   arrays: Arrays;
   figures: Figure[];
   outputs: Output[];
+  charts: ChartData[];
+  /** Size below which a force or moment is drawn as none, N and N m. */
+  least: number;
   orders: number[];
   notes: string[];
   before: boolean;
   planting?: { tip: string; surface: number } | null;
 }
 
-export interface Gauge extends Unit {
+/** A curve of a chart: every `stride`th number of an array, from the `part`th on. */
+export interface CurveOf {
+  array: string;
+  stride: number;
+  part: number;
+  label: string;
+}
+
+/** What a chart can show. */
+export interface Choice extends Unit {
   name: string;
   label: string;
+  /** Whose forces have to be shown for it: "rows." or "" for one row; null for any. */
+  of: string | null;
+  curves: CurveOf[];
+}
+
+export interface ChartData {
+  name: string;
+  /** Crank angle, orders, or an array, with the machine's place on it. */
+  x: "angle" | "order" | (Unit & { array: string; at: number });
+  /** What is chosen; null where it follows what is chosen elsewhere. */
+  chooser: string | null;
+  choices: Choice[];
 }
 
 export interface ResponseMessage {
   type: "response";
   seq: number;
-  gauges: Gauge[];
+  charts: ChartData[];
   arrays: Arrays;
   notes: string[];
-  sweep?: Sweep | null;
-}
-
-/** Response over speed: names of arrays, and the unit in which speeds are read. */
-export interface Sweep extends Unit {
-  speeds: string;
-  own: number;
-  of: (Gauge & { array: string })[];
 }
 
 /** Figures of a planting finger; null where they are not finite. */

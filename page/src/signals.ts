@@ -1,6 +1,12 @@
-/** From the arrays of a state to columns that charts draw. */
+/** From the arrays of a message to columns that charts draw. */
 
-import type { State } from "./protocol";
+import type { Numbers } from "./protocol";
+
+/** Values, and those before. */
+export interface Columns {
+  values: Float64Array;
+  before?: Float64Array | undefined;
+}
 
 /** Crank angle from the first sample, degrees, with the first sample again at the end. */
 export class Abscissa {
@@ -17,37 +23,28 @@ export class Abscissa {
   }
 }
 
-/** A periodic signal with its first value again at the end; `stride` 2 takes x (0) or y (1). */
-export function closed(values: Float32Array, stride = 1, part = 0): Float64Array {
+/** Every `stride`th number from the `part`th on; a periodic one ends with its first value again. */
+function taken(values: Float32Array, stride: number, part: number, periodic: boolean) {
   const count = values.length / stride;
-  const column = new Float64Array(count + 1);
+  const column = new Float64Array(periodic ? count + 1 : count);
   for (let k = 0; k < count; k++) column[k] = values[stride * k + part] as number;
-  column[count] = column[0] as number;
+  if (periodic) column[count] = column[0] as number;
   return column;
 }
 
-/** A signal of a state and the same before, as columns. */
-export function both(
-  state: State,
+/** A signal of a message, and the same before. */
+export function column(
+  { numbers, before }: { numbers: Numbers; before: boolean },
   name: string,
   stride = 1,
   part = 0,
-): { values: Float64Array; before?: Float64Array } | null {
-  const now = state.numbers.get(name);
+  periodic = true,
+): Columns | null {
+  const now = numbers.get(name);
   if (!now) return null;
-  const values = closed(now, stride, part);
-  const was = state.before ? state.numbers.get(`before.${name}`) : undefined;
+  const values = taken(now, stride, part, periodic);
+  const was = before ? numbers.get(`before.${name}`) : undefined;
   return was && was.length === now.length
-    ? { values, before: closed(was, stride, part) }
+    ? { values, before: taken(was, stride, part, periodic) }
     : { values };
-}
-
-/** Forces that are nothing beside those in the joints, N (and N m: machines are about as large as 1 m). */
-export function rounding(state: State): number {
-  let largest = 0;
-  for (const name of [...state.numbers.names("joint."), "shaking_force", "drive_torque"]) {
-    for (const value of state.numbers.get(name) ?? [])
-      if (Math.abs(value) > largest) largest = Math.abs(value);
-  }
-  return largest * 1e-6 || 1;
 }

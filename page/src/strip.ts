@@ -90,6 +90,11 @@ export class Strip {
     this.plot?.setData(this.data(), true); // bars keep their colours with their paths
   }
 
+  /** How many values there are. */
+  get count(): number {
+    return this.content.x.length;
+  }
+
   /** Put the cursor at x; the values there (at sample k) go to the heading. */
   point(x: number, k: number | null): void {
     this.at = x;

@@ -157,9 +157,9 @@ def test_another_speed() -> None:
 
 def test_gauges_at_several_speeds() -> None:
     text = run("balance-rig")
-    name = "gauge gauge, peak to peak, at 150, 193, 240 rpm, mm"
+    name = "reading at gauge, peak to peak, at 150, 193, 240 rpm, mm"
     assert cells(text, name)[:2] == ["20.86", "8.562"]
-    assert cells(text, "gauge gauge, peak to peak, mm")
+    assert cells(text, "reading at gauge, peak to peak, mm")
     assert "note: added mass makes the support heavier" in text
     words = ("peak gauges.gauge speeds 100 rpm, 193 rpm", "--at-most", "500 g")
     content = told("yamashita-rig", "--crank-counterweight", "--objective", *words)
@@ -183,7 +183,7 @@ def test_rounding_is_not_printed() -> None:
     limit = ("--limit", "shaking_force <= 1 N")
     text = run("still.toml", "--move-cm", "rod", "--objective", "shaking_moment", *limit)
     assert cells(text, "shaking force, RMS, N")[0] == "0"
-    assert cells(text, "gauge x, peak to peak, mm")[0] == "0"
+    assert cells(text, "reading at x, peak to peak, mm")[0] == "0"
     assert not re.search(r"[0-9]e-1[0-9] +[0-9]", text.partition("Before and after")[2])
 
 

@@ -30,8 +30,8 @@ def test_support() -> None:
         "  mount float: pushes along (0.5000, 2.000, 0) at (-400.0, -200.0, 30.00) mm, 9807 N/m, "
         "90.00 N as drawn, one-sided",
         "  mount hitch: about the pitch axis, 500.0 N m/rad, 3.000 N m s/rad, -20.00 N m as drawn",
-        "  gauge handle: reads along -30.00 deg at (-707.1, 707.1, 0) mm",
-        "  gauge nod: reads about the pitch axis",
+        "  handle: a gauge that reads along -30.00 deg at (-707.1, 707.1, 0) mm",
+        "  nod: a gauge that reads about the pitch axis",
     ]
 
 

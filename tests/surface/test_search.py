@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.cli import progress as progress_lines
 from equipoise.cli.progress import left_told, rate_told, swept, time_told
-from equipoise.schema.study_units import Unit
+from equipoise.schema.study_units import unit_named
 from equipoise.studies.outcomes import Progress
 from surface.running import command_lines, equipoise, refuses, succeeded
 from surface.studies import LENGTHS, TOLERANCES, written
@@ -151,7 +151,7 @@ def test_lines_in_a_log_grow_fewer(
     now = [0.0]
     monkeypatch.setattr(progress_lines, "monotonic", lambda: now[0])
     told = []
-    with swept({"height": Unit.of("mm")}) as tell:
+    with swept({"height": unit_named("mm")}) as tell:
         for second in range(1000):
             now[0] = float(second)
             tell(progress(10 * second, float(second), 10_000))

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
-    from equipoise.schema.study_units import Unit
+    from equipoise.studies.blocks import Unit
     from equipoise.studies.outcomes import Outcome, Progress
     from equipoise.studies.study import Study
 

@@ -26,8 +26,7 @@ from equipoise.cli.progress import Watched, rate_told, swept, time_told
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.schema.study_units import Unit
-    from equipoise.studies.blocks import Summary
+    from equipoise.studies.blocks import Summary, Unit
     from equipoise.studies.outcomes import Progress
     from equipoise.studies.store import Store
 

@@ -260,7 +260,7 @@ of_rows("drive_torque", "torque", to_say("drive torque"))
 DECLARED["gauges.{}"] = Declared(
     "gauges.{}",
     "length",
-    to_say("gauge {name}"),
+    to_say("reading at {name}"),
     None,
     needs="support",
     members=lambda machine: [] if machine.support is None else list(machine.support.gauges),

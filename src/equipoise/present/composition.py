@@ -13,7 +13,7 @@ from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, say, speaking, to_say
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
-from equipoise.present.pages import Document
+from equipoise.present.pages import Document, check_pdf, page, pdf
 from equipoise.present.pictures import drawings
 from equipoise.present.remedies import nothing_told
 from equipoise.present.summary import answers, check_whole_cycle, tiles
@@ -72,17 +72,19 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     machine, analysis = found.machine, found.analysis
     drawn = drawings(found, together)
     blocks: Parts = {"model": [*model_blocks(machine)]}
-    blocks["motion"] = [*drawn.pop("motion", []), *motion_blocks(analysis)]
+    blocks["motion"] = [*drawn.get("motion", []), *motion_blocks(analysis)]
     if found.planting is not None:
-        blocks["planting"] = [*drawn.pop("planting", []), *planting_blocks(found.planting)]
+        blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
     if analysis.solved is not None:
-        blocks["forces"] = [*drawn.pop("forces", []), *force_blocks(analysis)]
-        blocks["joints"] = [*drawn.pop("joints", []), joint_table(analysis)]
+        blocks["forces"] = [*drawn.get("forces", []), *force_blocks(analysis)]
+        blocks["joints"] = [*drawn.get("joints", []), joint_table(analysis)]
     if found.response is not None:
-        blocks["vibration"] = [*drawn.pop("vibration", []), *drawn.pop("modes", [])]
-        blocks["vibration"].extend(_vibration(found))
+        blocks["vibration"] = [*drawn.get("vibration", []), *drawn.get("modes", [])]
+        blocks["vibration"] += response_blocks(found.response)
+        if found.sweep is not None and found.sweep.resonances:
+            blocks["vibration"].append(resonances_table(found.sweep))
     if found.balanced is not None:
-        blocks["balance"] = [*balance_blocks(found), *drawn.pop("balance", [])]
+        blocks["balance"] = [*balance_blocks(found), *drawn.get("balance", [])]
     return Document(
         language,
         machine.title,
@@ -91,35 +93,24 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
         tuple(tiles(found)),
         tuple(answers(found)),
         _animation(found),
-        _sections(found, blocks, [*_settings_of_linkage(found), _made(found)], command),
+        _sections(found, blocks, _settings_of_linkage(found), command),
     )
-
-
-def _vibration(found: Findings) -> Iterator[Block]:
-    assert found.response is not None
-    yield from response_blocks(found.response)
-    if found.sweep is not None and found.sweep.resonances:
-        yield resonances_table(found.sweep)
 
 
 def balance_blocks(found: Findings) -> Iterator[Block]:
     """What may be changed, what is to be changed, and every figure before and after."""
     balanced = found.balanced
     assert balanced is not None
-    if not found.own_plan and balanced.plan.phases is not None:
-        yield Text(
-            say(
-                "The file does not say what may be changed. So this is the remedy that costs "
-                "nothing: other phases of the rows."
-            )
+    if not found.own_plan:
+        of_rows = to_say(
+            "The file does not say what may be changed. So this is the remedy that costs "
+            "nothing: other phases of the rows."
         )
-    elif not found.own_plan:
-        yield Text(
-            say(
-                "The file does not say what may be changed. So this is the usual remedy: a "
-                "counterweight on the axis of the drive link, within its reach."
-            )
+        of_one = to_say(
+            "The file does not say what may be changed. So this is the usual remedy: a "
+            "counterweight on the axis of the drive link, within its reach."
         )
+        yield Text(say(of_one if balanced.plan.phases is None else of_rows))
     if found.helped:
         yield from outcome_blocks(balanced)
     else:
@@ -134,10 +125,9 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         blocks.extend(exposure_of_tool(found.exposure))
     if found.modes is not None:
         blocks.extend(of_tools.modes_blocks(found.modes))
-    operation = found.tool.operation
     subtitle = ""
-    if operation is not None:
-        rpm = number(operation.speed / PER_RPM)
+    if found.tool.operation is not None:
+        rpm = number(found.tool.operation.speed / PER_RPM)
         subtitle = say("hand-held tool, engine at {speed} rpm", speed=rpm)
     named: Parts = {"model": [*of_tools.model_blocks(found.tool)], "tool": blocks}
     return Document(
@@ -148,22 +138,21 @@ def _of_tool(found: ToolFindings, language: str, command: str) -> Document:
         tuple(tool_tiles(found)),
         tuple(tool_answers(found)),
         "",
-        _sections(found, named, [_made(found)], command),
+        _sections(found, named, (), command),
     )
 
 
 def _sections(
-    found: Findings | ToolFindings,
-    blocks: Parts,
-    settings: Iterable[str],
-    command: str,
+    found: Findings | ToolFindings, blocks: Parts, settings: Iterable[str], command: str
 ) -> tuple[Section, ...]:
     """Sections of the blocks, then what every report ends with."""
+    template = to_say("Made by Equipoise {version} from {file}")
+    made = say(template, version=equipoise.__version__, file=found.file)
     notes = [Notes(found.notes)] if found.notes else []
     again = [Listing(say("Command"), command)] if command else []  # as it is, to be copied
     last: Parts = {
         "sources": [Facts("", tuple(sources(found)))],
-        "settings": [Facts("", tuple(settings)), *notes, *again],
+        "settings": [Facts("", (*settings, made)), *notes, *again],
         "file": [Listing(found.file, found.text)],
     }
     return tuple(
@@ -206,12 +195,6 @@ def _settings_of_linkage(found: Findings) -> Iterator[str]:
         yield model_told(found.response.model)
     if found.balanced is not None:
         yield say("Balanced by: {method}", method=said(found.balanced.method))
-
-
-def _made(found: Findings | ToolFindings) -> str:
-    return say(
-        "Made by Equipoise {version} from {file}", version=equipoise.__version__, file=found.file
-    )
 
 
 KINDS = {".html": "html", ".htm": "html", ".pdf": "pdf"}
@@ -265,8 +248,6 @@ def report_page(found: Findings | ToolFindings, language: str = "en", command: s
     ------
     MobilityError, MotionError, UsageError : the linkage cannot be moved.
     """
-    from equipoise.present.pages import page
-
     return page(build(found, language, command))
 
 
@@ -275,28 +256,16 @@ def check(outs: Iterable[str | os.PathLike[str]], language: str) -> None:
     if language not in LANGUAGES:
         raise UsageError(f"language: got {language!r}; give one of {', '.join(LANGUAGES)}")
     if "pdf" in {kind_of(out) for out in outs}:
-        from equipoise.present.pages import check_pdf
-
         check_pdf(language)
 
 
 def write_document(document: Document, outs: Iterable[str | os.PathLike[str]]) -> None:
     """Write a document as each of these files."""
-    for out in outs:
-        if kind_of(out) == "pdf":
-            from equipoise.present.pages import pdf
-
-            _write(out, pdf(document))
-        else:
-            from equipoise.present.pages import page
-
-            _write(out, page(document).encode())
-
-
-def _write(out: str | os.PathLike[str], data: bytes) -> None:
     from equipoise.schema.files import write_all
 
-    write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
+    for out in outs:
+        data = pdf(document) if kind_of(out) == "pdf" else page(document).encode()
+        write_all(os.path.dirname(out) or ".", {os.path.basename(out): data})
 
 
 KIM_CHUNG = (

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from functools import cached_property
-from typing import TYPE_CHECKING, Any, TypeVar
+from functools import cached_property, wraps
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from equipoise.errors import EquipoiseError, UsageError
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from equipoise.vibration.response import Response
     from equipoise.vibration.sweep import Sweep
 
-Value = TypeVar("Value")
+Part = TypeVar("Part")
 
 NOTHING = 0.01
 """Share of what is made small below which making it smaller does not help."""
@@ -44,14 +44,34 @@ SPEEDS = 60
 class _Found:
     """Parts that cannot be computed are None, and `failed` keeps why."""
 
+    told: ClassVar[tuple[str, ...]]
+    """Parts that ask for all others."""
+
     failed: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
-    def _tried(self, part: str, compute: Callable[[], Value]) -> Value | None:
-        try:
-            return compute()
-        except EquipoiseError as error:
-            self.failed[part] = str(error)
-            return None
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A sentence on each part that could not be computed, and why; computes all of them."""
+        for part in self.told:
+            getattr(self, part)
+        return tuple(f"{part}: {why}" for part, why in self.failed.items())
+
+
+def part(name: str) -> Callable[[Callable[[Any], Part]], cached_property[Part | None]]:
+    """A part that is computed when it is first asked for; None, with a note, where that fails."""
+
+    def of(compute: Callable[[Any], Part]) -> cached_property[Part | None]:
+        @wraps(compute)
+        def found(self: _Found) -> Part | None:
+            try:
+                return compute(self)
+            except EquipoiseError as error:
+                self.failed[name] = str(error)
+                return None
+
+        return cached_property(found)
+
+    return of
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +82,8 @@ class Findings(_Found):
     text : of its file.  file : its name.
     angles : crank angles in a turn.
     """
+
+    told = ("planting", "sweep", "modes", "balanced")
 
     machine: Machine
     text: str
@@ -75,62 +97,50 @@ class Findings(_Found):
 
         return analyze(self.machine, self.angles)
 
-    @cached_property
+    @part("planting")
     def planting(self) -> PlantingFigures | None:
         """Path of the finger over ground; None where nothing is planted."""
-        if self.machine.planting is None:
-            return None
         from equipoise.planting.summary import plant
 
-        return self._tried("planting", lambda: plant(self.machine))
+        return None if self.machine.planting is None else plant(self.machine)
 
-    @cached_property
+    @part("vibration")
     def response(self) -> Response | None:
         """Vibration at the speed of the machine; None where it has no support."""
-        if self.machine.support is None:
-            return None
         from equipoise.vibration.forced import respond
 
-        return self._tried("vibration", lambda: respond(self.machine))
+        return None if self.machine.support is None else respond(self.machine)
 
-    @cached_property
+    @part("vibration over speed")
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
-        if self.response is None:
-            return None
         from equipoise.vibration.sweep import sweep_speed
 
+        if self.response is None:
+            return None
         slow, fast = (share * self.response.speed for share in AROUND)
-        return self._tried(
-            "vibration over speed",
-            lambda: sweep_speed(self.machine, slow, fast, speeds=SPEEDS),
-        )
+        return sweep_speed(self.machine, slow, fast, speeds=SPEEDS)
 
-    @cached_property
+    @part("natural frequencies")
     def modes(self) -> FreeVibration | None:
         """Free vibration on the support."""
-        if self.machine.support is None:
-            return None
         from equipoise.vibration.free import modes
 
-        return self._tried("natural frequencies", lambda: modes(self.machine))
+        return None if self.machine.support is None else modes(self.machine)
 
-    @cached_property
+    @part("balance")
     def plan(self) -> Balance | None:
         """What is balanced: the machine's own plan, or the usual one."""
         from equipoise.balancing.optimisation import default_plan
 
-        return self._tried("balance", lambda: default_plan(self.machine))
+        return default_plan(self.machine)
 
-    @cached_property
+    @part("balance")
     def balanced(self) -> Balanced | None:
         """The machine with that plan carried out."""
-        plan = self.plan
-        if plan is None:
-            return None
         from equipoise.balancing.optimisation import balance
 
-        return self._tried("balance", lambda: balance(self.machine, plan))
+        return None if self.plan is None else balance(self.machine, self.plan)
 
     @property
     def own_plan(self) -> bool:
@@ -147,13 +157,6 @@ class Findings(_Found):
         moved = (abs(after - before) > NOTHING * before for before, after in pairs)
         return bool(balanced.plan.limits) or any(moved)
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """A sentence on each part that could not be computed, and why; computes all of them."""
-        for _ in (self.planting, self.sweep, self.modes, self.balanced):
-            pass
-        return _sentences(self.failed)
-
 
 @dataclass(frozen=True, eq=False)
 class ToolFindings(_Found):
@@ -163,68 +166,57 @@ class ToolFindings(_Found):
     text : of its file.  file : its name.
     """
 
+    told = ("modes", "sweep", "exposure", "design")
+
     tool: Tool
     text: str
     file: str
 
-    @cached_property
+    @part("natural frequencies")
     def modes(self) -> ToolModes | None:
         """Free vibration."""
         from equipoise.handheld.modes import vibrate_tool
         from equipoise.handheld.sweep import MODES
 
-        return self._tried("natural frequencies", lambda: vibrate_tool(self.tool, MODES))
+        return vibrate_tool(self.tool, MODES)
 
-    @cached_property
+    @part("speeds")
     def speeds(self) -> np.ndarray[Any, Any] | None:
         """Speeds of the engine, rad/s, closer about resonances; None where the tool tells none."""
         from equipoise.handheld.sweep import SPEEDS, default_speeds, speeds_between
 
         ends = default_speeds(self.tool)
-        if ends is None:
-            return None
-        return self._tried("speeds", lambda: speeds_between(self.tool, *ends, SPEEDS))
+        return None if ends is None else speeds_between(self.tool, *ends, SPEEDS)
 
-    @cached_property
+    @part("vibration over speed")
     def sweep(self) -> ToolSweep | None:
         """The tool over these speeds."""
-        speeds = self.speeds
-        if speeds is None or not self.tool.stations:
-            return None
         from equipoise.handheld.sweep import sweep_tool
 
-        return self._tried("vibration over speed", lambda: sweep_tool(self.tool, speeds))
+        if self.speeds is None or not self.tool.stations:
+            return None
+        return sweep_tool(self.tool, self.speeds)
 
     @property
     def transmission(self) -> Transmissions | None:
         """Of a unit force to what holds the tool."""
         return None if self.sweep is None else self.sweep.transmissions
 
-    @cached_property
+    @part("exposure")
     def exposure(self) -> ToolExposure | None:
         """What the hands get; None where nothing shakes the tool or no hand holds it."""
-        speeds = self.speeds
-        if speeds is None or not self.tool.excitations or not self.tool.grips:
-            return None
         from equipoise.handheld.exposed import expose_tool
 
-        return self._tried("exposure", lambda: expose_tool(self.tool, speeds))
+        if self.speeds is None or not self.tool.excitations or not self.tool.grips:
+            return None
+        return expose_tool(self.tool, self.speeds)
 
-    @cached_property
+    @part("design")
     def design(self) -> ToolDesign | None:
         """What to change, where the file asks for it."""
-        if self.tool.design is None:
-            return None
         from equipoise.handheld.design import design_tool
 
-        return self._tried("design", lambda: design_tool(self.tool))
-
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """A sentence on each part that could not be computed, and why; computes all of them."""
-        for _ in (self.modes, self.sweep, self.exposure, self.design):
-            pass
-        return _sentences(self.failed)
+        return None if self.tool.design is None else design_tool(self.tool)
 
 
 def find(
@@ -262,7 +254,3 @@ def _at_speed(tool: Tool, speed: float | None) -> Tool:
     if not speed > 0:
         raise UsageError(f"got {speed:g} rad/s for the speed of the engine; give more than 0")
     return replace(tool, operation=replace(tool.operation, speed=speed))
-
-
-def _sentences(failed: dict[str, str]) -> tuple[str, ...]:
-    return tuple(f"{part}: {why}" for part, why in failed.items())

@@ -5,13 +5,13 @@ and as PDF set by Typst.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from html import escape
 from importlib import resources
 from itertools import groupby
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import jinja2
 from markupsafe import Markup
@@ -20,7 +20,7 @@ import equipoise
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import GRID, STUBBLE
 from equipoise.i18n import LANGUAGES, say, speaking, spoken
-from equipoise.present.cells import Grid, Text, grid, noted, printed, sign_of
+from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
 from equipoise.results.blocks import Block, Section, Table
 from equipoise.results.result import Result
 from equipoise.symbols.looks import DARK, LIGHT
@@ -86,7 +86,7 @@ def inlined(svg: str, name: str, title: str) -> str:
     body = body.replace("xlink:href", "href")
     body = _FAMILY.sub("", body)
     used = set(_USED.findall(body))
-    body = _NAME.sub(lambda found: _named(found[1], name) if found[1] in used else "", body)
+    body = _NAME.sub(lambda found: f' id="{name}-{found[1]}"' if found[1] in used else "", body)
     body = body.replace("url(#", f"url(#{name}-").replace('href="#', f'href="#{name}-')
     body = _COLOR.sub(lambda found: _colored(found[0]), body)
     width, height = re.findall(r'viewBox="0 0 ([0-9.]+) ([0-9.]+)"', head)[0]
@@ -95,10 +95,6 @@ def inlined(svg: str, name: str, title: str) -> str:
         f'viewBox="0 0 {width} {height}" style="--wide:{float(width):.0f}pt">'
     )
     return _SPACE.sub(" ", f"{opening}{body}").strip()
-
-
-def _named(own: str, name: str) -> str:
-    return f' id="{name}-{own}"'
 
 
 def _colored(color: str) -> str:
@@ -113,11 +109,8 @@ def colors(dark: bool) -> str:
 
 def html_of(result: Result) -> str:
     """What a result shows as a part of a page; a notebook asks for it."""
-    return (
-        _environment()
-        .get_template("notebook.html.j2")
-        .render(language=spoken(), title=result.title, blocks=tuple(result.blocks()))
-    )
+    template = _environment().get_template("notebook.html.j2")
+    return template.render(language=spoken(), title=result.title, blocks=tuple(result.blocks()))
 
 
 def page(document: Document) -> str:
@@ -129,10 +122,8 @@ def page(document: Document) -> str:
             "still": say("Stop the motion"),
             "made": say("Made by Equipoise {version}", version=equipoise.__version__),
         }
-    return (
-        _environment()
-        .get_template("report.html.j2")
-        .render(
+        template = _environment().get_template("report.html.j2")
+        return template.render(
             document=document,
             labels=labels,
             style=Markup(text_of("report.css")),  # a file of this package
@@ -140,7 +131,6 @@ def page(document: Document) -> str:
             dark=Markup(colors(dark=True)),
             animation=Markup(document.animation),  # drawn by `animation`, with names escaped
         )
-    )
 
 
 @cache
@@ -148,27 +138,23 @@ def _environment() -> jinja2.Environment:
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(text_of), autoescape=True, trim_blocks=True, lstrip_blocks=True
     )
-    environment.filters["inlined"] = _inlined
-    environment.filters["runs"] = runs
-    environment.filters["grid"] = printed_grid
-    environment.filters["printed"] = printed
-    environment.filters["noted"] = noted
-    environment.filters["classes"] = _classes
+    environment.filters |= {**FILTERS, "inlined": _inlined, "runs": _runs, "classes": _classes}
     return environment
 
 
 def printed_grid(table: Table) -> Grid:
     """A table as texts that are ready for print."""
     told = grid(table)
-    heads = tuple(
-        replace(one, label=printed(one.label), unit=sign_of(one.unit), at=sign_of(one.at))
-        for one in told.heads
-    )
-    rows = tuple(
+    heads = (Head(printed(one.label), sign_of(one.unit), sign_of(one.at)) for one in told.heads)
+    rows = (
         tuple(replace(one, text=printed(one.text), at=printed(one.at)) for one in row)
         for row in told.rows
     )
-    return Grid(printed(told.title), heads, rows)
+    return Grid(printed(told.title), tuple(heads), tuple(rows))
+
+
+FILTERS: dict[str, Callable[..., Any]] = {"grid": printed_grid, "printed": printed, "noted": noted}
+"""Of templates, by the names that these have for them."""
 
 
 def _classes(cell: Text) -> Markup:
@@ -180,7 +166,7 @@ def _inlined(svg: str, name: str, caption: str) -> Markup:
     return Markup(inlined(svg, name, caption))  # Matplotlib escapes its texts
 
 
-def runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block | Section]]]:
+def _runs(blocks: Iterable[Block | Section]) -> Iterator[tuple[str, list[Block | Section]]]:
     """Neighbours of the same kind together."""
     for kind, members in groupby(blocks, key=lambda block: block.kind):
         yield kind, list(members)
@@ -223,7 +209,7 @@ def pdf(document: Document) -> bytes:
             "summary": say("Summary"),
             "made": say("Made by Equipoise {version}", version=equipoise.__version__),
         }
-    source = _template().render(document=document, labels=labels, families=families)
+        source = _template().render(document=document, labels=labels, families=families)
     try:
         made = typst.compile(source.encode(), font_paths=_fonts(), format="pdf", timestamp=0)
     except typst.TypstError as error:
@@ -263,11 +249,7 @@ def _families(language: str) -> list[str]:
 @cache
 def _template() -> jinja2.Template:
     environment = jinja2.Environment(autoescape=False, trim_blocks=True, lstrip_blocks=True)
-    environment.filters["text"] = _text
-    environment.filters["grid"] = printed_grid
-    environment.filters["printed"] = printed
-    environment.filters["noted"] = noted
-    environment.filters["width"] = _width
+    environment.filters |= {**FILTERS, "text": _text, "width": _width}
     return environment.from_string(text_of("report.typ.j2"))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sin
@@ -10,9 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.balanced import Balanced
 from equipoise.errors import UsageError
-from equipoise.i18n import say
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
@@ -111,35 +110,27 @@ def tiles(found: Findings) -> Iterator[Tile]:
     if analysis.solved is None:
         return
     size = Shaking.of(found).size
-    several = len(found.machine.rows) > 1
-
-    def of_one(what: str) -> str:
-        return say("one row: {what}", what=what) if several else what
-
     yield Tile(say("shaking force, peak"), brief(size.peak), "N", _at(size.peak_at))
-    least = analysis.summary["frame_moment"].peak
-    for what, name in (
-        (say("shaking moment, peak"), "shaking_moment"),
-        (say("drive torque, peak"), "drive_torque"),
-    ):
+    template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
+    labels = {
+        "shaking_moment": say("shaking moment, peak"),
+        "drive_torque": say("drive torque, peak"),
+    }
+    for name, label in labels.items():
         one = analysis.summary[name]
-        value = brief(one.peak, least)
+        value = brief(one.peak, analysis.summary["frame_moment"].peak)
         note = _at(one.peak_at) if value != "0" else ""
-        yield Tile(of_one(what), value, "N m", note)
+        yield Tile(say(template, what=label), value, "N m", note)
     name, largest = _largest_joint(found)
     if name:
         label = say("largest joint force")
         yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
-        yield _by_balancing(found, found.balanced)
-
-
-def _by_balancing(found: Findings, balanced: Balanced) -> Tile:
-    one = balanced.plan.objectives[0]
-    before, after = balanced.objectives[one.name]
-    told = change(before, after).removesuffix(" %") or percent(0)
-    what = objective_named(one, len(found.machine.rows))
-    return Tile(say("by balancing"), told, "%", what if found.helped else good_already(found))
+        first = found.balanced.plan.objectives[0]
+        told = change(*found.balanced.objectives[first.name]).removesuffix(" %") or percent(0)
+        what = objective_named(first, len(found.machine.rows))
+        note = what if found.helped else good_already(found)
+        yield Tile(say("by balancing"), told, "%", note)
 
 
 def _at(crank_angle: float) -> str:
@@ -165,25 +156,26 @@ def _largest_joint(found: Findings) -> tuple[str, Figures]:
 def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
-    told = {"speed": speed, "peak": brief(size.peak), "rms": brief(size.rms)}
-    told["angle"] = angle(size.peak_at, 0)
     summary = found.analysis.summary
     if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
-        if rows > 1:
-            yield say(
-                "At {speed} rpm the {rows} rows together shake their frame with a force of up to "
-                "{peak} N ({rms} N RMS), largest at a crank angle of {angle}°.",
-                rows=rows,
-                **told,
-            )
-        else:
-            yield say(
-                "At {speed} rpm the linkage shakes its frame with a force of up to {peak} N "
-                "({rms} N RMS), largest at a crank angle of {angle}°.",
-                **told,
-            )
+        of_rows = to_say(
+            "At {speed} rpm the {rows} rows together shake their frame with a force of up to "
+            "{peak} N ({rms} N RMS), largest at a crank angle of {angle}°."
+        )
+        of_one = to_say(
+            "At {speed} rpm the linkage shakes its frame with a force of up to {peak} N "
+            "({rms} N RMS), largest at a crank angle of {angle}°."
+        )
+        yield say(
+            of_rows if rows > 1 else of_one,
+            speed=speed,
+            rows=rows,
+            peak=brief(size.peak),
+            rms=brief(size.rms),
+            angle=angle(size.peak_at, 0),
+        )
         if shaking.over_weight:
             ratio = brief(shaking.over_weight)
             yield say("That is {ratio} times the weight of its links.", ratio=ratio)
@@ -193,18 +185,12 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     if brief(moment.peak, scale) == "0":
         yield say("There is no shaking moment about the drive pivot.")
         return
-    reached = {"peak": brief(moment.peak), "rms": brief(moment.rms)}
-    if rows > 1:
-        yield say(
-            "The shaking moment of one row about its drive pivot reaches {peak} N m "
-            "({rms} N m RMS).",
-            **reached,
-        )
-    else:
-        yield say(
-            "The shaking moment about the drive pivot reaches {peak} N m ({rms} N m RMS).",
-            **reached,
-        )
+    of_rows = to_say(
+        "The shaking moment of one row about its drive pivot reaches {peak} N m ({rms} N m RMS)."
+    )
+    of_one = to_say("The shaking moment about the drive pivot reaches {peak} N m ({rms} N m RMS).")
+    template = of_rows if rows > 1 else of_one
+    yield say(template, peak=brief(moment.peak), rms=brief(moment.rms))
 
 
 def _directed(shaking: Shaking) -> str:
@@ -236,38 +222,37 @@ def _why(found: Findings) -> Iterator[str]:
     split, summary = found.analysis.forces.split, found.analysis.summary
     if summary["shaking_force"].rms > 0:
         by_link = shares(split.by_link("shaking_force"))
-        parts = [
-            say("{name} {share} %", name=name, share=percent(share))
-            for name, share in by_link.items()
-            if abs(share) >= SMALL
-        ]
-        yield say("The shaking force comes from: {parts}.", parts=say(", ").join(parts))
-        against = [name for name, share in by_link.items() if share <= -SMALL]
-        if against:
+        yield say("The shaking force comes from: {parts}.", parts=_parts(by_link))
+        if min(by_link.values()) <= -SMALL:
             yield say("A minus means that the link works against the others.")
     torque = summary["drive_torque"]
     if torque.rms > 0:
-        by_cause = shares(
-            {name: part - np.mean(part) for name, part in split.by_cause("drive_torque").items()}
+        by_cause = {
+            say(CAUSES[name]): part - np.mean(part)
+            for name, part in split.by_cause("drive_torque").items()
+        }
+        of_rows = to_say(
+            "The drive torque of one row swings between {low} and {high} N m; that comes "
+            "from: {parts}."
         )
-        causes = [
-            say("{name} {share} %", name=say(CAUSES[name]), share=percent(share))
-            for name, share in by_cause.items()
-            if abs(share) >= SMALL
-        ]
-        swing = {"low": brief(torque.min, torque.peak), "high": brief(torque.max, torque.peak)}
-        swing["parts"] = say(", ").join(causes)
-        if len(found.machine.rows) > 1:
-            yield say(
-                "The drive torque of one row swings between {low} and {high} N m; that comes "
-                "from: {parts}.",
-                **swing,
-            )
-        else:
-            yield say(
-                "The drive torque swings between {low} and {high} N m; that comes from: {parts}.",
-                **swing,
-            )
+        of_one = to_say(
+            "The drive torque swings between {low} and {high} N m; that comes from: {parts}."
+        )
+        yield say(
+            of_rows if len(found.machine.rows) > 1 else of_one,
+            low=brief(torque.min, torque.peak),
+            high=brief(torque.max, torque.peak),
+            parts=_parts(shares(by_cause)),
+        )
+
+
+def _parts(shares: Mapping[str, float]) -> str:
+    """Those of some size, each with its share."""
+    return say(", ").join(
+        say("{name} {share} %", name=name, share=percent(share))
+        for name, share in shares.items()
+        if abs(share) >= SMALL
+    )
 
 
 def check_whole_cycle(found: Findings) -> None:
@@ -284,7 +269,7 @@ def vibration_told(found: Findings) -> Iterator[str]:
     for name, gauge in response.gauges.items():
         scale, unit = scaled("rad" if gauge.rotation else "m")
         yield say(
-            "The gauge {gauge} moves by {size} {unit} peak to peak at {speed} rpm.",
+            "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm.",
             gauge=name,
             size=brief(float(gauge.displacement.peak_to_peak) * scale),
             unit=unit,
@@ -293,30 +278,24 @@ def vibration_told(found: Findings) -> Iterator[str]:
     if found.sweep is None or not found.sweep.resonances:
         return
     nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))
-    told = {
-        "order": f"{nearest.order:.4g}",
-        "mode": nearest.mode,
-        "frequency": brief(nearest.frequency / (2 * pi)),
-        "speed": brief(abs(nearest.speed) / PER_RPM),
-    }
     yield say(
         "The nearest resonance is at {speed} rpm, where order {order} meets mode {mode} "
         "({frequency} Hz).",
-        **told,
+        order=f"{nearest.order:.4g}",
+        mode=nearest.mode,
+        frequency=brief(nearest.frequency / (2 * pi)),
+        speed=brief(abs(nearest.speed) / PER_RPM),
     )
-    if nearest.avoid is not None and _within(abs(response.speed), nearest.avoid):
-        low, high = sorted(abs(end) / PER_RPM for end in nearest.avoid)
+    if nearest.avoid is None:
+        return
+    low, high = sorted(abs(end) / PER_RPM for end in nearest.avoid)
+    if low <= abs(response.speed) / PER_RPM <= high:
         yield say(
             "The crank turns at a speed that is to be avoided: between {low} and {high} rpm this "
             "resonance amplifies more than three times.",
             low=brief(low),
             high=brief(high),
         )
-
-
-def _within(value: float, ends: tuple[float, float]) -> bool:
-    low, high = sorted(map(abs, ends))
-    return low <= value <= high
 
 
 def planting_told(found: Findings) -> Iterator[str]:

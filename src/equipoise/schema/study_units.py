@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from equipoise.codegen.figures import COMPUTED, REASONS
@@ -15,6 +14,7 @@ from equipoise.schema.files import printable
 from equipoise.schema.finding import SHARE, handy, unit_of
 from equipoise.schema.studies import restore
 from equipoise.schema.template import Template
+from equipoise.studies.blocks import Unit
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
@@ -95,27 +95,11 @@ def _restored(texts: Mapping[str, str], path: str | os.PathLike[str]) -> Study:
 LIMITS = ("at_most", "at_least")
 
 
-@dataclass(frozen=True)
-class Unit:
-    """A unit.
-
-    name : nothing of a plain number.
-    factor : of it, in SI units.
-    """
-
-    name: str = ""
-    factor: float = 1.0
-
-    @classmethod
-    def of(cls, name: str) -> Unit:
-        """A unit by its name."""
-        if name == SHARE:
-            return cls(name, 0.01)
-        return cls(name, float(FACTORS[name])) if name else cls()
-
-    def of_si(self, value: float) -> float:
-        """A value in SI units, in this one."""
-        return value / self.factor
+def unit_named(name: str) -> Unit:
+    """A unit by its name."""
+    if name == SHARE:
+        return Unit(name, 0.01)
+    return Unit(name, float(FACTORS[name])) if name else Unit()
 
 
 def units_of(study: Study) -> dict[str, Unit]:
@@ -125,9 +109,9 @@ def units_of(study: Study) -> dict[str, Unit]:
     study limits them, and else in one that is usual.
     """
     given = _given(study.file)
-    numbers = {one.path: Unit.of(_of_number(study, one)) for one in study.vary}
+    numbers = {one.path: unit_named(_of_number(study, one)) for one in study.vary}
     figures = {
-        output.name: Unit.of(_of_output(output, given.get(output.name, {})))
+        output.name: unit_named(_of_output(output, given.get(output.name, {})))
         for output in study.outputs
     }
     return numbers | figures

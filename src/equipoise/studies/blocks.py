@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import isnan
 from shlex import quote
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
 from equipoise.results.outputs import objective_named
 from equipoise.studies.design_space import Choices, Normal, Range
-from equipoise.studies.outcomes import far_apart
+from equipoise.studies.outcomes import far_apart, signs_of
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make, Output, Spread
@@ -32,24 +32,20 @@ MOST_CHOICES = 5
 """Values of a list that are told."""
 
 
-class Unit(Protocol):
-    """A unit in which a number or a figure of a study is told."""
-
-    @property
-    def name(self) -> str: ...
-
-    def of_si(self, value: float) -> float: ...
-
-
 @dataclass(frozen=True)
-class Plain:
-    """The SI unit, where no other is known."""
+class Unit:
+    """A unit in which a number or a figure of a study is told; SI where no other is known.
+
+    name : nothing of a plain number.
+    factor : of it, in SI units.
+    """
 
     name: str = ""
+    factor: float = 1.0
 
     def of_si(self, value: float) -> float:
-        """A value as it is."""
-        return value
+        """A value in SI units, in this one."""
+        return value / self.factor
 
 
 Units = Mapping[str, Unit]
@@ -57,12 +53,12 @@ Units = Mapping[str, Unit]
 
 def unit_in(units: Units | None, name: str) -> Unit:
     """The unit of a number or figure; SI where none is told."""
-    return Plain() if units is None or name not in units else units[name]
+    return (units or {}).get(name, Unit())
 
 
-def in_unit(value: float | None, unit: Unit, **more: Any) -> Value | None:
+def in_unit(value: float | None, unit: Unit) -> Value | None:
     """A value in SI units as a cell."""
-    return None if value is None else Value(unit.of_si(float(value)), **more)
+    return None if value is None else Value(unit.of_si(float(value)))
 
 
 def labelled(name: str, unit: str) -> str:
@@ -101,12 +97,20 @@ def columns_of(
 
 
 def designs_table(
-    title: str, labels: Sequence[str], columns: Mapping[str, Array], units: Units | None
+    title: str,
+    labels: Sequence[str],
+    columns: Mapping[str, Array],
+    first: Iterable[str],
+    units: Units | None,
 ) -> Table:
-    """Designs (K), one row each, with columns (K,) in SI units by name."""
-    own = {name: unit_in(units, name) for name in columns}
-    heads = (Column(name, unit=own[name].name or None) for name in columns)
-    cells = ([in_unit(one, own[name]) for one in column] for name, column in columns.items())
+    """Designs (K), one row each, with columns (K,) in SI units by name.
+
+    first : names of the columns that go before the others.
+    """
+    names = [*dict.fromkeys((*first, *columns))]
+    own = {name: unit_in(units, name) for name in names}
+    heads = (Column(name, unit=own[name].name or None) for name in names)
+    cells = ([in_unit(one, own[name]) for one in columns[name]] for name in names)
     return Table(title, (Column(say("design")), *heads), tuple(zip(labels, *cells, strict=True)))
 
 
@@ -139,14 +143,10 @@ def best_blocks(
     """What is best of how many, within which limits, and the designs."""
     counted = {"stored": found.stored, "computed": found.computed, "kept": found.kept}
     if limits(outputs, units):
-        yield Text(
-            say(
-                "{stored} designs: {computed} have figures, {kept} keep every limit",
-                **counted,
-            )
-        )
+        told = say("{stored} designs: {computed} have figures, {kept} keep every limit", **counted)
     else:
-        yield Text(say("{stored} designs: {computed} have figures", **counted))
+        told = say("{stored} designs: {computed} have figures", **counted)
+    yield Text(told)
     yield from _limits(outputs, units)
     if len(found.by) > 1:
         yield Text(say("{count} designs that no other beats in everything", count=found.front))
@@ -156,14 +156,13 @@ def best_blocks(
 def best_table(found: Best, units: Units | None = None) -> Table:
     """The designs, the best first."""
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
-    order = dict.fromkeys((*found.by, *found.outputs, *found.numbers))
     labels = [str(design) for design in found.designs]
     aims = wanted(found.by)
     if len(found.by) > 1:
         title = say("Designs that no other beats; {aims}", aims=aims)
     else:
         title = say("The best designs; {aims}", aims=aims)
-    return designs_table(title, labels, {name: columns[name] for name in order}, units)
+    return designs_table(title, labels, columns, (*found.by, *found.outputs), units)
 
 
 # -- a search --------------------------------------------------------------------------------------
@@ -177,14 +176,8 @@ def searched_blocks(
     own : values (d,) and figures (m,) of the model itself, if it can be computed.
     """
     failed = sum(found.failures.values())
-    parts = [
-        say(
-            "{count} designs in {generations} generations, seed {seed}",
-            count=found.computed,
-            generations=found.generations,
-            seed=found.seed,
-        )
-    ]
+    counted = {"count": found.computed, "generations": found.generations, "seed": found.seed}
+    parts = [say("{count} designs in {generations} generations, seed {seed}", **counted)]
     parts += [say("{count} failed", count=failed)] if failed else []
     still, growing = say("the front stands still"), say("the front may still grow")
     parts.append(still if found.stood_still else growing)
@@ -196,35 +189,23 @@ def searched_blocks(
 
 
 def _front(found: Searched, units: Units | None, own: tuple[Array, Array] | None) -> Table:
-    columns = [objective_column(found, name) for name in found.objectives]
-    shown = far_apart(np.column_stack(columns), MOST)
+    signs = signs_of(found.objectives.values())
+    outputs = [found.study.names.index(name) for name in found.objectives]
+    shown = far_apart(signs * found.figures[:, outputs], MOST)
     labels = [str(one) for one in shown]
     values, figures = found.values[shown], found.figures[shown]
     if own is not None:
         labels = [say("model"), *labels]
         values, figures = np.vstack([own[0], values]), np.vstack([own[1], figures])
-    told = columns_of(found.study.paths, values, found.study.names, figures)
-    order = dict.fromkeys((*found.objectives, *found.study.names, *found.study.paths))
-    aims = wanted(found.objectives)
+    columns = columns_of(found.study.paths, values, found.study.names, figures)
+    told = {"shown": len(shown), "count": found.front, "aims": wanted(found.objectives)}
     if len(found.objectives) == 1:
-        title = say("The best design; {aims}", aims=aims)
+        title = say("The best design; {aims}", **told)
     elif len(shown) < found.front:
-        title = say(
-            "{shown} of {count} designs that no other beats; {aims}",
-            shown=len(shown),
-            count=found.front,
-            aims=aims,
-        )
+        title = say("{shown} of {count} designs that no other beats; {aims}", **told)
     else:
-        title = say("{count} designs that no other beats; {aims}", count=found.front, aims=aims)
-    return designs_table(title, labels, {name: told[name] for name in order}, units)
-
-
-def objective_column(found: Searched, name: str) -> Array:
-    """Figures (K,) of one objective, such that small ones are good."""
-    sign = 1.0 if found.objectives[name] == "smallest" else -1.0
-    column: Array = sign * found.figures[:, found.study.names.index(name)]
-    return column
+        title = say("{count} designs that no other beats; {aims}", **told)
+    return designs_table(title, labels, columns, (*found.objectives, *found.study.names), units)
 
 
 # -- a store ---------------------------------------------------------------------------------------
@@ -314,16 +295,11 @@ def store_blocks(store: Store) -> Iterator[Block]:
 
 def landscape_blocks(found: Landscape) -> Iterator[Block]:
     """Where over two numbers an objective is least, and what it is as the model stands."""
-    rows: list[tuple[Cell, ...]] = [
-        (say("least"), *map(Value, found.best), Value(found.least)),
-    ]
+    rows: list[tuple[Cell, ...]] = [(say("least"), *map(Value, (*found.best, found.least)))]
     if found.start is not None:
-        rows.append((say("as it is"), *map(Value, found.start), Value(found.before)))
-    columns = (
-        Column(""),
-        *(Column(path) for path in found.paths),
-        Column(objective_named(found.objective), unit=found.unit),
-    )
+        rows.append((say("as it is"), *map(Value, (*found.start, found.before))))
+    objective = Column(objective_named(found.objective), unit=found.unit)
+    columns = (Column(""), *map(Column, found.paths), objective)
     yield Table(say("Least over two numbers, SI units"), columns, tuple(rows))
     values = found.values[np.isfinite(found.values)]
     if isnan(found.least) or not values.size:

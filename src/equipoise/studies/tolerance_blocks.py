@@ -13,10 +13,8 @@ from equipoise.studies.design_space import Normal, Uniform
 
 if TYPE_CHECKING:
     from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import Estimate, Scatter
+    from equipoise.studies.variance import Estimate
 
-
-# -- tolerances ------------------------------------------------------------------------------------
 
 LITTLE = 0.01
 """Share of the variance below which it is not worth tightening anything."""
@@ -65,17 +63,12 @@ def _kept(found: Tolerances, units: Units | None) -> Table:
             continue
         unit = unit_in(units, name)
         ends = (in_unit(end, unit) for end in (one.output.at_least, one.output.at_most))
-        out = (Value(100 * share, after=2) for share in (one.below, one.above))
+        beyond = (Value(100 * share, after=2) for share in (one.below, one.above))
         inside = _share(one.within).replace(" %", "")
-        rows.append((labelled(name, unit.name), *ends, *out, inside))
-    columns = (
-        Column(""),
-        Column(say("at least")),
-        Column(say("at most")),
-        Column(say("below"), unit="%"),
-        Column(say("above"), unit="%"),
-        Column(f"{say('within')}, %"),
-    )
+        rows.append((labelled(name, unit.name), *ends, *beyond, inside))
+    limits = map(Column, ("", say("at least"), say("at most")))
+    out = (Column(words, unit="%") for words in (say("below"), say("above")))
+    columns = (*limits, *out, Column(f"{say('within')}, %"))
     return Table(say("Limits"), columns, tuple(rows))
 
 
@@ -92,19 +85,16 @@ def _causes(found: Tolerances, units: Units | None) -> Table:
         shares = (cause.halved, cause.removed) if kept else ()
         cells = (None if one is None else Value(100 * one, after=digits) for one in shares)
         given = "; ".join(tolerance_told(found, path, units) for path in cause.numbers)
-        rows.append(
-            (say(", ").join(cause.numbers), given, Value(100 * cause.gain, after=1), *cells)
-        )
-    columns = [Column(""), Column(say("tolerance")), Column(say("variance less by"), unit="%")]
+        gain = Value(100 * cause.gain, after=1)
+        rows.append((say(", ").join(cause.numbers), given, gain, *cells))
+    told = [say("variance less by")]
     title = say("What half of a tolerance does, the most first")
     if found.unchanged is not None:
-        columns += [
-            Column(say("keep limits with half"), unit="%"),
-            Column(say("keep limits without"), unit="%"),
-        ]
+        told += [say("keep limits with half"), say("keep limits without")]
         share = percent(found.unchanged, digits)
         title = say("{title}; with all of them {share} % keep limits", title=title, share=share)
-    return Table(title, tuple(columns), tuple(rows))
+    columns = (Column(""), Column(say("tolerance")), *(Column(one, unit="%") for one in told))
+    return Table(title, columns, tuple(rows))
 
 
 def tolerance_told(found: Tolerances, path: str, units: Units | None) -> str:
@@ -148,20 +138,14 @@ def advice(found: Tolerances) -> str:
             "No tolerance is worth tightening: half of any takes less than 1 % off the variance."
         )
     limited = [name for name, one in found.scatters.items() if one.within is not None]
-    names = [*(limited or found.scatters)]
-    if len(names) == 1:
-        of = names[0]
-    else:
-        of = say("the figures with limits") if limited else say("the figures")
+    names = limited or [*found.scatters]
+    of = say("the figures with limits") if limited else say("the figures")
     what = say(" and ").join(first.numbers)
-    told = {
-        "what": say("{names} together", names=what) if len(first.numbers) > 1 else what,
-        "share": f"{100 * first.gain:.0f}",
-        "of": of,
-    }
     text = say(
         "Tighten first: {what}. Half of the tolerance takes {share} % off the variance of {of}",
-        **told,
+        what=say("{names} together", names=what) if len(first.numbers) > 1 else what,
+        share=f"{100 * first.gain:.0f}",
+        of=names[0] if len(names) == 1 else of,
     )
     if first.halved is None or found.unchanged is None:
         return f"{text}."
@@ -178,17 +162,11 @@ def advice(found: Tolerances) -> str:
 
 def _outside(found: Tolerances) -> Iterator[Note]:
     """Limits that the model itself does not keep."""
+    told = to_say("the model itself does not keep the limits of {name}; change its numbers first")
     for name, one in found.scatters.items():
-        if _beyond(one):
-            template = to_say(
-                "the model itself does not keep the limits of {name}; change its numbers first"
-            )
-            yield Note(template, name=name)
-
-
-def _beyond(one: Scatter) -> bool:
-    low, high = one.output.at_least, one.output.at_most
-    return (low is not None and one.base < low) or (high is not None and one.base > high)
+        low, high = one.output.at_least, one.output.at_most
+        if (low is not None and one.base < low) or (high is not None and one.base > high):
+            yield Note(told, name=name)
 
 
 SHOWS: dict[str, Any] = {"Tolerances": tolerances_blocks}

@@ -19,6 +19,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.results.result import Result
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Evaluator, Outcome, failures, kept, why_none
+from equipoise.studies.sampling import samples
 from equipoise.studies.study import SLOW_CHUNK
 from equipoise.studies.variance import (
     Effect,
@@ -136,9 +137,11 @@ def tolerance(
     _check(study)
     causes = causes_of(study)
     rows = rows_of(study.size, len(causes))
-    run = _Run(compute or evaluator(study), min(study.chunk, SLOW_CHUNK), study.chunk, progress)
-    run.total = study.size + rows * (2 + 3 * len(causes))
-    drawn = run.joined(_drawn(study))
+    total = study.size + rows * (2 + 3 * len(causes))
+    step = min(study.chunk, SLOW_CHUNK)
+    run = _Run(compute or evaluator(study), step, study.chunk, progress, total)
+    starts = range(0, study.size, study.chunk)
+    drawn = run.joined(samples(study, k, min(study.chunk, study.size - k)) for k in starts)
     reasons = drawn.counts
     there = np.sum(np.isfinite(drawn.figures), axis=0)
     if not reasons[COMPUTED] or not np.all(there):
@@ -153,8 +156,8 @@ def tolerance(
         failures=failures(reasons),
         within=share_of(_kept_all(study, drawn)) if _limited(study) else None,
         scatters={
-            output.name: scatter_of(output, base[k], drawn.figures[:, k])
-            for k, output in enumerate(study.outputs)
+            one.name: scatter_of(one, own, figures)
+            for one, own, figures in zip(study.outputs, base, drawn.figures.T, strict=True)
         },
         causes=tuple(sorted(told, key=lambda one: -one.gain)),
         rows=rows,
@@ -200,7 +203,7 @@ class _Run:
     step: int
     most: int
     progress: OnProgress | None
-    total: int = 0
+    total: int
     done: int = 0
 
     def joined(self, parts: Iterable[Array]) -> Outcome:
@@ -209,28 +212,15 @@ class _Run:
         for part in parts:
             start = 0
             while start < len(part):
-                found.append(self.timed(part[start : start + self.step]))
+                begin = monotonic()
+                found.append(self.compute(part[start : start + self.step]))
+                if monotonic() - begin < QUICK and 2 * self.step <= self.most:
+                    self.step *= 2
                 start += len(found[-1].reason)
                 self.done += len(found[-1].reason)
                 if self.progress is not None:
                     self.progress(self.done, self.total)
         return Outcome.joined(found)
-
-    def timed(self, values: Array) -> Outcome:
-        """What came of some machines."""
-        begin = monotonic()
-        outcome = self.compute(values)
-        if monotonic() - begin < QUICK and 2 * self.step <= self.most:
-            self.step *= 2
-        return outcome
-
-
-def _drawn(study: Study) -> Iterator[Array]:
-    """Machines drawn from the tolerances, part by part."""
-    from equipoise.studies.sampling import samples
-
-    for start in range(0, study.size, study.chunk):
-        yield samples(study, start, min(study.chunk, study.size - start))
 
 
 # -- reading off -----------------------------------------------------------------------------------

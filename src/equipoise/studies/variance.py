@@ -61,15 +61,13 @@ class Effect:
 
 def causes_of(study: Study) -> tuple[tuple[int, ...], ...]:
     """Columns that vary by themselves, or together because they are correlated."""
-    group = {path: k for k, path in enumerate(study.paths)}
+    groups = [{k} for k in range(len(study.paths))]
     for one in study.correlations:
-        old, new = group[one.second], group[one.first]
-        group = {path: new if k == old else k for path, k in group.items()}
-    columns = {path: k for k, path in enumerate(study.paths)}
-    return tuple(
-        tuple(columns[path] for path in study.paths if group[path] == k)
-        for k in dict.fromkeys(group.values())
-    )
+        first, second = (study.paths.index(path) for path in (one.first, one.second))
+        together = groups[first] | groups[second]
+        for k in together:
+            groups[k] = together
+    return tuple(dict.fromkeys(tuple(sorted(group)) for group in groups))
 
 
 def tables(study: Study, rows: int) -> Iterator[Array]:
@@ -113,12 +111,10 @@ def effects(figures: Sequence[Array], seed: int) -> list[Effect] | None:
     spread = float(np.std(base))
     if spread <= 1e-12 * float(np.max(np.abs(base))):
         return None
-    swapped, halved, removed = table[2::3], table[3::3], table[4::3]
-    estimates = _shares(base, other, swapped, seed)
-    return [
-        Effect(*shares, float(np.std(half)) / spread, float(np.std(none)) / spread)
-        for shares, half, none in zip(estimates, halved, removed, strict=True)
-    ]
+    halved, removed = (np.std(table[k::3], axis=1) / spread for k in (3, 4))
+    shares = _shares(base, other, table[2::3], seed)
+    left = zip(halved.tolist(), removed.tolist(), strict=True)
+    return [Effect(*both, *kept) for both, kept in zip(shares, left, strict=True)]
 
 
 def _shares(
@@ -127,24 +123,12 @@ def _shares(
     """First-order and total share of each cause, with intervals by drawing rows again."""
     middle = np.mean([base, other])  # the estimates are closer without what does not vary
     base, other, swapped = base - middle, other - middle, swapped - middle
-    terms = np.vstack(
-        [
-            0.5 * (base + other),
-            0.5 * (base**2 + other**2),
-            other * (swapped - base),
-            0.5 * (base - swapped) ** 2,
-        ]
-    )
-    told = _ratios(np.mean(terms, axis=1)[None])
+    mean, square = 0.5 * (base + other), 0.5 * (base**2 + other**2)
+    terms = np.vstack([mean, square, other * (swapped - base), 0.5 * (base - swapped) ** 2])
+    told = _ratios(np.mean(terms, axis=1)[None])[0]
     low, high = np.percentile(_ratios(_drawn_again(terms, seed)), [2.5, 97.5], axis=0)
-    count = len(swapped)
-    return [
-        (
-            Estimate(float(told[0, k]), float(low[k]), float(high[k])),
-            Estimate(float(told[0, t]), float(low[t]), float(high[t])),
-        )
-        for k, t in zip(range(count), range(count, 2 * count), strict=True)
-    ]
+    every = [Estimate(*map(float, one)) for one in zip(told, low, high, strict=True)]
+    return [*zip(every[: len(swapped)], every[len(swapped) :], strict=True)]
 
 
 def _ratios(means: Array) -> Array:

@@ -1,13 +1,10 @@
 """The support as a rigid body on mounts: small motion, rest, and points that turn with it.
 
-Six coordinates: displacement of the reference point along x, y, z and rotation about x, y, z, in
-the order of `FREEDOMS`.  A force f at a point b is the generalized force (f, (b - r) x f); a
-displacement along n of that point is read by the row (n, (b - r) x n).  How the support can move
-picks coordinates out of the six at the very end.
-
-Points of a planar support that turns: what a gauge reads there, and what a mount does there.
-
-Places and rates are arrays (3, ...) along surge, heave and pitch; rotation is not small.
+Small motion has six coordinates: displacement of the reference point along x, y, z and rotation
+about x, y, z, in the order of `FREEDOMS`.  A force f at a point b is the generalized force
+(f, (b - r) x f); a displacement along n of that point is read by the row (n, (b - r) x n).  How the
+support can move picks coordinates out of the six at the very end.  Points of a planar support turn
+with it, by no small angle; there places and rates are arrays (3, ...) along surge, heave and pitch.
 """
 
 from __future__ import annotations
@@ -72,17 +69,14 @@ class Body:
     @cached_property
     def mass(self) -> Array:
         """Mass matrix of the support alone."""
-        support = self.support
-        return rigid_mass(
-            support.mass, np.array(support.center_of_mass) - self.reference, self._inertia()
-        )
+        arm = np.array(self.support.center_of_mass) - self.reference
+        return rigid_mass(self.support.mass, arm, self._inertia(arm))
 
-    def _inertia(self) -> Array:
-        """Inertia tensor (3, 3) about the centre of mass."""
+    def _inertia(self, arm: Array) -> Array:
+        """Inertia tensor (3, 3) about the centre of mass, which lies at `arm` (3,)."""
         support = self.support
         if support.pivot_inertia is not None:
-            arm = (np.array(support.center_of_mass) - self.reference)[:2]
-            about_center = support.pivot_inertia - support.mass * float(arm @ arm)
+            about_center = support.pivot_inertia - support.mass * float(arm[:2] @ arm[:2])
             return np.diag([0.0, 0.0, about_center])
         if len(support.inertia) == 1:
             return np.diag([0.0, 0.0, support.inertia[0]])
@@ -183,19 +177,16 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
     known = {name: m.preload for name, m in mounts.items() if m.preload is not None}
     rows = {name: body.row(mount)[body.free] for name, mount in mounts.items()}
     rates = {n: m.spring for n, m in mounts.items() if n not in known}
-    left = load[body.free] + sum(
-        (force * rows[name] for name, force in known.items()), np.zeros(len(body.free))
-    )
+    left = load[body.free] + sum(force * rows[name] for name, force in known.items())
     if not any(rates.values()):
         if known or not np.any(left):
             return {**dict.fromkeys(mounts, 0.0), **known}
         raise ModelError("support.mounts", _uncarried(body, left))
     touching = dict(rates)
     for _ in range(len(rates) + 1):
-        stiffness = sum(
-            (k * np.outer(rows[n], rows[n]) for n, k in touching.items()),
-            np.zeros((len(body.free),) * 2),
-        )
+        stiffness = np.zeros((len(body.free),) * 2)
+        for n, k in touching.items():
+            stiffness += k * np.outer(rows[n], rows[n])
         settled = np.linalg.lstsq(stiffness, left, rcond=1e-12)[0]
         found = {n: float(-k * (rows[n] @ settled)) for n, k in rates.items()}
         kept = {n: k for n, k in rates.items() if not (mounts[n].one_sided and found[n] < 0)}
@@ -209,15 +200,11 @@ def _shared(body: Body, load: Array) -> dict[str, float]:
 
 
 def _uncarried(body: Body, over: Array) -> str:
-    largest = float(np.max(np.abs(over)))
-    loose = [
-        name
-        for name, value in zip(body.support.coordinates, over, strict=True)
-        if abs(value) > 0.05 * largest
-    ]
+    is_loose = np.abs(over) > 0.05 * np.max(np.abs(over))
+    names = zip(body.support.coordinates, is_loose, strict=True)
+    loose = " and ".join(name for name, loose in names if loose)
     return (
-        f"they do not carry the weight in {' and '.join(loose)}; add a mount there, or give the "
-        "mounts a preload"
+        f"they do not carry the weight in {loose}; add a mount there, or give the mounts a preload"
     )
 
 
@@ -247,25 +234,19 @@ class Reading:
 
     def displacement(self, place: Array) -> Array:
         """From the drawn position, m or rad."""
-        if self.along is None:
-            return np.asarray(place[PITCH] * self.share)
         x, y = self.turned(place[PITCH])
-        return self._sum(place, x - self.arm[0], y - self.arm[1])
+        return self._read(place, x - self.arm[0], y - self.arm[1])
 
     def velocity(self, place: Array, rate: Array) -> Array:
         """m/s or rad/s."""
-        if self.along is None:
-            return np.asarray(rate[PITCH] * self.share)
         x, y = self.turned(place[PITCH])
-        return self._sum(rate, -rate[PITCH] * y, rate[PITCH] * x)
+        return self._read(rate, -rate[PITCH] * y, rate[PITCH] * x)
 
     def acceleration(self, place: Array, rate: Array, change: Array) -> Array:
         """m/s2 or rad/s2."""
-        if self.along is None:
-            return np.asarray(change[PITCH] * self.share)
         x, y = self.turned(place[PITCH])
         square = rate[PITCH] ** 2
-        return self._sum(change, -change[PITCH] * y - square * x, change[PITCH] * x - square * y)
+        return self._read(change, -change[PITCH] * y - square * x, change[PITCH] * x - square * y)
 
     def wrench(self, force: Array, place: Array) -> tuple[Any, Any, Array]:
         """Force along x and y, and moment about the reference point, of a force or moment here."""
@@ -280,10 +261,12 @@ class Reading:
         c, s = np.cos(pitch), np.sin(pitch)
         return c * self.arm[0] - s * self.arm[1], s * self.arm[0] + c * self.arm[1]
 
-    def _sum(self, moved: Array, x: Array, y: Array) -> Array:
-        assert self.along is not None
-        found: Array = self.along[0] * (moved[SURGE] + x) + self.along[1] * (moved[HEAVE] + y)
-        return found
+    def _read(self, moved: Array, x: Array, y: Array) -> Array:
+        """A motion (3, ...) of the reference point, beside which the point moves by (x, y)."""
+        if self.along is None:
+            return np.asarray(moved[PITCH] * self.share)
+        along_x, along_y = self.along
+        return np.asarray(along_x * (moved[SURGE] + x) + along_y * (moved[HEAVE] + y))
 
 
 @dataclass(frozen=True, eq=False)
@@ -308,14 +291,9 @@ class Contact:
 
 def contacts_of(body: Body, rest: Rest) -> tuple[Contact, ...]:
     """The mounts of a planar support."""
-    return tuple(
-        Contact(
-            name,
-            Reading.of(body, mount),
-            rest.preload[name],
-            mount.spring,
-            mount.damper,
-            mount.one_sided,
-        )
-        for name, mount in body.support.mounts.items()
-    )
+    found = []
+    for name, mount in body.support.mounts.items():
+        rates = mount.spring, mount.damper
+        at = Reading.of(body, mount)
+        found.append(Contact(name, at, rest.preload[name], *rates, mount.one_sided))
+    return tuple(found)

@@ -122,10 +122,9 @@ class Coupled:
 
     def place_and_rate(self, states: Array) -> tuple[Array, Array]:
         """Displacements and velocities (3, ...) along surge, heave and pitch."""
-        d = len(self.free)
-        shape = (3, *states.shape[1:])
-        place, rate = np.zeros(shape, states.dtype), np.zeros(shape, states.dtype)
-        place[list(self.free)], rate[list(self.free)] = states[:d], states[d : 2 * d]
+        d, free = len(self.free), list(self.free)
+        place, rate = np.zeros((2, 3, *states.shape[1:]), states.dtype)
+        place[free], rate[free] = states[:d], states[d : 2 * d]
         return place, rate
 
     def accelerations(self, table: Sums, states: Array) -> Array:
@@ -173,9 +172,8 @@ class Coupled:
             mass * gy + load[1] + turning**2 * first[1] - 2 * turning * speed * first_1[0],
             first[0] * gy - first[1] * gx + table.load_moment - table.inertia_1 * speed * turning,
         ]
-        forces[0] = forces[0] - speed**2 * first_2[0]
-        forces[1] = forces[1] - speed**2 * first_2[1]
-        forces[2] = forces[2] - speed**2 * table.spin_1
+        changes = (*first_2, table.spin_1)
+        forces = [force - speed**2 * one for force, one in zip(forces, changes, strict=True)]
         for contact in self.contacts:
             parts = contact.at.wrench(contact.force(place, rate), place)
             forces = [force + part for force, part in zip(forces, parts, strict=True)]

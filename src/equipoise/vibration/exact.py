@@ -76,8 +76,8 @@ def solve_exact(
     ResponseError : none was found, or none is near the drawn position.
     """
     system, linear = equations(machine, speed, drive)
-    guesses: list[Guess] = [] if near is None else [near]
     setting = motor_setting(machine, speed) if drive else None
+    guesses: list[Guess] = [] if near is None else [near]
     guesses.append(partial(from_linear, system, linear, setting))
     if patient and setting is None:
         guesses.append(partial(settled, system))
@@ -218,22 +218,14 @@ class ExactSolution:
         if self.system.torque is not None and motor is not None:
             shift, own = float(self.states[-1, 0]), fastest(motor)
             if abs(shift) > own:
-                yield (
-                    Note(
-                        to_say(
-                            "to hold the mean speed, the motor's curve is shifted by "
-                            "{shift} rad/s, more than its own {own} rad/s: it is too weak"
-                            " or slow for this machine"
-                        ),
-                        shift=f"{shift:.4g}",
-                        own=f"{own:.4g}",
-                    )
+                said = to_say(
+                    "to hold the mean speed, the motor's curve is shifted by {shift} rad/s, more "
+                    "than its own {own} rad/s: it is too weak or slow for this machine"
                 )
+                yield Note(said, shift=f"{shift:.4g}", own=f"{own:.4g}")
         if abs(self.lean) > LEANING:
-            yield Note(
-                to_say("the support leans by {angle} deg from the drawn position in the mean"),
-                angle=f"{self.lean:.1f}",
-            )
+            said = to_say("the support leans by {angle} deg from the drawn position in the mean")
+            yield Note(said, angle=f"{self.lean:.1f}")
 
     def _gauges(self, body: Body) -> dict[str, GaugeSignals]:
         ride = self.ride
@@ -286,19 +278,12 @@ class ExactSolution:
         table = system.sums(system.sense * orbit.nodes.ravel())
         place, rate = system.place_and_rate(states)
         speed = system.crank_speed(states)
-        fed = system.drive_torque(table, states) * speed + _work_of_loads(table, place, rate, speed)
+        # power of the drive, of loads from outside and of springs, W
+        force = table.load_force * np.exp(1j * place[PITCH])
+        carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
+        fed = system.drive_torque(table, states) * speed + (carried + table.load_torque * speed)
         lost = np.zeros_like(speed)
         for contact in system.contacts:
             lost -= contact.force(place, rate) * contact.at.velocity(place, rate)
-        over = [
-            orbit.integral((power / np.abs(speed)).reshape(orbit.nodes.shape))
-            for power in (fed, lost)
-        ]
-        return Energy(*over)
-
-
-def _work_of_loads(table: Sums, place: Array, rate: Array, speed: Array) -> Array:
-    """Power of the loads from outside and of the springs, W."""
-    force = table.load_force * np.exp(1j * place[PITCH])
-    carried = force.real * rate[0] + force.imag * rate[1] + table.load_moment * rate[PITCH]
-    return np.asarray(carried + table.load_torque * speed)
+        powers = (power / np.abs(speed) for power in (fed, lost))
+        return Energy(*(orbit.integral(power.reshape(orbit.nodes.shape)) for power in powers))

@@ -92,13 +92,8 @@ def left_out(machine: Machine) -> list[Note | str]:
     """What the model file gives that does nothing in a steady vibration."""
     found: list[Note | str] = list(idle_parts(machine.support))
     if machine.drive.acceleration:
-        found.append(
-            Note(
-                to_say(
-                    "the drive's acceleration is left out: a steady vibration has a steady crank"
-                )
-            )
-        )
+        said = to_say("the drive's acceleration is left out: a steady vibration has a steady crank")
+        found.append(Note(said))
     return found
 
 
@@ -134,17 +129,26 @@ def follow_speeds(
     """Response at every speed, the louder one where there are two; and what to say of that."""
     count = len(speeds)
     upward = _along(machine, speeds, drive, lambda done: progress(done, count))
-    if not any(answer is None or _lifts_off(answer) for answer in upward):
+    if all(
+        answer is not None and not any(mount.lifts_off for mount in answer.mounts.values())
+        for answer in upward
+    ):
         return upward, []
     downward = _along(machine, speeds[::-1], drive, lambda done: progress(count + done, 2 * count))
-    louder, both = [], []
+    louder: Answers = []
+    both: dict[float, float] = {}  # speeds with two states, and how much less one of them shakes
     for speed, up, down in zip(speeds, upward, downward[::-1], strict=True):
         ratio = _ratio(up, down)
         found = down if up is None or (down is not None and ratio > 1) else up
         louder.append(found or _patiently(machine, speed, drive))
-        if up is not None and down is not None and abs(ratio - 1) > DIFFERENT:
-            both.append((speed, min(ratio, 1 / ratio)))
-    return louder, _sentences(both, count)
+        if abs(ratio - 1) > DIFFERENT:
+            both[speed] = min(ratio, 1 / ratio)
+    if not both:
+        return louder, []
+    return louder, [
+        f"two steady states at {len(both)} of {count} speeds, {range_shown([*both])}; the louder "
+        f"one is told, the other shakes down to {100 * min(both.values()):.0f} % of it"
+    ]
 
 
 def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
@@ -160,31 +164,23 @@ def respond_exact(machine: Machine, speed: float, drive: bool) -> Response:
     found: list[Response] = []
     for reach in APPROACHES:
         speeds = [speed * share for share in reach]
-        answers = _along(machine, speeds, drive, lambda done: None, brief=False)
-        last = answers[-1]
+        last = _along(machine, speeds, drive, lambda done: None, brief=False)[-1]
         if last is not None and all(abs(_ratio(last, other) - 1) > DIFFERENT for other in found):
             found.append(last)
     if not found:
         return solve_exact(machine, speed, drive).response()
-    louder = max(found, key=_loudness)
-    notes = [_other(louder, other) for other in found if other is not louder]
-    return replace(louder, notes=(*louder.notes, *notes))
 
+    def loudness(answer: Response) -> float:
+        return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
 
-def _loudness(answer: Response) -> float:
-    """Sum of what the gauges read, for comparing answers of one machine."""
-    return sum(float(gauge.displacement.peak_to_peak) for gauge in answer.gauges.values())
-
-
-def _other(louder: Response, other: Response) -> Note:
-    share = 100 * _ratio(louder, other)
-    return Note(
-        to_say(
-            "another steady state at this speed shakes {share} % as much; which of "
-            "them the machine takes depends on the speeds it comes from"
-        ),
-        share=f"{share:.0f}",
+    louder = max(found, key=loudness)
+    said = to_say(
+        "another steady state at this speed shakes {share} % as much; which of "
+        "them the machine takes depends on the speeds it comes from"
     )
+    shares = (100 * _ratio(louder, other) for other in found if other is not louder)
+    notes = (Note(said, share=f"{share:.0f}") for share in shares)
+    return replace(louder, notes=(*louder.notes, *notes))
 
 
 def _along(
@@ -218,10 +214,6 @@ def _patiently(machine: Machine, speed: float, drive: bool) -> Response | None:
         return None
 
 
-def _lifts_off(answer: Response | None) -> bool:
-    return answer is not None and any(mount.lifts_off for mount in answer.mounts.values())
-
-
 def _ratio(first: Response | None, second: Response | None) -> float:
     """How much more the second shakes, at the gauge where they differ most."""
     if first is None or second is None:
@@ -233,17 +225,6 @@ def _ratio(first: Response | None, second: Response | None) -> float:
         if before > 0 and after > 0:
             ratios.append(after / before)
     return max(ratios, key=lambda ratio: max(ratio, 1 / ratio))
-
-
-def _sentences(both: list[tuple[float, float]], count: int) -> list[str]:
-    if not both:
-        return []
-    speeds = [speed for speed, _ in both]
-    least = min(ratio for _, ratio in both)
-    return [
-        f"two steady states at {len(both)} of {count} speeds, {range_shown(speeds)}; the louder "
-        f"one is told, the other shakes down to {100 * least:.0f} % of it"
-    ]
 
 
 def respond(

@@ -57,13 +57,17 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
 
     Those whose order the linkages do not excite in that mode are left out.
     """
-    found = []
+    found: list[tuple[float, float, int, Mode]] = []
     low, high = sorted((abs(slowest), abs(fastest)))
+    orders = linear.wrench(high).orders[1:]
     for number, mode in enumerate(linear.modes, 1):
-        if mode.swings:
-            for order in _orders(linear, mode.natural_frequency, low, high):
-                speed = copysign(mode.natural_frequency / order, fastest)
-                found.append((speed, order, number, mode))
+        rate = mode.natural_frequency
+        # The ends belong to the range, whatever rounding says.
+        inside = (rate >= orders * low * (1 - 1e-12)) & (rate <= orders * high * (1 + 1e-12))
+        found += [
+            (copysign(rate / order, fastest), order, number, mode)
+            for order in map(float, orders[inside & mode.swings])
+        ]
     loud = _loudness(linear, found)
     return sorted(
         (
@@ -73,14 +77,6 @@ def resonances(linear: Linear, slowest: float, fastest: float) -> list[Resonance
         ),
         key=lambda resonance: -abs(resonance.speed),
     )
-
-
-def _orders(linear: Linear, frequency: float, low: float, high: float) -> list[float]:
-    """Orders that meet a frequency between two speeds."""
-    orders = linear.wrench(high).orders[1:]
-    # The ends belong to the range, whatever rounding says.
-    inside = (frequency >= orders * low * (1 - 1e-12)) & (frequency <= orders * high * (1 + 1e-12))
-    return [float(order) for order in orders[inside]]
 
 
 def _loudness(linear: Linear, found: list[tuple[float, float, int, Mode]]) -> list[float]:

@@ -1,6 +1,7 @@
 """The linkages on a support as one: sums at a crank angle, and joint forces on a moving base.
 
-Written for the support's own axes, from its reference point.  With p the place of a link's centre
+Written for the support's own axes, so that the pass over the joints is the same as on solid ground,
+and from its reference point.  With p the place of a link's centre
 of mass and alpha the link's angle there, a prime for the derivative by crank angle, and sums over
 the links of all rows:
 
@@ -10,17 +11,14 @@ the links of all rows:
     drive     E = sum m |p'|^2 + I alpha'^2      with E'
 
 Kinetic energy, momentum and moment of momentum on any moving support follow from these alone.
-
-Joint forces of a machine whose frame moves: what the links' inertia asks for then.
-
-Everything is written in the support's axes, so that the pass over the joints is the same as on
-solid ground.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from functools import reduce
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -95,14 +93,14 @@ def sums(machine: Machine, theta: Array, reference: complex, speed: float) -> Su
     """
     if missing := massless(machine):
         raise MassError(missing)
-    total = None
-    for row in rows_of(machine):
-        motion = move(machine, theta + row.phase, speed, 0.0)
-        here = _of_row(motion, complex(*row.offset) - reference)
-        total = here if total is None else total + here
-    assert total is not None
+    total = reduce(
+        add,
+        (
+            _of_row(move(machine, theta + row.phase, speed, 0.0), complex(*row.offset) - reference)
+            for row in rows_of(machine)
+        ),
+    ).with_shaft(machine.drive.flywheel, 1.0)
     motor = machine.drive.motor
-    total = total.with_shaft(machine.drive.flywheel, 1.0)
     return total if motor is None else total.with_shaft(motor.inertia, motor.ratio)
 
 
@@ -203,15 +201,10 @@ def joint_forces(machine: Machine, ride: BaseMotion, phase: float, offset: compl
     phase, offset : of its row, rad and m.
     """
     motion = move(machine, ride.crank_angle + phase, acceleration=0.0)
-    demands: dict[str, Demand] = {}
-    acting = load_demands(motion), spring_demands(motion)
-    shift = offset - ride.reference
-    for link in machine.links:
-        force, moment = _demand(motion, link, ride, shift)
-        for held in acting:
-            more = held.get(link, (0j, 0.0))
-            force, moment = force + more[0], moment + more[1]
-        demands[link] = (force, moment)
+    demands = {link: _demand(motion, link, ride, offset - ride.reference) for link in machine.links}
+    for acting in (load_demands(motion), spring_demands(motion)):
+        for link, (force, moment) in acting.items():
+            demands[link] = (demands[link][0] + force, demands[link][1] + moment)
     return reactions(replace(motion, whole_cycle=False), demands)
 
 

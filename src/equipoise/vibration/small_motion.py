@@ -1,7 +1,5 @@
 """Small motion of the support: by orders, and with the torque it takes from the drive (54).
 
-Equation (54): small motion of the support with the torque that its motion takes from the drive.
-
     M q.. + C q. + K q = W(theta) - T_r on pitch,   T_r = sum s'(theta) . a_A
 
 W is force and torque on a support that stands still, as in (57), and a_A the acceleration of each
@@ -12,8 +10,9 @@ crank angle, so that it is no linear equation with constant coefficients.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from math import copysign, pi
+from operator import add
 from typing import Any
 
 import numpy as np
@@ -21,7 +20,6 @@ import numpy as np
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.motion import move
-from equipoise.mechanism.support import Gauge
 from equipoise.signals import Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH
 from equipoise.vibration.collocation import Conditions, Rates
@@ -40,23 +38,17 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     """Response of a linear step, by orders."""
     body = linear.body
     moved = linear.motion(speed)
-    gauges = {
-        name: _differentiated(linear.seen_by(body.row(gauge), moved), gauge, speed)
-        for name, gauge in gauges_of(body).items()
-    }
-    mounts, notes = linear_mounts(linear, moved, moved.derivative() * speed, speed)
+    moving = moved.derivative() * speed
+    mounts, notes = _mounts(linear, moved, moving, speed)
     if any(mode.eigenvalue.real > NEUTRAL * mode.natural_frequency for mode in linear.modes):
-        notes.append(
-            Note(
-                to_say("the support falls over by itself: it does not stand in the drawn position")
-            )
-        )
+        said = to_say("the support falls over by itself: it does not stand in the drawn position")
+        notes.append(Note(said))
     return Response(
         body.machine,
         linear.excitation.step,
         speed,
         moved.turns,
-        gauges,
+        _gauges(linear, moved, moving, moving.derivative() * speed),
         mounts,
         linear.modes,
         DriveSignals(_torque(linear, speed)),
@@ -64,7 +56,17 @@ def respond_linear(linear: Linear, speed: float) -> Response:
     )
 
 
-def linear_mounts(
+def _gauges(linear: Linear, *motion: Periodic) -> dict[str, GaugeSignals]:
+    """What gauges read of displacements, velocities and accelerations (D, K + 1)."""
+    found = {}
+    for name, gauge in gauges_of(linear.body).items():
+        row = linear.body.row(gauge)
+        moved, moving, change = (linear.seen_by(row, one) for one in motion)
+        found[name] = GaugeSignals(moved, moving, change, gauge.axis is not None)
+    return found
+
+
+def _mounts(
     linear: Linear, moved: Periodic, moving: Periodic, speed: float
 ) -> tuple[dict[str, MountForce], list[Note]]:
     """Forces of the mounts at small displacements and velocities (D, K + 1); and what to say."""
@@ -74,26 +76,17 @@ def linear_mounts(
         row, preload = linear.body.row(mount), linear.rest.preload[name]
         force = linear.seen_by(row, moved) * -mount.spring
         force = force + linear.seen_by(row, moving) * -mount.damper
+        said = ""
         if not linear.rest.carries(name, mount):
             force, preload = force * 0.0, 0.0
-            notes.append(Note(to_say("{name} does not touch at rest, and is left out"), name=name))
+            said = to_say("{name} does not touch at rest, and is left out")
         elif mount.one_sided and force.extreme(-1)[0] + preload < 0:
-            notes.append(
-                Note(
-                    to_say(
-                        "{name} would have to pull, which it cannot; the model exact lets it go"
-                    ),
-                    name=name,
-                )
-            )
+            said = to_say("{name} would have to pull, which it cannot; the model exact lets it go")
+        if said:
+            notes.append(Note(said, name=name))
         hands_on = exciting if mount.axis is None else exciting[:0]
         mounts[name] = mount_force(force, preload, hands_on)
     return mounts, notes
-
-
-def _differentiated(moved: Periodic, gauge: Gauge, speed: float) -> GaugeSignals:
-    velocity = moved.derivative() * speed
-    return GaugeSignals(moved, velocity, velocity.derivative() * speed, gauge.axis is not None)
 
 
 def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForce:
@@ -116,9 +109,8 @@ def mount_force(varying: Periodic, preload: float, exciting: Array) -> MountForc
 
 def force_amplitudes(linear: Linear, speed: float) -> Array:
     """Amplitude (K + 1,) of the force of all linkages on the frame; 0 where rows cancel."""
-    whole = linear.excitation.at(speed)
-    one = linear.excitation.of_one(speed)
-    sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in (whole, one))
+    signals = (linear.excitation.at(speed), linear.excitation.of_one(speed))
+    sizes, single = (np.linalg.norm(signal.amplitudes[:3], axis=0) for signal in signals)
     rounding = 1e-10 * len(rows_of(linear.body.machine)) * np.max(single[1:], initial=0.0)
     return np.where(sizes > rounding, sizes, 0.0)
 
@@ -127,16 +119,10 @@ def _torque(linear: Linear, speed: float) -> Periodic:
     """Torque on all cranks on solid ground."""
     motion = linear.excitation.motion.at(speed)
     one = Periodic.of(forces(motion).drive_torque, motion.turns)
-    return summed(one.shifted(row.phase) for row in rows_of(linear.body.machine))
+    return reduce(add, (one.shifted(row.phase) for row in rows_of(linear.body.machine)))
 
 
-def summed(signals: Any) -> Periodic:
-    """Sum of one signal or more."""
-    total = None
-    for signal in signals:
-        total = signal if total is None else total + signal
-    assert total is not None
-    return total  # type: ignore[no-any-return]
+# -- with the torque that the motion of the support takes from the drive ---------------------------
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,43 +144,44 @@ class Reduced:
         """Which of surge, heave and pitch."""
         return tuple(IN_PLANE.index(number) for number in self.linear.body.free)
 
-    def rates(self, s: Array) -> Rates:
-        """Derivatives of the states by s, the crank's turning, at s (P,)."""
-        theta = self.sense * s
-        wrench = self.linear.wrench_at(theta, self.speed)
-        pull, inward = self._coupling(theta)
-
-        def rates(states: Array) -> Array:
-            d = len(self.free)
-            found = self._accelerations(wrench, pull, inward, states)
-            return np.concatenate([states[d:], found]) / abs(self.speed)
-
-        return rates
-
     @property
     def sense(self) -> float:
         """1 for a crank that turns counterclockwise, -1 for clockwise."""
         return copysign(1.0, self.speed)
 
-    def accelerations(self, theta: Array, states: Array) -> Array:
-        """Of the free coordinates (D, P) at crank angles (P,), m/s2 and rad/s2."""
-        wrench = self.linear.wrench_at(theta, self.speed)
-        return self._accelerations(wrench, *self._coupling(theta), states)
+    def rates(self, s: Array) -> Rates:
+        """Derivatives of the states by s, the crank's turning, at s (P,)."""
+        accelerations = self.accelerations(self.sense * s)
 
-    def _accelerations(self, wrench: Array, pull: Array, inward: Array, states: Array) -> Array:
-        d = len(self.free)
-        place, rate = states[:d], states[d:]
-        right = wrench.reshape(d, *(1,) * (states.ndim - 2), -1)
-        right = right - np.einsum("ab,b...->a...", self.linear.stiffness, place)
-        right = right - np.einsum("ab,b...->a...", self.linear.damping, rate)
-        mass = np.broadcast_to(self.linear.mass, (*states.shape[1:], d, d)).astype(states.dtype)
-        if PITCH in self.free:
-            k = self.free.index(PITCH)
-            mass = mass.copy()
-            mass[..., k, :] += pull.T
-            right[k] = right[k] + inward * rate[k] ** 2
-        solved = np.linalg.solve(mass, np.moveaxis(right, 0, -1)[..., None])[..., 0]
-        return np.moveaxis(solved, -1, 0)
+        def rates(states: Array) -> Array:
+            moving = states[len(self.free) :]
+            return np.concatenate([moving, accelerations(states)]) / abs(self.speed)
+
+        return rates
+
+    def accelerations(self, theta: Array) -> Rates:
+        """Those of the free coordinates (D, ..., P) in m/s2 and rad/s2, by the states.
+
+        theta : (P,) crank angles.
+        """
+        d, linear = len(self.free), self.linear
+        wrench = linear.wrench_at(theta, self.speed)
+        pull, inward = self._coupling(theta)
+
+        def accelerations(states: Array) -> Array:
+            place, rate = states[:d], states[d:]
+            right = wrench.reshape(d, *(1,) * (states.ndim - 2), -1)
+            right = right - np.einsum("ab,b...->a...", linear.stiffness, place)
+            right = right - np.einsum("ab,b...->a...", linear.damping, rate)
+            mass = np.broadcast_to(linear.mass, (*states.shape[1:], d, d)).astype(states.dtype)
+            if PITCH in self.free:
+                k = self.free.index(PITCH)
+                mass[..., k, :] += pull.T
+                right[k] = right[k] + inward * rate[k] ** 2
+            solved = np.linalg.solve(mass, np.moveaxis(right, 0, -1)[..., None])[..., 0]
+            return np.moveaxis(solved, -1, 0)
+
+        return accelerations
 
     def _coupling(self, theta: Array) -> tuple[Array, Array]:
         """T_r = pull (D, P) . q.. - inward (P,) * pitch.^2."""
@@ -216,37 +203,27 @@ class Reduced:
 def respond_coupled(linear: Linear, speed: float) -> Response:
     """Response by (54)."""
     system = Reduced(linear, speed)
-    moved = linear.motion(speed)
+    rough = linear.motion(speed).upto(ROUGH)
 
     def guess(s: Array) -> Array:
-        theta, rough = system.sense * s, moved.upto(ROUGH)
+        theta = system.sense * s
         return np.concatenate([rough.values(theta), (rough.derivative() * speed).values(theta)])
 
-    turns = moved.turns
+    turns = rough.turns
     found = steady(system, [guess], turns, Conditions.periodic(system.count))
     theta = np.arange(SAMPLES * turns) * (2 * pi / SAMPLES)
     states = found.orbit.at(np.mod(system.sense * theta, 2 * pi * turns))
-    d = len(states) // 2
-    accelerations = system.accelerations(theta, states)
-    parts = [Periodic.of(part, turns) for part in (states[:d], states[d:], accelerations)]
-    body = linear.body
-    rows = {name: (body.row(gauge), gauge.axis) for name, gauge in gauges_of(body).items()}
-    gauges = {
-        name: GaugeSignals(
-            linear.seen_by(row, parts[0]),
-            linear.seen_by(row, parts[1]),
-            linear.seen_by(row, parts[2]),
-            axis is not None,
-        )
-        for name, (row, axis) in rows.items()
-    }
+    moved, moving, change = (
+        Periodic.of(part, turns)
+        for part in (*np.split(states, 2), system.accelerations(theta)(states))
+    )
     multipliers = found.multipliers(system.count)
     plain = respond_linear(linear, speed)
     return replace(
         plain,
         model="coupled",
-        gauges=gauges,
-        mounts=linear_mounts(linear, parts[0], parts[1], speed)[0],
+        gauges=_gauges(linear, moved, moving, change),
+        mounts=_mounts(linear, moved, moving, speed)[0],
         residual=found.residual,
         multipliers=multipliers,
         notes=(*plain.notes, *in_words(multipliers)),

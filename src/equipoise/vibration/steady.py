@@ -279,12 +279,9 @@ def motor_setting(machine: Machine, speed: float) -> tuple[float, float]:
     motor = machine.drive.motor
     assert motor is not None
     sense = float(np.sign(speed))
-    own = speed_at(motor, sense * _mean_torque(machine, speed) / motor.ratio)
+    of_row = forces(move(machine, SAMPLES, speed, 0.0)).drive_torque
+    torque = float(np.mean(of_row)) * len(rows_of(machine))
+    own = speed_at(motor, sense * torque / motor.ratio)
     if motor.mean_speed == "free":
         return sense * own / motor.ratio, 0.0
     return speed, motor.ratio * abs(speed) - own
-
-
-def _mean_torque(machine: Machine, speed: float) -> float:
-    found = forces(move(machine, SAMPLES, speed, 0.0))
-    return float(np.mean(found.drive_torque)) * len(rows_of(machine))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -36,10 +37,10 @@ SPEEDS = 200
 MOST_SPEEDS = 20_000
 NEAR = (-8.0, -4.0, -2.0, -1.0, -0.5, -0.2, 0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 8.0)
 """Speeds about a resonance, in damping ratios of its mode: a peak is as wide as two."""
-TOLD = ("peak_to_peak", "rms")
-MOUNT = (*TOLD, "transmissibility", "lifts_off")
-QUANTITIES = ("", "velocity_", "acceleration_")
 MOST_RESONANCES = 60
+TOLD = ("peak_to_peak", "rms")
+PREFIXES = {"displacement": "", "velocity": "velocity_", "acceleration": "acceleration_"}
+"""Of the figures of a gauge's displacement and of its derivatives."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +57,14 @@ class GaugeCurve:
     """(S, K + 1) amplitude of the displacement's orders."""
     rotation: bool
 
+    def to_dict(self) -> Values:
+        """Figures of the displacement, and below them those of its derivatives."""
+        values: Values = {"quantity": "rotation" if self.rotation else "displacement"}
+        for name, prefix in PREFIXES.items():
+            figures = {key: _plain(getattr(self, prefix + key)) for key in TOLD}
+            values |= {name: figures} if prefix else figures
+        return values | {"harmonics": _plain(self.harmonics)}
+
 
 @dataclass(frozen=True, eq=False)
 class MountCurve:
@@ -66,6 +75,10 @@ class MountCurve:
     transmissibility: Array
     lifts_off: Array
     torsional: bool
+
+    def to_dict(self) -> Values:
+        """Its curves by name."""
+        return {name: _plain(one) for name, one in vars(self).items() if name != "torsional"}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -92,19 +105,24 @@ class Sweep(Result):
     @cached_property
     def peaks(self) -> Mapping[str, list[tuple[float, float]]]:
         """Speed and value of the highest points of each gauge's peak-to-peak curve."""
-        return {name: _tops(self.speed, curve.peak_to_peak) for name, curve in self.gauges.items()}
+        found = {}
+        for name, curve in self.gauges.items():
+            values = curve.peak_to_peak
+            inner = (values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])
+            tops = [(float(self.speed[k]), float(values[k])) for k in np.flatnonzero(inner) + 1]
+            found[name] = sorted(tops, key=lambda top: -top[1])
+        return found
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values (S,) of every figure; NaN where there is none."""
         found: list[tuple[str, str, Array]] = [("speed", "rad/s", self.speed)]
         for name, curve in self.gauges.items():
             unit = "rad" if curve.rotation else "m"
-            units = ("", unit), ("velocity_", f"{unit}/s"), ("acceleration_", f"{unit}/s^2")
-            found += [
-                (f"gauges.{name}.{quantity}{figure}", unit, getattr(curve, f"{quantity}{figure}"))
-                for quantity, unit in units
-                for figure in TOLD
-            ]
+            for prefix, per in zip(PREFIXES.values(), ("", "/s", "/s^2"), strict=True):
+                found += [
+                    (f"gauges.{name}.{prefix}{figure}", unit + per, getattr(curve, prefix + figure))
+                    for figure in TOLD
+                ]
         for name, mount in self.mounts.items():
             unit = "N m" if mount.torsional else "N"
             found += [(f"mounts.{name}.{key}", unit, getattr(mount, key)) for key in TOLD]
@@ -118,11 +136,8 @@ class Sweep(Result):
             "title": self.machine.title,
             "model": self.model,
             "speed": self.speed,
-            "gauges": {name: _gauge(curve) for name, curve in self.gauges.items()},
-            "mounts": {
-                name: {key: _plain(getattr(curve, key)) for key in MOUNT}
-                for name, curve in self.mounts.items()
-            },
+            "gauges": {name: curve.to_dict() for name, curve in self.gauges.items()},
+            "mounts": {name: curve.to_dict() for name, curve in self.mounts.items()},
             "modes": [mode.to_dict() for mode in self.modes],
             "resonances": [resonance.speed for resonance in self.resonances],
             "resonance_map": [resonance.to_dict() for resonance in self.resonances],
@@ -135,20 +150,11 @@ class Sweep(Result):
         return values
 
 
-def _gauge(curve: GaugeCurve) -> Values:
-    values: Values = {"quantity": "rotation" if curve.rotation else "displacement"}
-    values |= {key: _plain(getattr(curve, key)) for key in TOLD}
-    for name in ("velocity", "acceleration"):
-        values[name] = {key: _plain(getattr(curve, f"{name}_{key}")) for key in TOLD}
-    values["harmonics"] = _plain(curve.harmonics)
-    return values
-
-
 def _plain(values: Array) -> list[Any]:
     """As lists, with None for what is not a number."""
-    if values.ndim > 1:
-        return [_plain(row) for row in values]
-    return [value if np.isfinite(value) else None for value in values.tolist()]
+    found = values.astype(object)
+    found[~np.isfinite(values)] = None
+    return list(found.tolist())
 
 
 def sweep_speed(
@@ -244,29 +250,22 @@ def _noted(grid: Array, answers: list[Response | None]) -> Iterator[Note | str]:
     where: dict[str, list[tuple[float, Note | str]]] = {}
     for speed, answer in zip(grid.tolist(), answers, strict=True):
         for note in () if answer is None else answer.notes:
-            # Notes that differ in a number only are one.
-            kind = _kind(note)
-            where.setdefault(kind, []).append((speed, note))
+            where.setdefault(_kind(note), []).append((speed, note))
     for found in where.values():
-        speeds = [speed for speed, _ in found]
-        everywhere = len(found) == len(grid)
         note = found[0][1]
-        if everywhere:
-            yield note
-        else:
-            yield Note(to_say("{speeds}: {note}"), speeds=range_shown(speeds), note=note)
+        if len(found) < len(grid):
+            speeds = range_shown([speed for speed, _ in found])
+            note = Note(to_say("{speeds}: {note}"), speeds=speeds, note=note)
+        yield note
 
 
 def _kind(note: Note | str) -> str:
     """The same for notes that differ in numbers only."""
     if isinstance(note, str):
         return note
-    words = (str(value) for value in note.values.values())
-    return "/".join([note.template, *(word for word in words if not _is_number(word))])
-
-
-def _is_number(word: str) -> bool:
-    return word.replace(".", "").replace("-", "").isdigit()
+    words = map(str, note.values.values())
+    is_number = re.compile(r"[\d.-]*\d[\d.-]*").fullmatch
+    return "/".join([note.template, *(word for word in words if not is_number(word))])
 
 
 def _gathered(
@@ -278,58 +277,54 @@ def _gathered(
     met: list[Resonance],
     notes: tuple[Note | str, ...],
 ) -> Sweep:
-    first = next(answer for answer in answers if answer is not None)
+    there = np.array([answer is not None for answer in answers])
+    found = [answer for answer in answers if answer is not None]
+    stable = there.copy()
+    stable[there] = [answer.stable is not False for answer in found]
     return Sweep(
         machine,
         model,
         grid,
-        {name: _curve(name, answers, first) for name in first.gauges},
-        {name: _mount_curve(name, answers, first) for name in first.mounts},
+        {name: _gauge_curve(name, found, there) for name in found[0].gauges},
+        {name: _mount_curve(name, found, there) for name in found[0].mounts},
         linear.modes,
         tuple(met),
-        np.array([np.nan if a is None else a.drive.fluctuation for a in answers]),
-        np.array([a is not None and a.stable is not False for a in answers]),
+        _spread(there, np.array([answer.drive.fluctuation for answer in found])),
+        stable,
         (*notes, *_noted(grid, answers)),
     )
 
 
-def _curve(name: str, answers: list[Response | None], first: Response) -> GaugeCurve:
-    gauges = [None if answer is None else answer.gauges[name] for answer in answers]
-    columns, sizes = [], np.empty(0)
-    for kind in ("displacement", "velocity", "acceleration"):
-        there, signal = _together([None if g is None else getattr(g, kind) for g in gauges])
-        columns += [_spread(there, signal.peak_to_peak), _spread(there, signal.vibration_rms)]
-        if kind == "displacement":
-            sizes = _spread(there, signal.sizes)
-    keys = [f"{quantity}{figure}" for quantity in QUANTITIES for figure in TOLD]
-    curves = dict(zip(keys, columns, strict=True))
-    return GaugeCurve(**curves, harmonics=sizes, rotation=first.gauges[name].rotation)
+def _gauge_curve(name: str, found: list[Response], there: Array) -> GaugeCurve:
+    gauges = [answer.gauges[name] for answer in found]
+    curves = {}
+    for quantity, prefix in PREFIXES.items():
+        signal = _together([getattr(gauge, quantity) for gauge in gauges])
+        curves[f"{prefix}peak_to_peak"] = _spread(there, signal.peak_to_peak)
+        curves[f"{prefix}rms"] = _spread(there, signal.vibration_rms)
+        if quantity == "displacement":
+            curves["harmonics"] = _spread(there, signal.sizes)
+    return GaugeCurve(**curves, rotation=gauges[0].rotation)
 
 
-def _mount_curve(name: str, answers: list[Response | None], first: Response) -> MountCurve:
-    mounts = [None if answer is None else answer.mounts[name] for answer in answers]
-    there, force = _together([None if mount is None else mount.force for mount in mounts])
-    found = [mount for mount in mounts if mount is not None]
-    smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in found])
-    values = (
-        force.extreme(1)[0] - smallest,
-        force.vibration_rms,
-        np.array([mount.whole for mount in found]),
-        np.array([mount.lifts_off for mount in found]),
+def _mount_curve(name: str, found: list[Response], there: Array) -> MountCurve:
+    mounts = [answer.mounts[name] for answer in found]
+    force = _together([mount.force for mount in mounts])
+    smallest = np.maximum(force.extreme(-1)[0], [mount.least for mount in mounts])
+    return MountCurve(
+        _spread(there, force.extreme(1)[0] - smallest),
+        _spread(there, force.vibration_rms),
+        _spread(there, np.array([mount.whole for mount in mounts])),
+        _spread(there, np.array([mount.lifts_off for mount in mounts])),
+        mounts[0].torsional,
     )
-    curves = dict(zip(MOUNT, (_spread(there, value) for value in values), strict=True))
-    return MountCurve(**curves, torsional=first.mounts[name].torsional)
 
 
-def _together(signals: list[Periodic | None]) -> tuple[Array, Periodic]:
-    """Where (S,) there are signals, and these as one, amplitudes (there, K + 1)."""
-    there = np.array([signal is not None for signal in signals])
-    found = [signal for signal in signals if signal is not None]
-    count = max(signal.amplitudes.shape[-1] for signal in found)
-    amplitudes = np.zeros((len(found), count), complex)
-    for row, signal in zip(amplitudes, found, strict=True):
-        row[: signal.amplitudes.shape[-1]] = signal.amplitudes
-    return there, Periodic(amplitudes, found[0].turns)
+def _together(signals: list[Periodic]) -> Periodic:
+    """Signals as one, amplitudes (signals, K + 1)."""
+    count = max(len(signal.amplitudes) for signal in signals)
+    padded = [np.pad(one.amplitudes, (0, count - len(one.amplitudes))) for one in signals]
+    return Periodic(np.array(padded), signals[0].turns)
 
 
 def _spread(there: Array, values: Array) -> Array:
@@ -337,9 +332,3 @@ def _spread(there: Array, values: Array) -> Array:
     found = np.full((len(there), *values.shape[1:]), np.nan)
     found[there] = values
     return found
-
-
-def _tops(speed: Array, values: Array) -> list[tuple[float, float]]:
-    inner = np.flatnonzero((values[1:-1] > values[:-2]) & (values[1:-1] >= values[2:])) + 1
-    found = [(float(speed[k]), float(values[k])) for k in inner]
-    return sorted(found, key=lambda top: -top[1])

@@ -62,16 +62,16 @@ class Transient(Result):
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values (M,) of every signal."""
-        found = [
+        return [
             ("time", "s", self.time),
             ("crank_angle", "rad", self.crank_angle),
             ("crank_speed", "rad/s", self.crank_speed),
+            *((f"gauges.{n}.displacement", self.unit(n), y) for n, y in self.gauges.items()),
+            *(
+                (f"mounts.{name}.force", "N" if self.along(name) else "N m", force)
+                for name, force in self.mounts.items()
+            ),
         ]
-        for name, values in self.gauges.items():
-            found.append((f"gauges.{name}.displacement", self.unit(name), values))
-        for name, force in self.mounts.items():
-            found.append((f"mounts.{name}.force", "N" if self.along(name) else "N m", force))
-        return found
 
     def along(self, mount: str) -> bool:
         """Whether a mount pushes along a line, instead of turning back."""

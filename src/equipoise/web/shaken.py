@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from math import isfinite
 from typing import Any
 
-import numpy as np
-
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
@@ -17,6 +15,7 @@ from equipoise.quantities import display, in_unit
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
+from equipoise.web.charts import chart, gauge_choice
 from equipoise.web.edits import Solved
 from equipoise.web.figures import text_of
 from equipoise.web.state import Block
@@ -44,7 +43,7 @@ def response_of(machine: Machine) -> tuple[Values, bytes] | None:
     try:
         found = respond(machine)
     except EquipoiseError as error:
-        return {"gauges": [], "arrays": {}, "notes": [str(error)]}, b""
+        return {"charts": [], "arrays": {}, "notes": [str(error)]}, b""
     return _told(found, block), block.data
 
 
@@ -62,22 +61,15 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
     block = Block()
     content = _told(found, block)
     block.add("sweep.speed", curves.speed)
-    of = []
+    choices: list[Values] = []
     for name, curve in curves.gauges.items():
         array = f"sweep.{name}"
         block.add(array, curve.peak_to_peak)
-        told = _gauge(name, f"{name}, peak to peak", curve.rotation)
-        of.append(told | {"array": array})
-    resonances = [{"speed": one.speed, "order": one.order} for one in curves.resonances]
+        label = f"{_spoken(name)} against speed, peak to peak"
+        choices.append(gauge_choice(name, label, curve.rotation, array))
     rpm = in_unit("rpm")
-    content["sweep"] = {
-        "speeds": "sweep.speed",
-        "of": of,
-        "own": found.speed,
-        "unit": rpm.name,
-        "factor": rpm.factor,
-        "resonances": resonances,
-    }
+    over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
+    content["charts"].append(chart("sweep", choices, x=over))
     content["arrays"] = block.told
     return content, block.data
 
@@ -85,20 +77,18 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
 def _told(found: Response, block: Block) -> Values:
     """Displacements against the crank angle, which runs as the crank does."""
     count = SAMPLES * found.turns
-    block.add("response.angle", np.arange(count) * (2 * np.pi / SAMPLES))
-    gauges = []
+    choices: list[Values] = []
     for name, gauge in found.gauges.items():
-        values = gauge.displacement.samples(count)
-        block.add(f"response.{name}", values)
-        told = _gauge(name, name, gauge.rotation)
-        gauges.append(told | {"peak_to_peak": float(np.ptp(values))})
-    return {"gauges": gauges, "arrays": block.told, "notes": list(map(str, found.notes))}
+        array = f"response.{name}"
+        block.add(array, gauge.displacement.samples(count))
+        label = f"response of {_spoken(name)}"
+        choices.append(gauge_choice(name, label, gauge.rotation, array))
+    charts = [chart("response", choices, chooser="Response of")]
+    return {"charts": charts, "arrays": block.told, "notes": list(map(str, found.notes))}
 
 
-def _gauge(name: str, label: str, rotation: bool) -> Values:
-    """What a gauge is called, and the unit in which the page shows it."""
-    shown = in_unit("mrad" if rotation else "mm")
-    return {"name": name, "label": label, "unit": shown.name, "factor": shown.factor}
+def _spoken(name: str) -> str:
+    return name.replace("_", " ")
 
 
 class OutdatedError(Exception):

@@ -18,6 +18,7 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
+from equipoise.web.charts import charts_of, least_of
 from equipoise.web.edits import Solved, movable
 from equipoise.web.figures import figures_of, signals_of
 
@@ -107,6 +108,8 @@ def state_of(
             for one in analysis.outputs
             for shown in [display(one.dimension)]
         ],
+        "charts": charts_of(analysis, signals),
+        "least": least_of(signals),
         "orders": _orders(analysis),
         "notes": [massless(machine)] if analysis.solved is None else [],
         "before": before is not None,

@@ -8,8 +8,9 @@ import pytest
 
 from equipoise.errors import ModelError
 from equipoise.schema.studies import load_study
-from equipoise.schema.study_units import Unit, units_of
+from equipoise.schema.study_units import unit_named, units_of
 from equipoise.schema.template import Template
+from equipoise.studies.blocks import Unit
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.study import Study
 
@@ -83,5 +84,5 @@ def test_a_study_made_in_python() -> None:
 
 
 def test_shares() -> None:
-    assert Unit.of("%").of_si(0.8) == pytest.approx(80)
-    assert Unit.of("") == Unit()
+    assert unit_named("%").of_si(0.8) == pytest.approx(80)
+    assert unit_named("") == Unit()

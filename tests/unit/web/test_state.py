@@ -66,8 +66,11 @@ def test_a_machine_on_a_support_tells_its_response() -> None:
     session, _ = opened("yamashita-rig")
     _, _, reply = ask(session, "ready")
     found = eq.respond(eq.load("yamashita-rig"))
-    (gauge,) = reply.content["gauges"]
-    offset, length = reply.content["arrays"][f"response.{gauge['name']}"]
+    (drawn,) = reply.content["charts"]
+    (gauge,) = drawn["choices"]
+    (curve,) = gauge["curves"]
+    assert (gauge["unit"], gauge["factor"]) == ("mm", 1e3)
+    offset, length = reply.content["arrays"][curve["array"]]
     sent = np.frombuffer(reply.buffer, "<f4")[offset : offset + length]
     wanted = found.gauges[gauge["name"]].displacement.samples(length)
     np.testing.assert_allclose(sent, wanted, atol=1e-6 * np.max(np.abs(wanted)))
@@ -107,3 +110,30 @@ def test_numbers_are_written_as_everywhere() -> None:
     assert units["drive_torque"] == "N m" and units["joints.C"] == "N"
     (hello, *_) = ask(session, "ready")
     assert hello.content["numbers"] == display_rules()
+
+
+def test_charts_are_those_of_the_outputs() -> None:
+    """Every chart draws arrays that are there, with label and unit of the output that it shows."""
+    _, shown = opened("four-row-transplanter")
+    outputs = {one["name"]: one for one in shown.content["outputs"]}
+    drawn = {}
+    for chart in shown.content["charts"]:
+        for choice in chart["choices"]:
+            arrays = [curve["array"] for curve in choice["curves"]]
+            assert set(arrays) <= set(shown.content["arrays"])
+            drawn[(chart["name"], choice["of"], choice["name"])] = choice
+            if chart["name"] not in ("spectrum", "joint"):
+                output = outputs[f"{choice['of']}{choice['name']}"]
+                assert choice["label"].lower() == output["label"].lower()
+                assert choice["unit"] == output["unit"]
+    assert {"x", "y"} == {
+        curve["label"] for curve in drawn["shaking_force", "rows.", "shaking_force"]["curves"]
+    }
+    assert ("roll_moment", "rows.", "roll_moment") in drawn  # which one row by itself has not
+    assert ("roll_moment", "", "roll_moment") not in drawn
+    assert drawn["joint", None, "joint.A"]["label"] == "One row: force in joint A"
+    whole = drawn["spectrum", "rows.", "shaking_force"]
+    assert whole["label"] == "All rows: shaking force, by order"
+    assert [curve["array"] for curve in whole["curves"]] == [
+        "spectrum.rows.shaking_force.x", "spectrum.rows.shaking_force.y"
+    ]  # fmt: skip
