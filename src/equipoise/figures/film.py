@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.figures.moving import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import Arrow, check_seconds, check_width
@@ -103,7 +103,7 @@ def mp4(
     ------
     UsageError : as in `gif`, or the extra is missing.
     """
-    av = _library()
+    av = needed("av", "a film as MP4")
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
     drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
     whole = _in_a_cycle(drawn)
@@ -128,19 +128,6 @@ def mp4(
 def in_a_turn(kind: str, seconds: float) -> int:
     """Frames in a turn of the crank that takes some seconds."""
     return max(1, round(seconds * RATES[kind]))
-
-
-def _library() -> Any:
-    try:
-        import av
-    except ModuleNotFoundError as error:
-        if error.name != "av":
-            raise
-        raise UsageError(
-            "a film as MP4 needs av, which is not installed; install it with: "
-            'pip install "equipoise[video]"'
-        ) from error
-    return av
 
 
 def _prepared(
