@@ -175,7 +175,7 @@ def test_the_response_of_a_rig_is_shown(live: Live) -> None:
 
 
 def test_what_was_done_outlives_a_reload(live: Live) -> None:
-    """The machine, and what can be undone and done again, are there after the page is loaded anew."""
+    """The machine is there after the page is loaded anew, with what can be undone and redone."""
     live.type(live.field("drive speed"), "150 rpm")
     live.type(live.field("crank mass"), "333 g")
     expect(live.button("Undo")).to_be_enabled()
