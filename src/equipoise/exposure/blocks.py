@@ -62,16 +62,11 @@ def weighted_blocks(weighted: Weighted) -> Iterator[Block]:
     for at, axis in enumerate(weighted.axes):
         before = None if weighted.a_h is None else Value(float(weighted.a_h[at]))
         rows.append((axis, before, Value(float(weighted.a_hw[at]))))
+    total = say("total value a_hv, root of the sum of squares")
     if weighted.single_axis:
         total = say("total value a_hv, 1.7 times the largest")
-    else:
-        total = say("total value a_hv, root of the sum of squares")
     rows.append((total, None, Value(weighted.a_hv)))
-    columns = (
-        Column(say("axis")),
-        Column(say("RMS"), "acceleration", "m/s^2"),
-        Column(say("weighted RMS"), "acceleration", "m/s^2"),
-    )
+    columns = (Column(say("axis")), _acceleration(say("RMS")), _acceleration(say("weighted RMS")))
     yield Table(say("Acceleration, weighted by Wh of ISO 5349-1"), columns, tuple(rows))
     if weighted.dominant_band is not None:
         yield Text(
@@ -88,7 +83,7 @@ def weighted_blocks(weighted: Weighted) -> Iterator[Block]:
 
 def times_blocks(tools: Sequence[tuple[str, float]]) -> Iterator[Block]:
     """How long a day one may work with each tool: names, and vibration total values in m/s2."""
-    columns = (Column(""), Column("a_hv", "acceleration", "m/s^2"), *_allowed())
+    columns = (Column(""), _acceleration("a_hv"), *_allowed())
     rows = tuple(
         (shortened(name), Value(a_hv), *_hours(WorkingTimes(a_hv))) for name, a_hv in tools
     )
@@ -109,7 +104,7 @@ def told_blocks(
 
 def exposure_blocks(day: Exposure) -> Iterator[Block]:
     """A day's exposure, and what it means in plain words."""
-    yield day_table(day)
+    yield _tasks(day)
     above = day.verdict != "below the action value"
     yield Text(
         say(
@@ -133,6 +128,10 @@ def exposure_blocks(day: Exposure) -> Iterator[Block]:
     yield Text(text)
 
 
+def _acceleration(label: str) -> Column:
+    return Column(label, "acceleration", "m/s^2")
+
+
 def _allowed() -> tuple[Column, ...]:
     """Columns of hours: until action and limit value, and by the Japanese guideline."""
     labels = (say("to action"), say("to limit"), say("in Japan"))
@@ -144,7 +143,7 @@ def _hours(times: WorkingTimes) -> tuple[Cell, ...]:
     return tuple(say("over 24") if time > DAY else Value(time / 3600) for time in allowed)
 
 
-def day_table(day: Exposure) -> Table:
+def _tasks(day: Exposure) -> Table:
     """Every task with its part of the day, and how long a day one may do it alone."""
     rows: list[tuple[Cell, ...]] = [
         (
@@ -158,21 +157,14 @@ def day_table(day: Exposure) -> Table:
         for task in day.tasks
     ]
     if len(rows) > 1:
-        rows.append(
-            (
-                say("all of them"),
-                Value(day.a_hv),
-                Value(day.duration / 3600),
-                Value(day.a8, broken=day.verdict == "above the limit value"),
-                Value(100.0, after=0),
-                *_hours(day.times),
-            )
-        )
+        whole = Value(day.a8, broken=day.verdict == "above the limit value")
+        cells = (Value(day.a_hv), Value(day.duration / 3600), whole, Value(100.0, after=0))
+        rows.append((say("all of them"), *cells, *_hours(day.times)))
     columns = (
         Column(say("task")),
-        Column("a_hv", "acceleration", "m/s^2"),
+        _acceleration("a_hv"),
         Column(say("time"), unit="h"),
-        Column("A_i(8)", "acceleration", "m/s^2"),
+        _acceleration("A_i(8)"),
         Column(say("share"), unit="%"),
         *_allowed(),
     )
@@ -185,18 +177,15 @@ def _helps(day: Exposure) -> Iterator[str]:
     times = day.times
     if times.to_action > DAY:
         return
-    reached = {"action": clock(times.to_action), "limit": clock(times.to_limit)}
-    if len(day.tasks) == 1:
-        yield say(
-            "This work reaches the action value after {action}, the limit value after {limit}.",
-            **reached,
-        )
-    else:
-        yield say(
+    template = to_say(
+        "This work reaches the action value after {action}, the limit value after {limit}."
+    )
+    if len(day.tasks) > 1:
+        template = to_say(
             "This mix of work reaches the action value after {action}, the limit value after "
-            "{limit}.",
-            **reached,
+            "{limit}."
         )
+    yield say(template, action=clock(times.to_action), limit=clock(times.to_limit))
     if day.verdict != "below the action value":
         yield say(
             "In the same {time} a vibration of {enough} m/s² instead of {now} m/s² would stay at "
@@ -209,16 +198,15 @@ def _helps(day: Exposure) -> Iterator[str]:
 
 def _white_fingers(day: Exposure) -> str:
     years = f"{day.years:.1f}" if day.years <= 100 else say("more than {years}", years=100)
-    if day.extrapolated:
-        return say(
-            "White fingers in 10 % of those so exposed after {years} years (ISO 5349-1, Annex C, "
-            "beyond its Table C.1)",
-            years=years,
-        )
-    return say(
-        "White fingers in 10 % of those so exposed after {years} years (ISO 5349-1, Annex C)",
-        years=years,
+    template = to_say(
+        "White fingers in 10 % of those so exposed after {years} years (ISO 5349-1, Annex C)"
     )
+    if day.extrapolated:
+        template = to_say(
+            "White fingers in 10 % of those so exposed after {years} years (ISO 5349-1, Annex C, "
+            "beyond its Table C.1)"
+        )
+    return say(template, years=years)
 
 
 def clock(time: float) -> str:

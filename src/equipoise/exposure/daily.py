@@ -51,11 +51,6 @@ def partial_exposure(a_hv: float, duration: float) -> float:
     return a_hv * sqrt(duration / EIGHT_HOURS)
 
 
-def together(partial: Iterable[float]) -> float:
-    """A(8), m/s2, of partial exposures, m/s2."""
-    return sqrt(sum(part**2 for part in partial))
-
-
 def years_to_white_finger(a8: float) -> float:
     """D_y: years of exposure after which 10 % of a group have white fingers; A(8) in m/s2."""
     return 31.8 * a8**-1.06 if a8 > 0 else inf
@@ -93,8 +88,6 @@ def equivalent(idling: float, racing: float) -> float:
     return sqrt((idling**2 + racing**2) / 2)
 
 
-COUNTERMEASURE, JAPANESE_LIMIT = 2.5, 5.0
-"""m/s2, of A(8): the countermeasure value and the limit value of a day."""
 HOURS, LONGEST = 200.0, 7200.0
 """T a^2 in h (m/s2)^2, and the longest time a day, s."""
 
@@ -204,7 +197,7 @@ class Exposure(Result):
     @property
     def a8(self) -> float:
         """A(8), m/s2."""
-        return together(task.partial for task in self.tasks)
+        return sqrt(sum(task.partial**2 for task in self.tasks))
 
     @property
     def a_hv(self) -> float:
@@ -243,7 +236,18 @@ class Exposure(Result):
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units; None where there is no end to a time."""
         return {
-            "tasks": [self._task(task) for task in self.tasks],
+            "tasks": [
+                {
+                    "name": task.name,
+                    "a_hv": task.acceleration,
+                    "duration": task.duration,
+                    "partial": task.partial,
+                    "share": self.share(task),
+                    "points": points(task.partial),
+                    **task.times.to_dict(),
+                }
+                for task in self.tasks
+            ],
             "duration": self.duration,
             "a_hv": self.a_hv,
             "a8": self.a8,
@@ -255,17 +259,6 @@ class Exposure(Result):
             **self.times.to_dict(),
             "years_to_white_finger": _finite(self.years),
             "years_extrapolated": self.extrapolated,
-        }
-
-    def _task(self, task: Task) -> dict[str, Any]:
-        return {
-            "name": task.name,
-            "a_hv": task.acceleration,
-            "duration": task.duration,
-            "partial": task.partial,
-            "share": self.share(task),
-            "points": points(task.partial),
-            **task.times.to_dict(),
         }
 
 

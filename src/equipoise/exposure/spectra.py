@@ -120,8 +120,7 @@ class Signal:
 def fade(count: int, rate: float) -> Array:
     """Share (count,) by which samples count: sines squared at both ends, 1 between them."""
     from_end = (np.minimum(np.arange(count), np.arange(count)[::-1]) + 0.5) / rate
-    share: Array = np.sin(np.pi / 2 * np.minimum(from_end / FADE, 1.0)) ** 2
-    return share
+    return np.asarray(np.sin(np.pi / 2 * np.minimum(from_end / FADE, 1.0)) ** 2)
 
 
 def signal(time: Any, acceleration: Any, periodic: bool = False) -> Signal:
@@ -232,10 +231,9 @@ def weigh_spectrum(
     if lines[0] < 0:
         raise UsageError(f"frequency: got {lines[0]:g} Hz; give frequencies of 0 or more")
     squares = amplitudes("acceleration", acceleration, len(lines)) ** 2
-    notes = tuple(_on_bands(lines, bands))
-    if bands:
-        return _weigh("bands", exact_middles(lines), squares, axes, single_axis, weighted, notes)
-    return _weigh("spectrum", lines, squares, axes, single_axis, weighted, notes)
+    kind: Kind = "bands" if bands else "spectrum"
+    middles = exact_middles(lines) if bands else lines
+    return _weigh(kind, middles, squares, axes, single_axis, weighted, _on_bands(lines, bands))
 
 
 def weigh_orders(
@@ -282,7 +280,8 @@ def _weigh(
     notes: Iterable[str] = (),
 ) -> Weighted:
     """Of mean squares (axes, K), (m/s2)^2, at frequencies (K,), Hz."""
-    names, count = AXES[: len(squares)] if axes is None else tuple(axes), len(squares)
+    count = len(squares)
+    names = AXES[:count] if axes is None else tuple(axes)
     if len(names) != count or len(set(names)) != count:
         raise UsageError(f"axes: got {', '.join(names)}; give a name to each of {count} axes")
     if single_axis and count == len(AXES):

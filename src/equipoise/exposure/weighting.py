@@ -1,7 +1,5 @@
 """The frequency weighting Wh of ISO 5349-1, Annex A, exactly; its bands, and weighted vibration.
 
-The frequency weighting Wh of hand-transmitted vibration, exactly: ISO 5349-1, Annex A.
-
 Analog filters in series, with s = i f where f is the frequency in Hz:
 
     high pass       s^2 / (s^2 + s f1/Q1 + f1^2)
@@ -186,12 +184,11 @@ def exact_middles(frequency: Array) -> Array:
     with np.errstate(divide="ignore"):
         number = 10 * np.log10(frequency)
     nearest = np.clip(np.nan_to_num(np.rint(number)), NUMBERS[0], NUMBERS[-1])
-    for given, wrong in zip(frequency, np.abs(number - nearest) > NEAR, strict=True):
-        if wrong:
-            raise UsageError(
-                f"frequency: got {given:g} Hz; give middles of one-third-octave bands, 6.3, 8, 10, "
-                "12.5 Hz and so on to 1250 Hz"
-            )
+    for given in frequency[np.abs(number - nearest) > NEAR]:
+        raise UsageError(
+            f"frequency: got {given:g} Hz; give middles of one-third-octave bands, 6.3, 8, 10, "
+            "12.5 Hz and so on to 1250 Hz"
+        )
     middles: Array = 10 ** (nearest / 10)
     return middles
 

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from equipoise.handheld.model import PLANES
+from equipoise.handheld.response import rms_over_time
 from equipoise.i18n import Note, say, to_say
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.blocks import (
@@ -61,12 +62,14 @@ def column(label: str, dimension: Dimension, at: tuple[Dimension, str] = RPM) ->
     return Column(label, dimension, UNITS.get(dimension), at)
 
 
+def rpm(speed: float) -> str:
+    """A speed, rad/s, as it stands in a text."""
+    return number(speed / PER_RPM)
+
+
 def ends_told(speed: Array) -> dict[str, str]:
     """The ends of a range of speeds, rpm, as values of a text."""
-    return {
-        "low": number(float(speed[0]) / PER_RPM),
-        "high": number(float(speed[-1]) / PER_RPM),
-    }
+    return {"low": rpm(float(speed[0])), "high": rpm(float(speed[-1]))}
 
 
 # -- the tool --------------------------------------------------------------------------------------
@@ -138,19 +141,13 @@ def unbounded(tool: Tool) -> Iterator[Block]:
 
 def modes_blocks(found: ToolModes) -> Iterator[Block]:
     """Natural frequencies, eigenvalues with damping, and points that stand still."""
-    for name, plane in _planes(found):
+    names = [say("both planes")] if found.alike else [say("vertical plane"), say("lateral plane")]
+    for name, plane in zip(names, found.planes, strict=False):
         yield _frequencies(name, plane)
         if found.tool.damped:
             yield _damped(name, plane)
     if found.notes:
         yield Notes(found.notes)
-
-
-def _planes(found: ToolModes) -> Iterable[tuple[str, PlaneModes]]:
-    if found.alike:
-        return [(say("both planes"), found.planes[0])]
-    names = (say("vertical plane"), say("lateral plane"))
-    return zip(names, found.planes, strict=True)
 
 
 def _frequencies(name: str, plane: PlaneModes) -> Table:
@@ -220,47 +217,34 @@ def sweep_blocks(found: ToolSweep) -> Iterator[Block]:
             "{speed} rpm",
             moment=number(float(moment[k])),
             place=number(1e3 * float(place[k])),
-            speed=number(float(found.speed[k]) / PER_RPM),
+            speed=rpm(float(found.speed[k])),
         )
     )
 
 
 def transmissions_blocks(found: Transmissions) -> Iterator[Block]:
     """Peaks and quiet speeds of the force at each station."""
+    labels = (say("peaks, the largest first"), say("quiet between them"))
+    columns = (Column(""), *(Column(label, at=RPM) for label in labels))
+    sides = [say("both planes")] if found.tool.alike else [say(SIDES[side]) for side in PLANES]
     for name, one in found.stations.items():
-        yield _transmission(name, found, one)
+        rows = tuple((label, *_peaks(found.speed, one, plane)) for plane, label in enumerate(sides))
+        told = {"station": name, "source": found.source}
+        title = say("Force at {station} over a force at {source}, once a turn; at speeds", **told)
+        yield Table(title, columns, rows)
 
 
-def _transmission(name: str, found: Transmissions, one: Transmission) -> Table:
-    rows: list[tuple[Cell, ...]] = []
-    for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
-        size = one.size[plane]
-        peaks = tuple(
-            Value(float(size[k]), at=float(found.speed[k])) for k in _tops(found.speed, size)
-        )
-        scale = SILENT * float(np.max(size))
-        quiet = tuple(
-            Value(float(depth), scale, float(at))
-            for at, depth in zip(one.quiet[plane], one.lowest[plane], strict=False)
-        )
-        more = max(len(one.quiet[plane]) - MOST_QUIET, 0)
-        label = say("both planes") if found.tool.alike else say(SIDES[side])
-        shown = Many(quiet[:MOST_QUIET], more) if quiet else say("none")
-        rows.append((label, Many(peaks) if peaks else say("none"), shown))
-    columns = (
-        Column(""),
-        Column(say("peaks, the largest first"), at=RPM),
-        Column(say("quiet between them"), at=RPM),
-    )
-    told = {"station": name, "source": found.source}
-    title = say("Force at {station} over a force at {source}, once a turn; at speeds", **told)
-    return Table(title, columns, tuple(rows))
-
-
-def _tops(speed: Array, size: Array) -> list[int]:
-    """The largest peaks of a curve (S,), the largest first."""
+def _peaks(speed: Array, one: Transmission, plane: int) -> tuple[Cell, Cell]:
+    """The largest peaks of a curve, the largest first, and its quiet places, as they come."""
+    size = one.size[plane]
     inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
-    return sorted(inner.tolist(), key=lambda k: -size[k])[:MOST_PEAKS]
+    tops = sorted(inner.tolist(), key=lambda k: -size[k])[:MOST_PEAKS]
+    peaks = tuple(Value(float(size[k]), at=float(speed[k])) for k in tops)
+    scale = SILENT * float(np.max(size))
+    dips = zip(one.lowest[plane].tolist(), one.quiet[plane].tolist(), strict=True)
+    quiet = tuple(Value(depth, scale, at) for depth, at in dips)
+    shown = Many(quiet[:MOST_QUIET], max(len(quiet) - MOST_QUIET, 0))
+    return Many(peaks) if peaks else say("none"), shown if quiet else say("none")
 
 
 def _stations(found: ToolSweep) -> Table:
@@ -272,10 +256,9 @@ def _stations(found: ToolSweep) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for row, (name, place) in enumerate(named):
         k = int(np.argmax(at.acceleration[row]))
-        moved = (at.displacement, at.velocity, at.acceleration)
-        cells = (Value(float(part[row, k])) for part in moved)
-        bent = Value(float(at.moment[row, k]), largest)
-        rows.append((name, Value(place), Value(float(found.speed[k])), *cells, bent))
+        *moved, bent = (float(part[row, k]) for part in at)
+        cells = map(Value, (place, float(found.speed[k]), *moved))
+        rows.append((name, *cells, Value(bent, largest)))
     columns = (
         Column(""),
         column(say("at"), "length"),
@@ -313,8 +296,9 @@ def response_blocks(found: ToolResponse) -> Iterator[Block]:
     """What every station does at each speed that was computed, at most some of them."""
     step = -(-len(found.speed) // MOST_ROWS)
     names = [one.name for one in found.tool.stations]
+    rms = [rms_over_time(found.acceleration(name)) for name in names]
     rows = tuple(
-        (Value(float(found.speed[k])), *(Value(_rms(found, name, k)) for name in names))
+        tuple(Value(float(row[k])) for row in (found.speed, *rms))
         for k in range(0, len(found.speed), step)
     )
     columns = (
@@ -322,11 +306,6 @@ def response_blocks(found: ToolResponse) -> Iterator[Block]:
         *(column(name, "acceleration") for name in names),
     )
     yield Table(say("Acceleration of the stations, RMS"), columns, rows)
-
-
-def _rms(found: ToolResponse, station: str, speed: int) -> float:
-    amplitudes = found.acceleration(station)[..., speed]
-    return float(np.sqrt(np.sum(np.abs(amplitudes) ** 2) / 2))
 
 
 SHOWS: dict[str, Any] = {

@@ -11,7 +11,14 @@ import numpy as np
 from equipoise.errors import ModelError, ResponseError
 from equipoise.handheld.design_plan import KEYS, DesignLimit, DesignPlan
 from equipoise.handheld.duals import Dual
-from equipoise.handheld.exposed import Band, Number, grips, mean_over_band, values_of
+from equipoise.handheld.exposed import (
+    Band,
+    BandFigures,
+    Number,
+    grips,
+    mean_over_band,
+    values_of,
+)
 from equipoise.handheld.model import Tool
 from equipoise.handheld.response import respond_tool, rms_over_time
 from equipoise.handheld.studies import changed
@@ -44,7 +51,8 @@ class Search:
         self.low = np.array([one.low for one in design.variables])
         self.wide = np.array([one.high for one in design.variables]) - self.low
         self.hands = design.hands or tuple(one.name for one in tool.grips)
-        self.held = tuple({one.station: 0 for one in design.limits if one.output == "force"})
+        forces = (one.station for one in design.limits if one.output == "force" and one.station)
+        self.held = tuple(dict.fromkeys(forces))
         self.start = values_of(tool, self.numbers)
         self._seen: tuple[bytes, Any] = (b"", None)
 
@@ -60,24 +68,21 @@ class Search:
         return kept
 
     def _at(self, values: Array, slopes: bool) -> tuple[Dual, Dual]:
-        held = [name for name in self.held if name]
-        felt = self.band.felt(self.numbers, values, held, slopes)
+        felt = self.band.felt(self.numbers, values, self.held, slopes)
         squares = [felt.hands[name] for name in self.hands]
         if self.design.measure == "rms":
             squares = [mean_over_band(one) for one in squares]
-        limits = [self._limit(one, felt.hands, felt.forces, values) for one in self.design.limits]
+        limits = [self._limit(one, felt, values) for one in self.design.limits]
         return self._joined(squares), self._joined(limits)
 
-    def _limit(
-        self, limit: DesignLimit, hands: dict[str, Dual], forces: dict[str, Dual], values: Array
-    ) -> Dual:
+    def _limit(self, limit: DesignLimit, felt: BandFigures, values: Array) -> Dual:
         """What is limited, over its limit."""
         if limit.output == "added_mass":
             mine = np.array([key in ("mass", "absorber.mass") for _, key in self.numbers])
             added = float(np.sum((values - self.start)[mine]))
-            slopes = mine.astype(float)[: len(next(iter(hands.values())).slopes), None]
+            slopes = mine.astype(float)[: len(felt.hands[self.hands[0]].slopes), None]
             return Dual(np.array([added]), slopes) / max(limit.at_most, 1e-12)
-        source = hands if limit.output == "acceleration" else forces
+        source = felt.hands if limit.output == "acceleration" else felt.forces
         return source[str(limit.station)] / limit.at_most**2
 
     def _joined(self, parts: list[Dual]) -> Dual:
@@ -99,7 +104,9 @@ class Search:
         for done, place in enumerate(places):
             told(done, len(places))
             found.append(self._downhill(place))
-        within = [place for place in found if self._within(place)]
+        within = [
+            place for place in found if np.all(self.at(place, slopes=False)[1].value <= 1 + 1e-6)
+        ]
         if not within:
             raise ResponseError(
                 "no design within the limits was found; raise a limit, or widen the range of a "
@@ -109,9 +116,6 @@ class Search:
         best = int(np.argmin(values))
         arrived = int(np.sum(values <= values[best] * (1 + SAME)))
         return within[best], arrived, len(places)
-
-    def _within(self, place: Array) -> bool:
-        return bool(np.all(self.at(place, slopes=False)[1].value <= 1 + 1e-6))
 
     def _promising(self) -> Array:
         """The best of designs spread over the room; the tool's own is among them."""
@@ -134,7 +138,6 @@ class Search:
         from scipy.optimize import Bounds, minimize
 
         unit = self.measure(place)
-        count = len(place)
 
         def room(x: Array) -> Array:
             measures, limits = self.at(x[:-1])
@@ -147,19 +150,18 @@ class Search:
             lower = np.hstack([-limits.slopes.T, np.zeros((limits.value.size, 1))])
             return np.vstack([upper, lower])
 
-        ahead = np.append(np.zeros(count), 1.0)
+        ahead = np.eye(len(place) + 1)[-1]
         done = minimize(
             lambda x: x[-1],
             np.append(place, 1.0),
             jac=lambda x: ahead,
-            bounds=Bounds(np.zeros(count + 1), np.append(np.ones(count), np.inf)),
+            bounds=Bounds(0 * ahead, np.append(np.ones(len(place)), np.inf)),
             constraints={"type": "ineq", "fun": room, "jac": slopes},
             method="SLSQP",
             options={"maxiter": STEPS, "ftol": TOLERANCE},
         )
         end = np.clip(done.x[:-1], 0, 1)
-        better = self._worth(end) <= self._worth(place)
-        return np.asarray(end if better else place)
+        return np.asarray(end if self._worth(end) <= self._worth(place) else place)
 
 
 SPEEDS = 81
@@ -171,7 +173,6 @@ DIGITS = 6
 """Significant digits of the numbers of a better tool, for people to set."""
 EDGE = 1e-6
 """Share of its range within which a variable is at an end of it."""
-ACCELERATION = "acceleration"
 NO_DESIGN = (
     "missing; add the table [design] with the band of speeds, and [[design.variables]] with what "
     "may be changed"
@@ -249,21 +250,17 @@ def design_tool(tool: Tool, told: Told | None = None) -> ToolDesign:
     if design is None:
         raise ModelError("design", NO_DESIGN)
     count, starts = SPEEDS, None
-    first: tuple[int, int] | None = None
+    seen = []
     for _ in range(DOUBLINGS + 1):
         search = Search(tool, design, np.linspace(*design.speeds, count))
-        best, arrived, searches = search.best(told or _silent, starts)
-        first = first or (arrived, searches)
+        best, arrived, searches = search.best(told or (lambda done, total: None), starts)
+        seen.append((arrived, searches))
         fine = Search(tool, design, np.linspace(*design.speeds, FINER * (count - 1) + 1))
         coarse, exact = search.measure(best), fine.measure(best)
         if abs(exact - coarse) <= STILL * exact:
             break
         count, starts = 2 * count - 1, best[None]
-    return _found(fine, best, *(first or (0, 0)))
-
-
-def _silent(done: int, total: int) -> None:
-    """For those who do not want to be told."""
+    return _found(fine, best, *seen[0])
 
 
 def _found(search: Search, best: Array, arrived: int, searches: int) -> ToolDesign:
@@ -282,17 +279,8 @@ def _found(search: Search, best: Array, arrived: int, searches: int) -> ToolDesi
     speed = search.band.speed
     edges = ("lowest" if at < EDGE else "highest" if at > 1 - EDGE else "" for at in best.tolist())
     a_hv = np.array([np.max(_curves(one, speed, search.hands), axis=0) for one in (tool, better)])
-    return ToolDesign(
-        tool,
-        better,
-        rows,
-        tuple(_figures(search, better)),
-        tuple(edges),
-        searches,
-        arrived,
-        speed,
-        a_hv,
-    )
+    figures = tuple(_figures(search, better))
+    return ToolDesign(tool, better, rows, figures, tuple(edges), searches, arrived, speed, a_hv)
 
 
 def _curves(tool: Tool, speed: Array, hands: Iterable[str]) -> list[Array]:
@@ -314,33 +302,24 @@ def _figures(search: Search, better: Tool) -> Iterable[Before]:
         squares = {name: np.trapezoid(one**2, speed) / (high - low) for name, one in curves.items()}
         means.append({name: float(np.sqrt(one)) for name, one in squares.items()})
         tops.append({name: float(np.max(one)) for name, one in curves.items()})
-    rms, top = Note(to_say("RMS over the band")), Note(to_say("largest"))
+    rms, top, both = to_say("RMS over the band"), to_say("largest"), to_say("{what}, {measure}")
     for said, found in (
         (Note(to_say("a_hv of the worst hand, RMS over the band")), means),
         (Note(to_say("a_hv of the worst hand, largest")), tops),
     ):
-        yield _before(said, ACCELERATION, *map(_worst, found))
+        yield _before(said, "acceleration", *(max(one.values()) for one in found))
     for name in search.hands if len(search.hands) > 1 else ():
         what = Note(to_say("a_hv at {station}"), station=name)
         for measure, found in ((rms, means), (top, tops)):
-            said = Note(to_say("{what}, {measure}"), what=what, measure=measure)
-            yield _before(said, ACCELERATION, *(one[name] for one in found))
-    for name in filter(None, search.held):
-        forces = [_largest_force(one, search.band.speed, name) for one in (search.tool, better)]
+            said = Note(both, what=what, measure=Note(measure))
+            yield _before(said, "acceleration", *(one[name] for one in found))
+    for name in search.held:
+        shaken = (respond_tool(one, search.band.speed) for one in (search.tool, better))
+        forces = (float(np.max(rms_over_time(one.whole_force(name)))) for one in shaken)
         what = Note(to_say("force at {station}"), station=name)
-        said = Note(to_say("{what}, {measure}"), what=what, measure=top)
-        yield _before(said, "force", *forces)
+        yield _before(Note(both, what=what, measure=Note(top)), "force", *forces)
     yield _before(Note(to_say("mass")), "mass", search.tool.mass, better.mass)
 
 
 def _before(said: Note, dimension: str, before: float, after: float) -> Before:
     return Before(str(said), dimension, before, after, said)
-
-
-def _worst(values: dict[str, float]) -> float:
-    return max(values.values())
-
-
-def _largest_force(tool: Tool, speed: Array, station: str) -> float:
-    """RMS over time of the force on all that holds a station, at the worst speed, N."""
-    return float(np.max(rms_over_time(respond_tool(tool, speed).whole_force(station))))

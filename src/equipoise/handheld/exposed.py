@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from equipoise.exposure.weighting import squared_factor
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.duals import Dual, variables
 from equipoise.handheld.layout import Layout, check_coverage
-from equipoise.handheld.model import Tool, Work
+from equipoise.handheld.model import PLANES, Tool, Work
 from equipoise.handheld.response import (
     NOTHING,
     ToolResponse,
@@ -122,16 +122,15 @@ class ToolExposure(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values in SI units."""
+        planes = [*enumerate(PLANES)]
         return {
             "speed": self.speed,
             "a_hv": self.a_hv,
             "a8": self.a8,
             "hands": {
                 name: {
-                    "acceleration_vertical": grip.acceleration[0],
-                    "acceleration_lateral": grip.acceleration[1],
-                    "a_hw_vertical": grip.a_hw[0],
-                    "a_hw_lateral": grip.a_hw[1],
+                    **{f"acceleration_{side}": grip.acceleration[k] for k, side in planes},
+                    **{f"a_hw_{side}": grip.a_hw[k] for k, side in planes},
                     "a_hv": grip.a_hv,
                 }
                 for name, grip in self.grips.items()
@@ -154,28 +153,19 @@ def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> Too
     ------
     ModelError : no hand holds the tool, or nothing shakes it; as `respond_tool`.
     """
-    response = respond_tool(tool, speeds)
-    work = tool.work if duration is None else (Work("work", working_speed(tool), duration),)
-    named = {what: grips(respond_tool(tool, speed)) for what, speed in _named(tool)}
+    response, operation = respond_tool(tool, speeds), tool.operation
+    work = tool.work
+    if duration is not None:
+        if operation is None:
+            raise ModelError("operation", NO_OPERATION)
+        work = (Work("work", operation.speed, duration),)
+    named = {}
+    if operation is not None:
+        told = {WORKING: operation.speed, IDLING: operation.idling, RACING: operation.racing}
+        for what, speed in told.items():
+            if speed is not None:
+                named[what] = grips(respond_tool(tool, speed))
     return ToolExposure(response, grips(response), named, _days(tool, work), _equivalents(named))
-
-
-def _named(tool: Tool) -> Iterable[tuple[str, float]]:
-    """The speeds that the tool names, rad/s."""
-    if tool.operation is None:
-        return
-    yield WORKING, tool.operation.speed
-    if tool.operation.idling is not None:
-        yield IDLING, tool.operation.idling
-    if tool.operation.racing is not None:
-        yield RACING, tool.operation.racing
-
-
-def working_speed(tool: Tool) -> float:
-    """Speed of the engine at work, rad/s; a `ModelError` where it is not told."""
-    if tool.operation is None:
-        raise ModelError("operation", NO_OPERATION)
-    return tool.operation.speed
 
 
 def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
@@ -208,8 +198,7 @@ Number = tuple[str, str]
 """Station and key of a number of the tool."""
 
 
-@dataclass(frozen=True, eq=False)
-class BandFigures:
+class BandFigures(NamedTuple):
     """Squares over a band of speeds (S,), with their derivatives by the numbers (P,) asked for.
 
     hands : a_hv^2 of each hand, (m/s2)^2: value (S,) and slopes (P, S).
@@ -255,34 +244,27 @@ class Band:
         held : stations at which the force on the body is asked for too.
         slopes : whether the derivatives are asked for.
         """
-        own = values is None
         start = values_of(self.tool, numbers) if values is None else values
         changed = dict(zip(numbers, variables(start, 2, slopes), strict=True))
-        for (station, key), variable in changed.items() if own else ():
-            variable.value = self._own(station, key)
+        if values is None:  # a number as (1, 1), a pair as (2, 1)
+            for (station, key), variable in changed.items():
+                own = np.atleast_1d(self.tool.station(station).number(key))
+                variable.value = own[:, None]
         layout = Layout(self.tool, self.highest, changed)
         field = shaken(layout, self.shakes, self.orders, self.speed)
-        motion = {
-            name: field.states.motion[layout.node_of[name]].across
-            for name in {*held, *(one.name for one in self.tool.grips)}
+
+        def moved(name: str) -> Any:
+            return field.states.motion[layout.node_of[name]].across
+
+        hands = {
+            one.name: self._over_orders(weighted_squares(self.frequency, moved(one.name)))
+            for one in self.tool.grips
         }
-        return BandFigures(
-            {
-                one.name: self._over_orders(weighted_squares(self.frequency, motion[one.name]))
-                for one in self.tool.grips
-            },
-            {name: self._force(layout, field.s, name, motion[name]) for name in held},
-        )
-
-    def _own(self, station: str, key: str) -> Array:
-        """A number of the tool as (1, 1), a pair as (2, 1)."""
-        return np.atleast_1d(np.array(self.tool.station(station).number(key)))[:, None]
-
-    def _force(self, layout: Layout, s: Array, name: str, moved: Any) -> Dual:
-        """Mean square of the force on all that holds a station."""
-        stiffness: Any = sum(layout.on_body(self.tool.station(name), s).values())
-        force = stiffness * moved
-        return self._over_orders(force * force.conj() * 0.5)
+        forces = {}
+        for name in held:  # mean square of the force on all that holds the station
+            force = sum(layout.on_body(self.tool.station(name), field.s).values()) * moved(name)
+            forces[name] = self._over_orders(force * force.conj() * 0.5)
+        return BandFigures(hands, forces)
 
     def _over_orders(self, squares: Dual) -> Dual:
         """Sum over planes and orders: from (2, K S) to (S,)."""
@@ -298,16 +280,11 @@ def values_of(tool: Tool, numbers: Sequence[Number]) -> Array:
     return np.array([number_of(tool, station, key) for station, key in numbers])
 
 
-def band_weights(count: int) -> Array:
-    """Weights (S,) of equally spaced speeds for a mean, by trapezia."""
-    weights = np.ones(count)
-    weights[[0, -1]] = 0.5
-    return np.asarray(weights / weights.sum())
-
-
 def mean_over_band(square: Dual) -> Dual:
-    """Mean (1,) over the speeds of a band (S,)."""
-    weights = band_weights(square.value.size)
+    """Mean (1,) over the equally spaced speeds of a band (S,), by trapezia."""
+    weights = np.ones(square.value.size)
+    weights[[0, -1]] = 0.5
+    weights /= weights.sum()
     return Dual((square.value @ weights)[None], (square.slopes @ weights)[:, None])
 
 

@@ -12,7 +12,7 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import carry, count, log_determinant
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.layout import Layout
-from equipoise.handheld.model import PLANES, Station, Tool
+from equipoise.handheld.model import Station, Tool
 
 Array = np.ndarray[Any, Any]
 
@@ -36,18 +36,14 @@ def rigid_modes(tool: Tool) -> list[Array]:
 
     Displacement of the left end (m) and slope (rad) of each rigid motion that is free.
     """
-    return [_free(tool, plane) for plane in range(len(PLANES))]
+    return [_free(tool, plane) for plane in range(2)]
 
 
 def floating(tool: Tool) -> list[list[str]]:
     """Stations of each plane whose absorber has a mass, but no spring."""
+    heavy = [(one.name, one.absorber) for one in tool.stations if one.absorber is not None]
     return [
-        [
-            one.name
-            for one in tool.stations
-            if one.absorber is not None and one.absorber.mass and not one.absorber.stiffness[plane]
-        ]
-        for plane in range(len(PLANES))
+        [name for name, one in heavy if one.mass and not one.stiffness[plane]] for plane in range(2)
     ]
 
 
@@ -58,10 +54,8 @@ def _free(tool: Tool, plane: int) -> Array:
     if len(places) > 1 or (places and turning):
         return np.empty((0, 2))
     if places:
-        place = places[0]
-        return np.array([[-place, 1.0] if place else [0.0, 1.0]])
-    across, turned = [1.0, 0.0], [0.0, 1.0]
-    return np.array([across] if turning else [across, turned])
+        return np.array([[0.0 - places[0], 1.0]])
+    return np.eye(2)[: 1 if turning else 2]
 
 
 def _spring(station: Station, plane: int) -> float:
@@ -111,8 +105,7 @@ def frequencies_below(tool: Tool, highest: float) -> list[Array]:
     most = int(min(np.max(reached), MOST))
     if most == 0:
         return [np.empty(0), np.empty(0)]
-    found = natural_frequencies(tool, most)
-    return [row[(row > 0) & (row < highest)] for row in found]
+    return [row[(row > 0) & (row < highest)] for row in natural_frequencies(tool, most)]
 
 
 def _enough(tool: Tool, number: int) -> tuple[Layout, float]:
@@ -184,6 +177,7 @@ def eigenvalues(
     """
     low, high = radii
     total = [_number(layout, plane, low, float(high[plane])) for plane in range(2)]
+    weight = 1 if layout.tool.shaft.loss_factor else 2  # zeros counted for each that swings
     swinging, real = [np.empty(0, complex)] * 2, [np.empty(0)] * 2
     starts = natural * (1j - NEAR) * (1 + APART * np.arange(natural.shape[1]))
     random = np.random.default_rng(0)
@@ -193,21 +187,13 @@ def eigenvalues(
             kept = _within(layout, _merged(swinging[plane], roots[plane]), low, high[plane])
             swinging[plane] = kept
             real[plane] = overdamped(layout, plane, (low, float(high[plane])), FINER**attempt)
-        lacking = [total[p] - len(real[p]) - _weight(layout) * len(swinging[p]) for p in range(2)]
+        lacking = [total[p] - len(real[p]) - weight * len(swinging[p]) for p in range(2)]
         if max(lacking) <= 0:
             break
         size = high[:, None] * np.sqrt(random.random((2, 2 * max(lacking))))
         starts = size * np.exp(1j * np.pi * (0.5 + 0.5 * random.random(size.shape)))
-    both = [
-        np.array(sorted([*one, *other], key=abs), complex)
-        for one, other in zip(swinging, real, strict=True)
-    ]
-    return both, lacking
-
-
-def _weight(layout: Layout) -> int:
-    """Zeros of the characteristic function that are counted for each motion that swings."""
-    return 1 if layout.tool.shaft.loss_factor else 2
+    both = (np.concatenate(parts) for parts in zip(swinging, real, strict=True))
+    return [one[np.argsort(np.abs(one), kind="stable")] for one in both], lacking
 
 
 def _within(layout: Layout, roots: Array, low: float, high: float) -> Array:
@@ -252,11 +238,8 @@ def _push(s: Array, known: Array) -> Array:
 
 def _merged(found: Array, roots: Array) -> Array:
     """Those known and new ones, by size; zeros of one search lie together where one is manifold."""
-    new = [
-        root
-        for root in roots[np.isfinite(roots)]
-        if all(abs(root - other) > SAME * abs(root) for other in found)
-    ]
+    known = np.any(np.abs(roots[:, None] - found) <= SAME * np.abs(roots[:, None]), axis=1)
+    new = roots[np.isfinite(roots) & ~known]
     return np.array(sorted([*found, *new], key=abs), complex)
 
 
@@ -271,14 +254,11 @@ def _number(layout: Layout, plane: int, low: float, high: float) -> int:
         whole, inner = (_turned(layout, plane, _arc(size, np.pi)) for size in (high, low))
         return round((whole - inner) / np.pi)
     end = np.pi - _wedge(layout)
-    ends = low * np.exp(1j * end), high * np.exp(1j * end)
-    parts = [
-        _turned(layout, plane, _arc(high, end)),
-        -_turned(layout, plane, _ray(*ends)),
-        -_turned(layout, plane, _arc(low, end)),
-        _turned(layout, plane, _ray(low, high)),
-    ]
-    return round(sum(parts) / (2 * np.pi))
+    back = np.exp(1j * end)
+    outward, around = _ray(low, high), _arc(high, end)
+    inward, along = _ray(high * back, low * back), _arc(low, end)
+    turns = [_turned(layout, plane, curve) for curve in (outward, around, inward, along)]
+    return round((sum(turns[:3]) - turns[3]) / (2 * np.pi))
 
 
 def _arc(size: float, angle: float) -> Curve:

@@ -15,6 +15,7 @@ from equipoise.handheld.blocks import (
     cell,
     column,
     ends_told,
+    rpm,
     unbounded,
 )
 from equipoise.handheld.design_plan import KEYS
@@ -22,7 +23,7 @@ from equipoise.handheld.exposed import IDLING, RACING, WORKING
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
-from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Change, Column, Section, Table, Text, Value
 
 if TYPE_CHECKING:
@@ -31,11 +32,7 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.studies import Variation
 
-
-EDGES = {
-    "lowest": to_say("as low as it may be"),
-    "highest": to_say("as high as it may be"),
-}
+EDGES = {"lowest": to_say("as low as it may be"), "highest": to_say("as high as it may be")}
 VARIED = {
     "position": to_say("position of {station}"),
     "mass": to_say("mass of {station}"),
@@ -50,8 +47,6 @@ VARIED = {
     "absorber.damping": to_say("damping of the absorber at {station}"),
 }
 """Key of a number that a design may change -> what it is."""
-
-
 NAMED = {WORKING: to_say("working"), IDLING: to_say("idling"), RACING: to_say("racing")}
 
 
@@ -67,14 +62,13 @@ def varied_named(name: str) -> str:
 def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
     """Weighted acceleration of every hand, and the day of the one that gets most."""
     yield _hands(found)
-    low, high = (int(k) for k in (np.argmin(found.a_hv), np.argmax(found.a_hv)))
     least, most = (
         say(
             "{value} m/s² at {speed} rpm",
             value=number(float(found.a_hv[k])),
-            speed=number(float(found.speed[k]) / PER_RPM),
+            speed=rpm(float(found.speed[k])),
         )
-        for k in (low, high)
+        for k in (np.argmin(found.a_hv), np.argmax(found.a_hv))
     )
     yield Text(say("Worst hand over this range: a_hv from {low} to {high}", low=least, high=most))
     yield Text(say("Along the shaft nothing moves in bending, so a_hv has two axes."))
@@ -91,10 +85,10 @@ def _hands(found: ToolExposure) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name, grip in found.grips.items():
         for what, part in found.named.items():
-            vertical, lateral = (float(value) for value in part[name].a_hw[:, 0])
-            plain = float(np.sqrt(np.sum(part[name].acceleration[:, 0] ** 2)))
-            values = (plain, vertical, lateral, float(part[name].a_hv[0]))
-            rows.append((name, say(NAMED.get(what, what)), *map(Value, values)))
+            here = part[name]
+            plain = float(np.sqrt(np.sum(here.acceleration[:, 0] ** 2)))
+            values = (plain, *here.a_hw[:, 0].tolist(), float(here.a_hv[0]))
+            rows.append((name, say(NAMED[what]), *map(Value, values)))
         if name in found.equivalents:
             label = say("idling and racing, ISO 22867")
             rows.append((name, label, None, None, None, Value(found.equivalents[name])))
@@ -151,7 +145,13 @@ def figure_named(one: Before) -> str:
 def variation_blocks(found: Variation) -> Iterator[Block]:
     """Natural frequencies against a number of a station."""
     step = -(-len(found.values) // MOST_ROWS)
-    kind: Dimension = KEYS[found.key]
+    what = varied_named(f"{found.station} {found.key}")
+    count = range(1, found.frequency.shape[-1] + 1)
+    columns = (
+        column(what, KEYS[found.key]),
+        *(Column(f"λ {k}") for k in count),
+        *(Column(f"N{k}", unit="1/min") for k in count),
+    )
     for plane, side in enumerate(PLANES[: 1 if found.tool.alike else 2]):
         rows = tuple(
             (
@@ -161,18 +161,10 @@ def variation_blocks(found: Variation) -> Iterator[Block]:
             )
             for v in range(0, len(found.values), step)
         )
-        count = found.frequency.shape[-1]
-        columns = (
-            column(varied_named(f"{found.station} {found.key}"), kind),
-            *(Column(f"λ {k + 1}") for k in range(count)),
-            *(Column(f"N{k + 1}", unit="1/min") for k in range(count)),
-        )
-        what = varied_named(f"{found.station} {found.key}")
         title = say("Natural frequencies against {what}", what=what)
         if not found.tool.alike:
-            title = say(
-                "Natural frequencies against {what}, {plane}", what=what, plane=say(SIDES[side])
-            )
+            told = {"what": what, "plane": say(SIDES[side])}
+            title = say("Natural frequencies against {what}, {plane}", **told)
         yield Table(title, columns, rows)
 
 
@@ -188,12 +180,10 @@ def sensitivity_blocks(
         rows.append((varied_named(f"{station} {key}"), cell(value, KEYS[key]), effect))
     rows = sorted((row for row in rows if row[2].value), key=lambda row: -abs(row[2].value))
     columns = (Column(""), Column(say("now")), Column(say("effect"), unit="mm/s^2"))
-    low, high = (number(end / PER_RPM) for end in ends)
     title = say(
         "What 1 % more of each number (of a position, 1 % of the shaft) does to a_hv of the worst "
         "hand, RMS over {low} to {high} rpm",
-        low=low,
-        high=high,
+        **ends_told(np.array(ends)),
     )
     yield Table(title, columns, tuple(rows))
 

@@ -6,7 +6,7 @@ know nothing of each other, vertical and lateral; a pair of numbers is one for e
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, ClassVar, Literal
 
@@ -240,8 +240,8 @@ class Tool(Frozen):
     @property
     def mass(self) -> float:
         """Of everything that moves but the hands, kg."""
-        sitting = (one.mass + (one.absorber.mass if one.absorber else 0.0) for one in self.stations)
-        return self.shaft.mass + sum(sitting)
+        absorbers = (one.absorber.mass for one in self.stations if one.absorber)
+        return self.shaft.mass + sum(one.mass for one in self.stations) + sum(absorbers)
 
     @property
     def alike(self) -> bool:
@@ -279,42 +279,31 @@ class Tool(Frozen):
 
 def _problems(tool: Tool) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a tool, the first things first."""
-    yield from _too_much(tool)
-    yield from _wrong_names(tool)
-    yield from wrong_values("shaft", tool.shaft)
+    shaft, design = tool.shaft, tool.design
+    named = {"shaft.stations": tool.stations, "excitations": tool.excitations, "work": tool.work}
+    lists: dict[str, Sequence[Any]] = {**named, "shaft.segments": shaft.segments}
+    if design is not None:
+        lists |= {"design.variables": design.variables, "design.limits": design.limits}
+    for part, items in lists.items():
+        yield from too_many(part, items, MOST)
+    yield from wrong_text("title", tool.title)
+    yield from _wrong_names(named)
+    yield from wrong_values("shaft", shaft)
     yield from wrong_values("shaft.stations", tool.stations)
     for part in ("excitations", "operation", "work", "design"):
         yield from wrong_values(part, getattr(tool, part))
-    yield from wrong_shaft(tool.shaft)
+    yield from wrong_shaft(shaft)
     for where, station in numbered("shaft.stations", tool.stations):
-        yield from wrong_station(where, station, tool.shaft.length)
+        yield from wrong_station(where, station, shaft.length)
     for where, excitation in numbered("excitations", tool.excitations):
         yield from _wrong_excitation(where, excitation, tool)
-    if tool.operation is not None:
-        yield from _wrong_operation(tool.operation)
-    yield from _wrong_work(tool)
-    if tool.design is not None:
-        yield from wrong_design(
-            tool.design, tool.stations, tool.shaft.length, bool(tool.excitations)
-        )
+    yield from _wrong_day(tool)
+    if design is not None:
+        yield from wrong_design(design, tool.stations, shaft.length, bool(tool.excitations))
 
 
-def _named(tool: Tool) -> Iterable[tuple[str, Sequence[Any]]]:
-    lists = ("excitations", tool.excitations), ("work", tool.work)
-    return (("shaft.stations", tool.stations), *lists)
-
-
-def _too_much(tool: Tool) -> Iterator[ModelError]:
-    lists = [*_named(tool), ("shaft.segments", tool.shaft.segments)]
-    if tool.design is not None:
-        lists += [(f"design.{one}", getattr(tool.design, one)) for one in ("variables", "limits")]
-    for part, items in lists:
-        yield from too_many(part, items, MOST)
-
-
-def _wrong_names(tool: Tool) -> Iterator[ModelError]:
-    yield from wrong_text("title", tool.title)
-    for part, items in _named(tool):
+def _wrong_names(named: Mapping[str, Sequence[Any]]) -> Iterator[ModelError]:
+    for part, items in named.items():
         seen: set[str] = set()
         for where, item in numbered(part, items):
             name = item.name
@@ -336,15 +325,14 @@ def _wrong_excitation(where: str, excitation: Excitation, tool: Tool) -> Iterato
         yield ModelError(f"{where}.ratio", "got 0; what does not turn shakes nothing, give another")
 
 
-def _wrong_operation(operation: Operation) -> Iterator[ModelError]:
-    if operation.speeds:
-        yield from wrong_range("operation.speeds", operation.speeds)
-    idling, racing = operation.idling, operation.racing
-    if idling is not None and racing is not None and idling >= racing:
-        yield ModelError("operation.racing", "is not above idling; give a higher speed")
-
-
-def _wrong_work(tool: Tool) -> Iterator[ModelError]:
+def _wrong_day(tool: Tool) -> Iterator[ModelError]:
+    """Speeds of the engine, and the time that all work takes."""
+    if tool.operation is not None:
+        idling, racing = tool.operation.idling, tool.operation.racing
+        if tool.operation.speeds:
+            yield from wrong_range("operation.speeds", tool.operation.speeds)
+        if idling is not None and racing is not None and idling >= racing:
+            yield ModelError("operation.racing", "is not above idling; give a higher speed")
     total = sum(work.duration for work in tool.work)
     if total > DAY * (1 + 1e-9):
         yield ModelError("work", f"takes {total / 3600:.4g} h together; a day has 24 h")

@@ -12,7 +12,7 @@ import numpy as np
 from equipoise.errors import MassError, ModelError, ResponseError, UsageError
 from equipoise.handheld.chain import Pair, carry, solve
 from equipoise.handheld.layout import Field, Layout, Line, check_coverage
-from equipoise.handheld.model import Excitation, Station, Tool
+from equipoise.handheld.model import Excitation, Tool
 from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
@@ -91,10 +91,9 @@ def _of_linkage(one: Excitation, machine: Machine) -> Iterable[Shake]:
     kept = [k for k in range(1, len(sizes)) if sizes[k] > LEAST * largest]
     for k in sorted(kept, key=lambda k: -sizes[k])[:MOST_ORDERS]:
         order = float(force.orders[k])
-        amplitudes = force.amplitudes[:, k] * np.exp(1j * order * one.phase)
-        both = np.conj(amplitudes) if backward else amplitudes
-        size = one.ratio**2 * both
-        yield Shake(one.name, one.station, _order(order * abs(one.ratio)), size, 2)
+        both = one.ratio**2 * force.amplitudes[:, k] * np.exp(1j * order * one.phase)
+        both = np.conj(both) if backward else both
+        yield Shake(one.name, one.station, _order(order * abs(one.ratio)), both, 2)
 
 
 def unit_shaking_force(machine: Machine) -> Periodic:
@@ -103,10 +102,8 @@ def unit_shaking_force(machine: Machine) -> Periodic:
         raise MassError(lacking)
     from equipoise.mechanism.linkage import assemble
 
-    turns = assemble(machine).cycle.turns
-    motion = move(machine, ANGLES, 1.0, 0.0)
-    force = forces(motion).shaking_force
-    return Periodic.of(np.array([force.y, force.x]), turns)
+    force = forces(move(machine, ANGLES, 1.0, 0.0)).shaking_force
+    return Periodic.of(np.array([force.y, force.x]), assemble(machine).cycle.turns)
 
 
 def orders_of(all_shakes: Iterable[Shake]) -> Array:
@@ -181,10 +178,8 @@ class ToolResponse(Result):
 
     def whole_force(self, station: str) -> Array:
         """Force (2, K, S), N, of a station on all that holds it."""
-        total = np.zeros((2, *self.frequency.shape), complex)
-        for force in self.forces(station).values():
-            total += force
-        return total
+        start = np.zeros((2, *self.frequency.shape), complex)
+        return np.asarray(sum(self.forces(station).values(), start=start))
 
     def power(self, station: str) -> dict[str, Array]:
         """Mean power (K, S), W, that goes into the hand, harness, ground and absorber there."""
@@ -192,7 +187,9 @@ class ToolResponse(Result):
         velocity = self.velocity(station)
         found = {part: _power(force, velocity) for part, force in self.forces(station).items()}
         if one.absorber is not None:
-            found["absorber"] = _power(self._absorbed(one), velocity)
+            layout, s = self.field.layout, self.field.s
+            force = layout.absorber(one, s, s * s, "forced") * self._node(station).across
+            found["absorber"] = _power(self._shaped(force), velocity)
         if any(one.rotational_damping):
             turning = self._shaped(self._node(station).turning) * self._s
             damping = np.array(one.rotational_damping)[:, None, None]
@@ -200,31 +197,22 @@ class ToolResponse(Result):
             found["ground"] = found.get("ground", 0.0) + rotation
         return found
 
-    def _absorbed(self, station: Station) -> Array:
-        layout, s = self.field.layout, self.field.s
-        force = layout.absorber(station, s, s * s, "forced") * self._node(station.name).across
-        return self._shaped(force)
-
     @cached_property
     def fed_in(self) -> Array:
         """Mean power (K, S), W, of all that shakes."""
         total = np.zeros(self.frequency.shape)
         for shake in self.shakes:
-            k = _index(self.orders, shake.order)
-            velocity = self.velocity(shake.station)[:, k]
-            total[k] += _power(shake.at(self.speed), velocity)
+            k = np.searchsorted(self.orders, shake.order)
+            total[k] += _power(shake.at(self.speed), self.velocity(shake.station)[:, k])
         return total
 
     @cached_property
     def lost_in_shaft(self) -> Array:
         """Mean power (K, S), W, that the material of the shaft takes: what enters each segment."""
-        total = np.zeros(self.field.s.shape[-1])
-        states = self.field.states
-        lengths = [cell.length for cell in self.field.layout.cells]
-        for k, length in enumerate(lengths):
-            over = self.field.layout.part(
-                np.array([k]), np.array([length]), self.field.s, "forced"
-            ).part(0)
+        layout, states, s = self.field.layout, self.field.states, self.field.s
+        total = np.zeros(s.shape[-1])
+        for k, cell in enumerate(layout.cells):
+            over = layout.part(np.array([k]), np.array([cell.length]), s, "forced").part(0)
             q, f, after = states.motion[k], states.force[k], states.motion[k + 1]
             _, _, v, m = over.carried(*q, *f)
             entered = (
@@ -233,7 +221,7 @@ class ToolResponse(Result):
                 - f.across * np.conj(q.across)
                 - f.turning * np.conj(q.turning)
             )
-            total = total + np.sum(np.imag(entered), axis=0) * np.abs(self.field.s[0]) / 2
+            total = total + np.sum(np.imag(entered), axis=0) * np.abs(s[0]) / 2
         return np.asarray(total.reshape(self.frequency.shape))
 
     def _node(self, station: str) -> Pair:
@@ -281,12 +269,11 @@ def respond_tool(tool: Tool, speed: float | Iterable[float] | Array) -> ToolResp
 
 def _check_finite(field: Field, orders: Array, speeds: Array) -> None:
     """No resonance is met exactly, without damping."""
-    finite = np.ones(field.s.shape[-1], dtype=bool)
-    for pair in field.states.motion:
-        finite &= np.all(np.isfinite(pair.across) & np.isfinite(pair.turning), axis=0)
+    finite = [np.all(np.isfinite(part), axis=0) for pair in field.states.motion for part in pair]
     if np.all(finite):
         return
-    order, speed = np.unravel_index(int(np.argmin(finite)), (len(orders), len(speeds)))
+    met = int(np.argmin(np.all(finite, axis=0)))
+    order, speed = np.unravel_index(met, (len(orders), len(speeds)))
     raise ResponseError(
         f"at {speeds[speed] * 30 / np.pi:.6g} rpm order {orders[order]:.4g} meets a resonance "
         "without damping, and the vibration has no bound; give dampers, a loss_factor, or another "
@@ -314,12 +301,8 @@ def shaken(layout: Layout, all_shakes: Sequence[Shake], orders: Array, speeds: A
     loads: list[Any] = [None] * len(layout.nodes)
     for shake in all_shakes:
         force = np.zeros((2, len(orders), len(speeds)), complex)
-        force[:, _index(orders, shake.order)] = shake.at(speeds)
+        force[:, np.searchsorted(orders, shake.order)] = shake.at(speeds)
         node = layout.node_of[shake.station]
         load = Pair(force.reshape(2, -1), 0.0)
         loads[node] = load if loads[node] is None else Pair(loads[node].across + load.across, 0.0)
     return Field(layout, s, solve(carry(layout.chain(s)), loads))
-
-
-def _index(orders: Array, order: float) -> int:
-    return int(np.searchsorted(orders, order))

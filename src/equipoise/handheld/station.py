@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Any, ClassVar
 
+import numpy as np
+
 from equipoise.errors import ModelError
 from equipoise.keys import (
     PLANES,
@@ -23,17 +25,17 @@ from equipoise.keys import (
     key,
     keys_of,
 )
-from equipoise.quantities import Dimension
 
 Both = tuple[float, float]
 """One number for bending in the vertical plane, one for the lateral one."""
-
-
 NOTHING: Both = (0.0, 0.0)
-
-
-def both_planes(dimension: Dimension) -> Planes:
-    return Planes(Quantity(dimension=dimension))
+OF_HAND = ("mass", "stiffness", "damping")
+"""What is said of a hand that has no measured impedance."""
+STIFFNESS = Planes(Quantity(dimension="stiffness"))
+DAMPING = Planes(Quantity(dimension="damping"))
+INERTIA = Planes(Quantity(dimension="inertia"))
+TURNING_STIFFNESS = Planes(Quantity(dimension="torsional stiffness"))
+TURNING_DAMPING = Planes(Quantity(dimension="torsional damping"))
 
 
 @declared
@@ -41,12 +43,8 @@ class Absorber(Frozen):
     """A mass on a spring and damper of its own."""
 
     mass: float = key("mass", "of it", example="150 g", at_least=0)
-    stiffness: Both = key(
-        both_planes("stiffness"), "between it and the shaft", at_least=0, example="50 kN/m"
-    )
-    damping: Both = key(
-        both_planes("damping"), "between it and the shaft", at_least=0, default=NOTHING
-    )
+    stiffness: Both = key(STIFFNESS, "between it and the shaft", example="50 kN/m", at_least=0)
+    damping: Both = key(DAMPING, "between it and the shaft", default=NOTHING, at_least=0)
 
 
 @declared
@@ -73,13 +71,13 @@ class Hand(Frozen):
 
     conditions: ClassVar[Conditions] = {
         "if": {"required": ["impedance"]},
-        "then": {"properties": dict.fromkeys(("mass", "stiffness", "damping"), False)},
-        "else": {"anyOf": [{"required": [one]} for one in ("mass", "stiffness", "damping")]},
+        "then": {"properties": dict.fromkeys(OF_HAND, False)},
+        "else": {"anyOf": [{"required": [one]} for one in OF_HAND]},
     }
 
     mass: float = key("mass", "that moves with the tool", default=0.0, at_least=0)
-    stiffness: Both = key(both_planes("stiffness"), "to the body", at_least=0, default=NOTHING)
-    damping: Both = key(both_planes("damping"), "to the body", at_least=0, default=NOTHING)
+    stiffness: Both = key(STIFFNESS, "to the body", default=NOTHING, at_least=0)
+    damping: Both = key(DAMPING, "to the body", default=NOTHING, at_least=0)
     impedance: tuple[Impedance, ...] = key(
         Planes(File("impedance")),
         "CSV file beside this one, instead of these: `frequency [Hz],resistance [N s/m],"
@@ -95,8 +93,8 @@ class Hand(Frozen):
 class Harness(Frozen):
     """The belt that carries the tool, as a spring and damper to the body."""
 
-    stiffness: Both = key(both_planes("stiffness"), "to the body", at_least=0, example="2 kN/m")
-    damping: Both = key(both_planes("damping"), "to the body", at_least=0, default=NOTHING)
+    stiffness: Both = key(STIFFNESS, "to the body", example="2 kN/m", at_least=0)
+    damping: Both = key(DAMPING, "to the body", default=NOTHING, at_least=0)
 
 
 @declared
@@ -107,24 +105,18 @@ class Station(Frozen):
     position: float = key("length", "from the left end of the shaft", example="0 mm")
     mass: float = key("mass", "of a rigid body", default=0.0, at_least=0)
     inertia: Both = key(
-        both_planes("inertia"),
+        INERTIA,
         "of it, about the axes across the shaft, through the shaft",
-        at_least=0,
         default=NOTHING,
+        at_least=0,
     )
-    stiffness: Both = key(both_planes("stiffness"), "to the ground", at_least=0, default=NOTHING)
-    damping: Both = key(both_planes("damping"), "to the ground", at_least=0, default=NOTHING)
+    stiffness: Both = key(STIFFNESS, "to the ground", default=NOTHING, at_least=0)
+    damping: Both = key(DAMPING, "to the ground", default=NOTHING, at_least=0)
     rotational_stiffness: Both = key(
-        both_planes("torsional stiffness"),
-        "to the ground, against bending",
-        at_least=0,
-        default=NOTHING,
+        TURNING_STIFFNESS, "to the ground, against bending", default=NOTHING, at_least=0
     )
     rotational_damping: Both = key(
-        both_planes("torsional damping"),
-        "to the ground, against bending",
-        at_least=0,
-        default=NOTHING,
+        TURNING_DAMPING, "to the ground, against bending", default=NOTHING, at_least=0
     )
     absorber: Absorber | None = key(
         Table(Absorber), "a mass on a spring and damper of its own", default=None
@@ -180,8 +172,7 @@ def wrong_station(where: str, station: Station, length: float) -> Iterator[Model
 
 
 def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
-    loads = ("mass", "stiffness", "damping")
-    given = [name for name in loads if _is_given(getattr(hand, name))]
+    given = [name for name in OF_HAND if np.any(getattr(hand, name))]
     if hand.impedance and given:
         yield ModelError(f"{where}.{given[0]}", "has no place beside an impedance; leave it out")
     elif not hand.impedance and not given:
@@ -194,18 +185,10 @@ def _wrong_hand(where: str, hand: Hand) -> Iterator[ModelError]:
             f"got {len(hand.impedance)} tables; give one, or one for each plane",
         )
     for table in hand.impedance:
-        yield from _wrong_impedance(f"{where}.impedance", table)
-
-
-def _is_given(value: float | tuple[float, float]) -> bool:
-    return any(value) if isinstance(value, tuple) else value != 0
-
-
-def _wrong_impedance(where: str, table: Impedance) -> Iterator[ModelError]:
-    """What is wrong with a table, with the name of its file where it has one."""
-    what = _wrong_rows(table)
-    if what:
-        yield ModelError(where, f"{table.file}: {what}" if table.file else what)
+        what = _wrong_rows(table)
+        if what:
+            what = f"{table.file}: {what}" if table.file else what
+            yield ModelError(f"{where}.impedance", what)
 
 
 def _wrong_rows(table: Impedance) -> str:

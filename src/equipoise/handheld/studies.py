@@ -11,7 +11,7 @@ from equipoise.errors import UsageError
 from equipoise.handheld.design_plan import KEYS
 from equipoise.handheld.frequencies import characteristic, natural_frequencies, scale_of
 from equipoise.handheld.layout import Layout
-from equipoise.handheld.model import Station, Tool
+from equipoise.handheld.model import NOTHING, Station, Tool
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 
@@ -21,7 +21,7 @@ Array = np.ndarray[Any, Any]
 def changed(tool: Tool, station: str, key: str, value: float) -> Tool:
     """The tool with one number of a station changed, of a pair both.
 
-    station, key : as in `wishes.DesignVariable`.
+    station, key : as in `design_plan.DesignVariable`.
 
     Raises
     ------
@@ -77,15 +77,13 @@ class Variation(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain values; natural frequencies in Hz."""
-        return {
-            "station": self.station,
-            "key": self.key,
-            "values": self.values,
-            "natural_frequencies": self.frequency[0] / (2 * np.pi),
-            "eigenvalues": self.parameter[0],
-            "natural_frequencies_lateral": self.frequency[1] / (2 * np.pi),
-            "eigenvalues_lateral": self.parameter[1],
-        }
+        found: dict[str, Any] = {"station": self.station, "key": self.key, "values": self.values}
+        for suffix, frequency, parameter in zip(
+            ("", "_lateral"), self.frequency, self.parameter, strict=True
+        ):
+            found[f"natural_frequencies{suffix}"] = frequency / (2 * np.pi)
+            found[f"eigenvalues{suffix}"] = parameter
+        return found
 
 
 def vary_tool(tool: Tool, station: str, key: str, values: Array, number: int = 5) -> Variation:
@@ -95,12 +93,10 @@ def vary_tool(tool: Tool, station: str, key: str, values: Array, number: int = 5
     ------
     ModelError, UsageError : as `changed`.
     """
-    machines = [changed(tool, station, key, float(value)) for value in values]
-    frequency = np.array([natural_frequencies(one, number) for one in machines])
-    frequency = np.moveaxis(frequency, 0, 1)
-    return Variation(
-        tool, station, key, np.asarray(values), frequency, np.sqrt(frequency / scale_of(tool))
-    )
+    tools = [changed(tool, station, key, float(value)) for value in values]
+    frequency = np.stack([natural_frequencies(one, number) for one in tools], axis=1)
+    parameter = np.sqrt(frequency / scale_of(tool))
+    return Variation(tool, station, key, np.asarray(values), frequency, parameter)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,10 +119,8 @@ def determinant_chart(tool: Tool, highest: float, count: int = 800) -> Determina
     parameter = np.linspace(highest / count, highest, count)
     frequency = scale_of(tool) * parameter**2
     undamped = Layout(without_damping(tool), float(frequency[-1]))
-    s = np.array([1j * frequency, 1j * frequency])
-    logarithm, _ = characteristic(undamped, s)
-    sign = np.sign(np.cos(logarithm.imag))
-    size = logarithm.real
+    logarithm, _ = characteristic(undamped, 1j * np.array([frequency, frequency]))
+    sign, size = np.sign(np.cos(logarithm.imag)), logarithm.real
     turning = (size[:, 1:-1] > size[:, :-2]) & (size[:, 1:-1] > size[:, 2:])
     peaks = [row[1:-1][up] for row, up in zip(size, turning, strict=True)]
     least = np.array([np.min(row, initial=np.median(size)) for row in peaks])[:, None]
@@ -135,21 +129,12 @@ def determinant_chart(tool: Tool, highest: float, count: int = 800) -> Determina
 
 def without_damping(tool: Tool) -> Tool:
     """The tool without any loss or damper; a hand known by a table is left out."""
-    nothing = (0.0, 0.0)
-
-    def still(part: Any) -> Any:
-        return None if part is None else replace(part, damping=nothing)
-
-    stations = tuple(
-        replace(
-            one,
-            damping=nothing,
-            rotational_damping=nothing,
-            absorber=still(one.absorber),
-            harness=still(one.harness),
-            hand=None if one.hand is None or one.hand.impedance else still(one.hand),
-        )
-        for one in tool.stations
-    )
+    stations = []
+    for one in tool.stations:
+        hand = None if one.hand is None or one.hand.impedance else one.hand
+        parts: dict[str, Any] = {"absorber": one.absorber, "harness": one.harness, "hand": hand}
+        for name, part in parts.items():
+            parts[name] = part and replace(part, damping=NOTHING)
+        stations.append(replace(one, damping=NOTHING, rotational_damping=NOTHING, **parts))
     shaft = replace(tool.shaft, loss_factor=0.0)
-    return replace(tool, shaft=shaft, stations=stations, design=None)
+    return replace(tool, shaft=shaft, stations=tuple(stations), design=None)

@@ -19,6 +19,7 @@ from equipoise.results.blocks import Block, Cell, Column, Notes, Span, Table, Te
 from equipoise.results.result import Result
 
 Array = np.ndarray[Any, Any]
+Quantities = dict[str, Quantity]
 
 MUCH_CORRELATED = 3.0
 """Points over which a residual is correlated, from where on it is told."""
@@ -28,6 +29,32 @@ POOR = 2.0
 """Residual over the noise of the samples, from where on the model is doubted."""
 MOST_ROUNDING = 1e-6
 """A residual below this share of the first half-swing is rounding, not noise."""
+WHOLE = "whole record"
+TERMS = {"viscous damping": "decay_rate", "Coulomb friction": "coulomb_displacement"}
+SHOWN: dict[Kind, str] = {"length": "mm", "angle": "deg"}
+"""Unit of displacements."""
+ALWAYS = {
+    "damped_frequency": (to_say("damped frequency"), "Hz"),
+    "natural_frequency": (to_say("natural frequency"), "Hz"),
+    "natural_angular_frequency": (to_say("natural angular frequency"), "rad/s"),
+    "damping_ratio": (to_say("damping ratio"), ""),
+    "logarithmic_decrement": (to_say("logarithmic decrement"), ""),
+}
+BY_STIFFNESS: dict[Kind, dict[str, tuple[str, str]]] = {
+    "length": {
+        "mass": (to_say("mass"), "kg"),
+        "viscous_damping": (to_say("viscous damping"), "N s/m"),
+        "coulomb_force": (to_say("Coulomb friction"), "N"),
+    },
+    "angle": {
+        "inertia": (to_say("moment of inertia"), "kg m^2"),
+        "viscous_damping": (to_say("viscous damping"), "N m s/rad"),
+        "coulomb_torque": (to_say("Coulomb friction"), "N m"),
+    },
+}
+"""What a stiffness adds: text and unit by name."""
+MOST_DIGITS = 7
+"""Behind the decimal point."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,9 +77,9 @@ class Decay(Result):
     confidence: float
     stiffness: float | None
     turns: Turns
-    line: dict[str, Quantity]
-    by_line: dict[str, Quantity]
-    by_record: dict[str, Quantity]
+    line: Quantities
+    by_line: Quantities
+    by_record: Quantities
     whole: WholeFit
     notes: tuple[str, ...]
 
@@ -68,6 +95,10 @@ class Decay(Result):
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units."""
         turns = self.turns
+        line, by_line, by_record = (
+            {name: quantity.to_dict() for name, quantity in part.items()}
+            for part in (self.line, self.by_line, self.by_record)
+        )
         return {
             "kind": self.kind,
             "samples": len(self.record.time),
@@ -76,16 +107,16 @@ class Decay(Result):
             "stiffness": self.stiffness,
             "noise": turns.noise,
             "half_swings": {
-                **{name: quantity.to_dict() for name, quantity in self.line.items()},
+                **line,
                 "heights": turns.heights.tolist(),
                 "turning_points": {
                     "time": turns.time.tolist(),
                     "displacement": turns.displacement.tolist(),
                 },
             },
-            "by_line": {name: quantity.to_dict() for name, quantity in self.by_line.items()},
+            "by_line": by_line,
             "by_record": {
-                **{name: quantity.to_dict() for name, quantity in self.by_record.items()},
+                **by_record,
                 "center": self.whole.motion.center,
                 "residual": self.whole.rms,
             },
@@ -127,10 +158,8 @@ def identify_decay(
     by_line = line.quantities(record.kind, stiffness)
     by_record = whole.constants.quantities(record.kind, stiffness)
     notes = (
-        *_on_arm(record, arm),
-        *_on_window(record, turns),
-        *_on_terms(by_line, by_record),
-        *_on_both(by_record, turns),
+        *_on_record(record, turns, arm),
+        *_on_terms(by_line, by_record, turns),
         *_on_methods(by_line, by_record),
         *_on_fit(turns, whole),
     )
@@ -158,18 +187,14 @@ def _stiffness(kind: Kind, stiffness: float | None, spring_arm: float | None) ->
 # -- notes -----------------------------------------------------------------------------------------
 
 
-def _on_arm(record: Record, arm: float | None) -> Iterator[str]:
-    """Whether a displacement over its arm is still an angle."""
+def _on_record(record: Record, turns: Turns, arm: float | None) -> Iterator[str]:
+    """Whether a displacement over its arm is still an angle; what is left out of the record."""
     largest = float(np.ptp(record.displacement)) / 2
     if arm is not None and largest > FAR:
         yield (
             f"the record swings by {np.degrees(largest):.0f} deg to either side, where the "
             "displacement over the arm is no longer the angle"
         )
-
-
-def _on_window(record: Record, turns: Turns) -> Iterator[str]:
-    """What is left out of the record."""
     half = float(np.median(np.diff(turns.time)))
     before = turns.time[0] - record.time[0]
     after = record.time[-1] - turns.time[-1]
@@ -184,15 +209,8 @@ def _on_window(record: Record, turns: Turns) -> Iterator[str]:
         yield "three half-swings have exactly one line, so that it has no confidence intervals"
 
 
-WHOLE = "whole record"
-TERMS = {
-    "viscous damping": "decay_rate",
-    "Coulomb friction": "coulomb_displacement",
-}
-
-
-def _on_terms(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
-    """Which terms cannot be told from noise, or have the wrong sign."""
+def _on_terms(by_line: Quantities, by_record: Quantities, turns: Turns) -> Iterator[str]:
+    """Which terms cannot be told from noise or from each other, or have the wrong sign."""
     for term, name in TERMS.items():
         line, record = by_line[name], by_record[name]
         if record.includes_zero:
@@ -207,10 +225,6 @@ def _on_terms(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> I
                 f"the line alone cannot tell {term} from noise; its interval ({WHOLE}) does not "
                 "include zero"
             )
-
-
-def _on_both(by_record: dict[str, Quantity], turns: Turns) -> Iterator[str]:
-    """Whether it is only the two terms that cannot be told from each other."""
     lost = turns.heights[0] - turns.heights[-1]
     sure = 4 * turns.noise * float(np.max(turns.spread)) + MOST_ROUNDING * turns.heights[0]
     if lost > sure and all(by_record[name].includes_zero for name in TERMS.values()):
@@ -220,7 +234,7 @@ def _on_both(by_record: dict[str, Quantity], turns: Turns) -> Iterator[str]:
         )
 
 
-def _on_methods(by_line: dict[str, Quantity], by_record: dict[str, Quantity]) -> Iterator[str]:
+def _on_methods(by_line: Quantities, by_record: Quantities) -> Iterator[str]:
     """Whether the line decays, and where the methods contradict each other."""
     if by_line["decay_rate"].value <= 0:
         yield (
@@ -259,30 +273,7 @@ def _on_fit(turns: Turns, whole: WholeFit) -> Iterator[str]:
         )
 
 
-SHOWN: dict[Kind, str] = {"length": "mm", "angle": "deg"}
-"""Unit of displacements."""
-ALWAYS = {
-    "damped_frequency": (to_say("damped frequency"), "Hz"),
-    "natural_frequency": (to_say("natural frequency"), "Hz"),
-    "natural_angular_frequency": (to_say("natural angular frequency"), "rad/s"),
-    "damping_ratio": (to_say("damping ratio"), ""),
-    "logarithmic_decrement": (to_say("logarithmic decrement"), ""),
-}
-BY_STIFFNESS: dict[Kind, dict[str, tuple[str, str]]] = {
-    "length": {
-        "mass": (to_say("mass"), "kg"),
-        "viscous_damping": (to_say("viscous damping"), "N s/m"),
-        "coulomb_force": (to_say("Coulomb friction"), "N"),
-    },
-    "angle": {
-        "inertia": (to_say("moment of inertia"), "kg m^2"),
-        "viscous_damping": (to_say("viscous damping"), "N m s/rad"),
-        "coulomb_torque": (to_say("Coulomb friction"), "N m"),
-    },
-}
-"""What a stiffness adds: text and unit by name."""
-MOST_DIGITS = 7
-"""Behind the decimal point."""
+# -- shown -----------------------------------------------------------------------------------------
 
 
 def decay_blocks(decay: Decay) -> Iterator[Block]:
@@ -290,7 +281,6 @@ def decay_blocks(decay: Decay) -> Iterator[Block]:
     unit = SHOWN[decay.kind]
     scale = in_unit(unit).factor
     record, turns = decay.record, decay.turns
-    first, last = (number(scale * height) for height in (turns.heights[0], turns.heights[-1]))
     yield Text(
         say(
             "{count} samples over {time} s, noise {noise} {unit}; {swings} half-swings from "
@@ -300,8 +290,8 @@ def decay_blocks(decay: Decay) -> Iterator[Block]:
             noise=number(scale * turns.noise),
             unit=unit,
             swings=len(turns.heights),
-            first=first,
-            last=last,
+            first=number(scale * turns.heights[0]),
+            last=number(scale * turns.heights[-1]),
         )
     )
     cut = decay.line["intercept"].value * scale

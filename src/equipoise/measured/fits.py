@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import asdict, dataclass
 from math import pi
 from typing import Any
 
@@ -39,7 +40,7 @@ class Quantity:
 
     def to_dict(self) -> dict[str, float | None]:
         """Plain data."""
-        return {"value": self.value, "low": self.low, "high": self.high}
+        return asdict(self)
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,9 +181,9 @@ def _line(turns: Turns) -> tuple[Array, Array]:
         return np.asarray((turns.displacement / scale - expected) / spread)
 
     unit = np.array([scale, scale, 1.0, scale])
-    tried = [
+    tried = (
         least_squares(left, guess / unit, "3-point", x_scale="jac") for guess in _guesses(turns)
-    ]
+    )
     done = min(tried, key=lambda one: one.cost)
     free = len(number) - 4
     scatter = max(2 * done.cost / free, LEAST_SCATTER**2) if free else 0.0
@@ -190,21 +191,29 @@ def _line(turns: Turns) -> tuple[Array, Array]:
     return np.array(done.x * unit), np.array(covariance * np.outer(unit, unit))
 
 
-def _guesses(turns: Turns) -> list[Array]:
+def _guesses(turns: Turns) -> Iterator[Array]:
     """The same with all of the decay viscous, with all of it Coulomb friction, with half of each.
 
     One of them leads to the line even where noise hides which of the two it is.
     """
-    heights = turns.heights
-    loss = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+    heights, loss = turns.heights, _viscous(turns)
     friction = float(heights[0] - heights[-1]) / (len(heights) - 1) / 4
-    guesses = []
     for share in (1.0, 0.0, 0.5):
-        ratio = np.exp(-share * loss)
-        amplitude = float(heights[0]) / (1 + ratio) + (1 - share) * friction
-        center = turns.displacement[0] - turns.side * amplitude
-        guesses.append(np.array([center, amplitude, share * loss, (1 - share) * friction]))
-    return guesses
+        parts = share * loss, (1 - share) * friction
+        yield np.array([*_begun(turns, 0, *parts), *parts])
+
+
+def _viscous(turns: Turns) -> float:
+    """-ln n with all of the decay viscous."""
+    heights = turns.heights
+    return float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
+
+
+def _begun(turns: Turns, first: int, loss: float, friction: float) -> tuple[float, float]:
+    """Centre, and amplitude at a turning point, by the half-swing that begins there."""
+    amplitude = float(turns.heights[first]) / (1 + np.exp(-loss)) + friction
+    side = turns.side * (-1) ** first
+    return turns.displacement[first] - side * amplitude, amplitude
 
 
 MOST, PER_HALF_SWING = 20_000, 64
@@ -274,33 +283,23 @@ def fit_whole(record: Record, turns: Turns, line: Constants, confidence: float) 
     free = len(time) / correlated - UNKNOWNS
     covariance = correlated * 2 * done.cost / max(len(time) - UNKNOWNS, 1)
     matrix = covariance * np.linalg.pinv(done.jac.T @ done.jac) * np.outer(unit, unit)
-    constants = _constants(found, matrix, student(confidence, max(free, 1.0)))
+    change = np.zeros((3, UNKNOWNS))  # -ln n = pi sigma / beta in place of sigma
+    change[0, 3] = change[2, 5] = 1.0
+    change[1, 3], change[1, 4] = -found.loss / found.damped, np.pi / found.damped
+    factor, three = student(confidence, max(free, 1.0)), change @ matrix @ change.T
+    constants = Constants(found.damped, found.loss, found.friction, three, factor)
     return WholeFit(constants, found, time, residual, per_point, correlated)
 
 
-def _first_guesses(turns: Turns, line: Constants) -> list[Array]:
+def _first_guesses(turns: Turns, line: Constants) -> Iterator[Array]:
     """Turning point 1: its time since that found, amplitude, centre; beta, sigma, d.
 
     From the line, and with all of the decay viscous, should noise have led the line astray.
     """
-    heights = turns.heights
-    viscous = float(np.log(heights[0] / heights[-1])) / (len(heights) - 1)
-    guesses = []
-    for loss, friction in ((line.loss, line.friction), (viscous, 0.0)):
-        amplitude = float(heights[1]) / (1 + np.exp(-loss)) + friction
-        center = turns.displacement[1] + turns.side * amplitude
+    for loss, friction in ((line.loss, line.friction), (_viscous(turns), 0.0)):
+        center, amplitude = _begun(turns, 1, loss, friction)
         rate = line.damped * loss / np.pi
-        guesses.append(np.array([0.0, amplitude, center, line.damped, rate, friction]))
-    return guesses
-
-
-def _constants(motion: Swinging, covariance: Array, factor: float) -> Constants:
-    """With -ln n = pi sigma / beta in place of sigma."""
-    change = np.zeros((3, UNKNOWNS))
-    change[0, 3] = change[2, 5] = 1.0
-    change[1, 3], change[1, 4] = -motion.loss / motion.damped, np.pi / motion.damped
-    three = change @ covariance @ change.T
-    return Constants(motion.damped, motion.loss, motion.friction, three, factor)
+        yield np.array([0.0, amplitude, center, line.damped, rate, friction])
 
 
 def _window(record: Record, turns: Turns) -> tuple[Array, Array, int]:

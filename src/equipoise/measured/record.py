@@ -54,15 +54,13 @@ class Record:
             raise UsageError(f'kind: got {self.kind!r}; give "length" or "angle"')
         for name in ("time", "displacement"):
             object.__setattr__(self, name, _column(name, getattr(self, name)))
-        if self.time.shape != self.displacement.shape:
+        count, moved = len(self.time), len(self.displacement)
+        if count != moved:
+            raise UsageError(f"got {count} times and {moved} displacements; give as many of both")
+        if count < LEAST_SAMPLES:
             raise UsageError(
-                f"got {len(self.time)} times and {len(self.displacement)} displacements; "
-                "give as many of both"
-            )
-        if len(self.time) < LEAST_SAMPLES:
-            raise UsageError(
-                f"got {len(self.time)} samples; give at least {LEAST_SAMPLES}, "
-                "over three half-swings or more"
+                f"got {count} samples; give at least {LEAST_SAMPLES}, over three half-swings or "
+                "more"
             )
         if not np.all(np.diff(self.time) > 0):
             raise UsageError("time: the times must rise from sample to sample")
@@ -151,21 +149,17 @@ class Swinging:
         """-ln of the ratio of two half-swings without Coulomb friction."""
         return self.rate * self.half_period
 
-    def reaches(self, number: Array) -> Array:
-        """How far half-swings set out from the centre of each: A_k, at or below 0 where none does.
-
-        number : (K,) whole numbers; half-swing 0 begins at the turning point told.
-        """
-        return reaches(number, self.amplitude, self.loss, self.friction)
-
     def displacement(self, time: Array) -> Array:
         """Displacement (N,) at times (N,), which may lie before the turning point told."""
         since = (time - self.turned) / self.half_period
         number = np.floor(since).astype(int)
-        stop = self._stop(number)
+        first, last = int(np.min(number, initial=0)), int(np.max(number, initial=0))
+        swings = np.arange(first, last + 1)
+        reach = reaches(swings, self.amplitude, self.loss, self.friction)
+        stuck = (reach <= 0) & (swings >= 0)  # the first of these does not come about
+        stop = int(swings[np.argmax(stuck)]) if stuck.any() else last + 1
         number = np.minimum(number, stop)
-        first = int(np.min(number, initial=0))
-        reach = self.reaches(np.arange(first, int(np.max(number, initial=0)) + 1))[number - first]
+        reach = reach[number - first]
         after = np.where(number < stop, pi * (since - number), 0.0)  # at rest: as at the turn
         slow = self.rate / self.damped
         shape = np.exp(-slow * after) * (np.cos(after) + slow * np.sin(after))
@@ -173,15 +167,12 @@ class Swinging:
         moved: Array = self.center + sense * (self.friction + reach * shape)
         return moved
 
-    def _stop(self, number: Array) -> int:
-        """First half-swing among those asked for that does not come about, or one beyond them."""
-        last = int(np.max(number, initial=0))
-        stuck = self.reaches(np.arange(max(last, 0) + 1)) <= 0
-        return int(np.argmax(stuck)) if stuck.any() else last + 1
-
 
 def reaches(number: Array, amplitude: float, loss: float, friction: float) -> Array:
-    """A_k = A_0 r^k - 2 d (1 + r + ... + r^(k-1)) with A_0 = amplitude - d and r = exp(-loss)."""
+    """How far half-swings k (K,) set out from the centre of each, at or below 0 where none does.
+
+    A_k = A_0 r^k - 2 d (1 + r + ... + r^(k-1)) with A_0 = amplitude - d and r = exp(-loss).
+    """
     power = np.exp(-loss * number)
     total = number if abs(loss) < 1e-12 else np.expm1(-loss * number) / np.expm1(-loss)
     reach: Array = (amplitude - friction) * power - 2 * friction * total
@@ -249,6 +240,5 @@ def _from_start(
     turn = atan2(speed, rate * sine + damped * away)  # the velocity is 0; 0 < turn < pi
     slow = rate / damped
     reach = np.exp(-slow * turn) * (away * np.cos(turn) + sine * np.sin(turn))
-    return Swinging(
-        time + turn / damped, side, float(reach) - friction, 0.0, damped, rate, friction
-    )
+    amplitude = float(reach) - friction
+    return Swinging(time + turn / damped, side, amplitude, 0.0, damped, rate, friction)

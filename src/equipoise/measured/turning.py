@@ -88,8 +88,9 @@ def find_turns(record: Record) -> Turns:
     if len(places) <= NEEDED:
         raise _too_few(len(places) - 1)
     time, displacement, spread = np.array([(one.at, one.value, one.spread) for one in places]).T
-    passed = np.array([steepest_time(whole, *ends, half) for ends in pairwise(places)])
-    return Turns(time, displacement, spread, *passed.T, noise=_noise(whole, half))
+    halves = [steepest_time(whole, *ends, half) for ends in pairwise(places)]
+    passed, passed_spread = np.array(halves).T
+    return Turns(time, displacement, spread, passed, passed_spread, _noise(whole, half))
 
 
 def _seen(places: list[Local]) -> list[Local]:

@@ -24,7 +24,6 @@ from equipoise.handheld.exposed import (
     tool_sensitivities,
     values_of,
     weighted_squares,
-    working_speed,
 )
 from equipoise.handheld.model import Excitation, Hand, Impedance, Operation, Station, Tool, Work
 from equipoise.handheld.response import ToolResponse, respond_tool
@@ -191,9 +190,6 @@ def test_refusals() -> None:
         expose_tool(replace(random_tool(1), excitations=()), np.array([300.0]))
     with pytest.raises(ModelError, match=r"operation: missing; add the table \[operation\]"):
         expose_tool(random_tool(1), np.array([300.0]), HOUR)
-    with pytest.raises(ModelError, match="operation"):
-        working_speed(random_tool(1))
-    assert working_speed(worked()) == 600.0
 
 
 SPEEDS = np.array([180.0, 420.0, 700.0])
