@@ -13,20 +13,17 @@ theta_b, theta_c, theta_a (crank, coupler, rocker) start at that line; capitals 
 psi and so on start at the x axis.  So Equipoise's crank angle is theta_B = theta_b - psi, and
 harmonic n of a signal over theta_b is its harmonic over the crank angle times exp(-i n psi).
 
-Tolerances.  Equations are met to 1e-9 of the largest value: both sides are exact.  Figures that
-follow from the data without sampling are met to their last printed digit.  The harmonics of
-Table 4 miss the exact ones by up to 0.065 m/s2, 0.45 % of the first.  The mean shows that the
-fault is theirs: a periodic acceleration has mean 0, they print 0.0209 m/s2.  Put together, the
-differences are one bump of 0.4 m/s2 near theta_b = 47 deg and next to nothing elsewhere, so a few
-of their samples there are wrong.  Figures found by a grid search carry half their grid step.
+Their harmonics and the rig are in `test_yamashita_vibration`, conditions of balance and what they
+found by balancing in `test_yamashita_balancing`, rows in `test_yamashita_phases`.
+
+Tolerances.  Equations are met to 1e-9 of the largest value: both sides are exact.
 
 Slips in print or scan, each shown here by the equation that holds:
 (12) has cos(theta_a - theta_b) and denominator c sin(theta_a - theta_c); in (13) only the last
 term is multiplied by cos(theta_a - theta_c).  Table 1: for L = 1 the rocker is at psi_a - phi.
 F(c) holds the acceleration of G_c, F(d) the lever DG_d.  In (35) the coupler's term has
 sin(theta_A - theta_B) and the rocker's factor is b c.  In (36) the last lever's factor is b c, and
-the last term is b c G(d) sin(theta_C - theta_B).  In (81) R S contains g_d1.  Table 4: phase 1 is
-110.8 deg, R_9 is 0.035.
+the last term is b c G(d) sin(theta_C - theta_B).  In (81) R S contains g_d1.
 """
 
 from __future__ import annotations
@@ -37,39 +34,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 import equipoise as eq
+from literature.yamashita import FINGERS, TYPE_1, TYPE_2, Finger, close
 
 Array = np.ndarray[Any, Any]
 
 G = 9.80665
-EXACT = 1e-9
 
-
-@dataclass(frozen=True)
-class Finger:
-    """A column of Table 3: mm, g, degrees and rpm as printed."""
-
-    name: str
-    lengths: tuple[float, float, float, float]
-    centers: tuple[complex, complex, complex]
-    masses: tuple[float, float, float]
-    psi: float
-    rpm: float
-
-    @property
-    def machine(self) -> eq.Machine:
-        return eq.load(self.name)
-
-    @property
-    def total_mass(self) -> float:
-        return sum(self.masses) / 1e3
-
-
-TYPE_1 = Finger("yamashita-1", (88, 33.5, 71.5, 80), (12, -50 - 20j, 32), (199, 687, 259), 83, 193)
-TYPE_2 = Finger("yamashita-2", (85, 40, 70, 80), (17, -45 - 20j, 12), (226, 761, 226), 100, 200)
-FINGERS = pytest.mark.parametrize("finger", [TYPE_1, TYPE_2], ids=["I", "II"])
 
 THETA_B = np.radians(np.arange(0.0, 360.0, 2.5))
 FINE = np.radians(np.arange(0.0, 360.0, 0.05))
@@ -224,25 +196,6 @@ def both(finger: Finger) -> tuple[eq.mechanism.Forces, Angles]:
     return solved, angles(finger, THETA_B, finger.rpm * pi / 30, ACCELERATION)
 
 
-def vertical(finger: Finger, machine: eq.Machine | None = None) -> Array:
-    """Vertical acceleration of the common centre of mass over FINE, m/s2."""
-    solved = eq.forces(moved(finger, FINE, machine))
-    return -solved.shaking_force.y / finger.total_mass
-
-
-def over_theta_b(finger: Finger, orders: int) -> Array:
-    """Harmonics of the vertical acceleration over theta_b."""
-    machine = finger.machine
-    solved = eq.forces(eq.move(machine, 360))
-    amplitudes = eq.signals.harmonics(-solved.shaking_force.y / finger.total_mass, orders)
-    return np.asarray(amplitudes * np.exp(-1j * np.arange(orders + 1) * radians(finger.psi)))
-
-
-def close(found: Any, wanted: Any) -> None:
-    """Assert equality to EXACT of the largest value."""
-    np.testing.assert_allclose(found, wanted, rtol=0, atol=EXACT * float(np.max(np.abs(wanted))))
-
-
 # -- data and geometry -----------------------------------------------------------------------------
 
 
@@ -338,145 +291,7 @@ def test_shaking_force_follows_equations_17_and_18(finger: Finger) -> None:
     close(-solved.shaking_force.value, sum(mass_acceleration(finger, s)))
 
 
-TABLE_4 = {
-    1: (13.6464, -5.1904, 14.600),
-    2: (0.8922, -2.8232, 2.961),
-    3: (1.1574, -1.3254, 1.760),
-    4: (0.6724, -0.7729, 1.024),
-    5: (0.4078, -0.4065, 0.576),
-    6: (0.2346, -0.2097, 0.315),
-    7: (0.1355, -0.0941, 0.165),
-    8: (0.0724, -0.0345, 0.080),
-    9: (0.0343, -0.0087, 0.035),
-}
-"""n: A_n, B_n, R_n in m/s2.  R_9 is printed as 0.099, which its A_9 and B_9 contradict."""
-
-TABLE_4_ERROR = 0.065
-"""m/s2: what a few wrong samples put into each harmonic of Table 4; see the docstring."""
-
-
-def test_harmonics_of_type_1_are_exact() -> None:
-    """Table 4 recomputed: R_1 to R_4, A_1, B_1 to their last digit; the mean is 0."""
-    found = over_theta_b(TYPE_1, 9)
-    assert found[0] == pytest.approx(0, abs=1e-12)
-    assert np.abs(found[1:5]) == pytest.approx([14.585, 3.022, 1.809, 1.037], abs=5e-4)
-    assert found[1].real == pytest.approx(13.6143, abs=5e-5)
-    assert -found[1].imag == pytest.approx(-5.2313, abs=5e-5)
-
-
-@pytest.mark.parametrize("n", TABLE_4)
-def test_harmonics_of_type_1_agree_with_table_4(n: int) -> None:
-    """Table 4.  Relative to R_n the difference grows from 0.1 % to 25 % at n = 9."""
-    a, b, r = TABLE_4[n]
-    found = over_theta_b(TYPE_1, 9)[n]
-    assert found.real == pytest.approx(a, abs=TABLE_4_ERROR)
-    assert -found.imag == pytest.approx(b, abs=TABLE_4_ERROR)
-    assert abs(found) == pytest.approx(r, abs=TABLE_4_ERROR)
-
-
-@pytest.mark.parametrize(
-    ("n", "printed", "tolerance"), [(1, 110.8, 0.3), (2, 162.5, 0.5), (3, 138.9, 1), (4, 139.0, 4)]
-)
-def test_phases_of_type_1(n: int, printed: float, tolerance: float) -> None:
-    """Table 4, Y = R sin(n theta_b + phase); 0.065 m/s2 turn an R of 1 m/s2 by up to 4 deg."""
-    found = over_theta_b(TYPE_1, 4)[n]
-    assert np.degrees(np.arctan2(found.real, -found.imag)) == pytest.approx(printed, abs=tolerance)
-
-
-def test_table_4_misses_by_a_bump_at_one_place() -> None:
-    """What Table 4 adds to the exact acceleration lies near theta_b = 47 deg and is 0.4 m/s2."""
-    printed = np.array([0.0209, *(complex(a, -b) for a, b, _ in TABLE_4.values())])
-    wrong = printed - over_theta_b(TYPE_1, 9)
-    bump = (wrong @ np.exp(1j * np.outer(np.arange(10), FINE))).real
-    assert np.degrees(FINE[np.argmax(bump)]) == pytest.approx(47.5, abs=1)
-    assert np.max(bump) == pytest.approx(0.406, abs=0.005)
-    elsewhere = (np.degrees(FINE) > 90) & (np.degrees(FINE) < 330)
-    assert np.max(np.abs(bump[elsewhere])) < 0.04
-
-
-def test_harmonics_fall_for_both_types() -> None:
-    """Section 4-3: orders from 2 on grow smaller, and type II behaves alike."""
-    for finger in (TYPE_1, TYPE_2):
-        assert np.all(np.diff(np.abs(over_theta_b(finger, 9)[1:])) < 0)
-
-
-def test_counterweight_of_type_1() -> None:
-    """Section 5-3: 35.7 mm and 111 deg for a mass equal to that of the links.
-
-    It takes 72 % off the largest acceleration and, says the paper, 54 % off the smallest: 59.2 %.
-    """
-    first = over_theta_b(TYPE_1, 1)[1]
-    speed = TYPE_1.rpm * pi / 30
-    phase = np.arctan2(first.real, -first.imag)
-    assert abs(first) / speed**2 * 1e3 == pytest.approx(35.70, abs=0.006)
-    assert np.degrees(phase) == pytest.approx(111.02, abs=0.005)
-    alone = vertical(TYPE_1)
-    rest = alone - abs(first) * np.sin(FINE + phase)
-    assert 1 - np.max(rest) / np.max(alone) == pytest.approx(0.719, abs=5e-4)
-    assert 1 - np.min(rest) / np.min(alone) == pytest.approx(0.592, abs=5e-4)
-
-
-def test_two_units_of_type_2() -> None:
-    """Section 5-5: best 180 deg apart; the paper says 77 % and 60 %, exact are 74.0 and 52.5 %."""
-    alone = vertical(TYPE_2)
-    step = len(alone) // 360
-    spread = [float(np.std(alone + np.roll(alone, step * x))) for x in range(360)]
-    assert np.argmin(spread) == 180
-    pair = alone + np.roll(alone, step * 180)
-    assert 1 - np.max(pair) / np.max(2 * alone) == pytest.approx(0.740, abs=5e-4)
-    assert 1 - np.min(pair) / np.min(2 * alone) == pytest.approx(0.525, abs=5e-4)
-
-
-def test_flattest_coupler_center_of_type_2() -> None:
-    """Section 5-2: (5.8, 27.8) mm from a grid search; exact (6.24, 26.22) mm, 40.2 % less."""
-    found = eq.mechanism.regressor(moved(TYPE_2, FINE))
-    k = found.parameters.index(("coupler", "moment_x"))
-    columns = -found.shaking_force[k : k + 2].imag / TYPE_2.total_mass
-    alone = vertical(TYPE_2)
-    change = np.linalg.lstsq(columns.T, -alone, rcond=None)[0]
-    center = (found.values[k : k + 2] + change) / 0.761 * 1e3
-    assert center == pytest.approx([6.24, 26.22], abs=0.006)
-    flat = vertical(TYPE_2, moved_center("coupler", complex(*center)))
-    assert 1 - np.std(flat) / np.std(alone) == pytest.approx(0.402, abs=5e-4)
-    theirs = vertical(TYPE_2, moved_center("coupler", 5.8 + 27.8j))
-    assert 1 - np.std(theirs) / np.std(alone) == pytest.approx(0.40, abs=0.005)
-
-
-def moved_center(link: str, center: complex) -> eq.Machine:
-    """Type II with the centre of mass of one link elsewhere, mm."""
-    place = (center.real / 1e3, center.imag / 1e3)
-    return TYPE_2.machine.with_link(link, center_of_mass=place)
-
-
-# -- pure sine, complete balance -------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    ("link", "printed", "exact", "grid", "amplitude_printed", "amplitude"),
-    [
-        ("coupler", -3.0 + 0j, -3.118 + 0j, 0.15, 12853, 12888),
-        ("rocker", 172 + 76j, 173.17 + 76.97j, 1.6, 19708, 19726),
-    ],
-)
-def test_pure_sine_of_type_2(
-    link: str,
-    printed: complex,
-    exact: complex,
-    grid: float,
-    amplitude_printed: float,
-    amplitude: float,
-) -> None:
-    """Section 5-7 and (80), mm and mm/s2; the printed ones come from a search with 1 mm steps."""
-    _, _, c, d = TYPE_2.lengths
-    _, m_c, m_d = TYPE_2.masses
-    _, g_c, g_d = TYPE_2.centers
-    center = -m_d * g_d * c / (d * m_c) if link == "coupler" else -m_c * g_c * d / (c * m_d)
-    assert center == pytest.approx(exact, abs=0.006)
-    assert abs(center - printed) < grid
-    found = np.abs(eq.signals.harmonics(vertical(TYPE_2, moved_center(link, center)), 20)) * 1e3
-    assert found[1] == pytest.approx(amplitude, abs=0.5)
-    assert found[1] == pytest.approx(amplitude_printed, rel=3e-3)
-    assert np.max(found[2:]) < 1e-9
+# -- a common centre of mass on a circle -----------------------------------------------------------
 
 
 @FINGERS
@@ -491,37 +306,6 @@ def test_circle_of_equations_81_and_82(finger: Finger) -> None:
     motion = moved(finger, THETA_B, machine, ACCELERATION)
     wanted = vector(rs_rt, motion.crank_angle, motion.speed, ACCELERATION)
     close(-eq.forces(motion).shaking_force.value, wanted)
-
-
-@FINGERS
-def test_complete_balance_by_equations_84_and_85(finger: Finger) -> None:
-    balanced = balanced_by_84_and_85(finger)
-    solved = eq.forces(moved(finger, THETA_B, balanced, ACCELERATION))
-    before = eq.forces(moved(finger, THETA_B, acceleration=ACCELERATION))
-    assert np.max(before.shaking_force.size) > 10
-    assert np.max(solved.shaking_force.size) < 1e-12
-    assert np.max(np.abs(solved.shaking_moment)) > 0.1
-
-
-def test_first_moments_of_the_balanced_type_1() -> None:
-    """Below (85), g mm: m_d g_d1, m_d g_d2, m_b g_b1, m_b g_b2; printed exactly."""
-    links = balanced_by_84_and_85(TYPE_1).links
-    found = [
-        moment
-        for name in ("rocker", "crank")
-        for moment in (1e6 * (links[name].mass or 0) * x for x in links[name].center_of_mass or ())
-    ]
-    assert found == pytest.approx([38433.6, 15373.4, -39108.6, -6437.6], abs=0.06)
-
-
-def balanced_by_84_and_85(finger: Finger) -> eq.Machine:
-    _, b, c, d = finger.lengths
-    m_b, m_c, m_d = finger.masses
-    g_c = finger.centers[1]
-    rocker = -m_c * g_c * d / c / m_d / 1e3
-    crank = -m_c * b / c * (c - g_c) / m_b / 1e3
-    machine = finger.machine.with_link("rocker", center_of_mass=(rocker.real, rocker.imag))
-    return machine.with_link("crank", center_of_mass=(crank.real, crank.imag))
 
 
 # -- joint forces and torque -----------------------------------------------------------------------
@@ -603,65 +387,3 @@ def test_torque_of_equation_90(finger: Finger) -> None:
     t_tm = b * d * i_c * s.c2 * np.sin(s.a - s.b) + b * c * i_d * s.a2 * np.sin(s.c - s.b)
     close(solved.drive_torque, t_tm / (c * d * np.sin(s.c - s.a)))
     assert np.max(np.abs(solved.at(0.0).drive_torque)) < 1e-12
-
-
-# -- sensitivities ---------------------------------------------------------------------------------
-
-
-@FINGERS
-def test_sensitivities_of_equation_64(finger: Finger) -> None:
-    """M dY''/d(first moment) of every link, and M dY''/dm, as columns of the regressor."""
-    motion = moved(finger, THETA_B)
-    s = angles(finger, THETA_B, finger.rpm * pi / 30, 0.0)
-    found = eq.mechanism.regressor(motion)
-    column = {p: -row.imag for p, row in zip(found.parameters, found.shaking_force, strict=True)}
-    still = np.zeros(THETA_B.shape)
-    rows: tuple[tuple[str, Array, Array, Array], ...] = (
-        ("crank", s.b, still + s.b1, still),
-        ("coupler", s.c, s.c1, s.c2),
-        ("rocker", s.a, s.a1, s.a2),
-    )
-    base = -(s.b1**2) * finger.lengths[1] / 1e3 * np.sin(s.b)
-    for (link, angle, w, w1), center in zip(rows, finger.centers, strict=True):
-        g1, g2 = center.real / 1e3, center.imag / 1e3
-        by_x = w1 * np.cos(angle) - w**2 * np.sin(angle)
-        by_y = -w1 * np.sin(angle) - w**2 * np.cos(angle)
-        close(column[link, "moment_x"], by_x)
-        close(column[link, "moment_y"], by_y)
-        by_mass = column[link, "mass"] + g1 * by_x + g2 * by_y
-        close(by_mass, (base if link == "coupler" else 0) + g1 * by_x + g2 * by_y)
-
-
-@pytest.mark.parametrize(
-    ("quantity", "printed", "exact", "tolerance"),
-    [
-        ("moment_x", (10, 267), (6.72, 265.82), 3.5),
-        ("moment_y", (30, 215, 320), (27.94, 214.74, 319.41, 330.64), 2.5),
-    ],
-)
-def test_crank_angles_at_which_a_coupler_coordinate_has_no_effect(
-    quantity: str, printed: tuple[float, ...], exact: tuple[float, ...], tolerance: float
-) -> None:
-    """Section 5-2, theta_b in degrees, read off a plot with wide steps (Fig. 11), type II.
-
-    For g_c2 the paper names three angles.  A periodic function changes sign an even number of
-    times: there is a fourth at 330.6 deg, close to the third, between which it stays small.
-    """
-    found = sign_changes(quantity)
-    assert found == pytest.approx(exact, abs=0.006)
-    for wanted, at in zip(printed, found, strict=False):
-        assert at == pytest.approx(wanted, abs=tolerance)
-
-
-def sign_changes(quantity: str) -> list[float]:
-    """theta_b in degrees at which the coupler's first moment leaves the vertical force alone."""
-
-    def effect(theta_b: Any) -> Array:
-        found = eq.mechanism.regressor(moved(TYPE_2, np.radians(np.atleast_1d(theta_b))))
-        column: Array = found.shaking_force[found.parameters.index(("coupler", quantity))].imag
-        return column
-
-    grid = np.arange(0.0, 361.0, 1.0)
-    values = effect(grid)
-    brackets = np.flatnonzero(values[:-1] * values[1:] < 0)
-    return [float(brentq(lambda t: effect(t)[0], grid[k], grid[k + 1])) for k in brackets]

@@ -24,7 +24,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.patterns import PATTERNS, arranged, halving, patterns_for
+from equipoise.balancing.patterns import PATTERNS, arranged, halved, patterns_for
 from equipoise.balancing.phase_search import choose_phases
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.support import Row
@@ -153,8 +153,8 @@ def test_table_5_on_type_ii(name: str) -> None:
 
 def test_pairs_half_a_turn_apart_and_sets_a_quarter() -> None:
     """Section 5-6 (a), conclusion 6): pairs of pi, and pi / 2 from pair to pair."""
-    assert np.degrees(halving(4)).tolist() == [0.0, 180.0, 90.0, 270.0]
-    assert sorted(halving(4)) == sorted(PATTERNS["4 quarter turns"].phases)
+    assert np.degrees(halved(4).phases).tolist() == [0.0, 180.0, 90.0, 270.0]
+    assert sorted(halved(4).phases) == sorted(PATTERNS["4 quarter turns"].phases)
 
 
 def test_all_phases_at_once_find_the_same_as_pairs() -> None:
@@ -162,7 +162,7 @@ def test_all_phases_at_once_find_the_same_as_pairs() -> None:
     that the rule has, with the least twist that its phases can have.
     """
     found = choose_phases(rows(0.0, 0.0, 0.0, 0.0), [U])
-    assert sorted(found.phases) == pytest.approx(sorted(halving(4)), abs=1e-9)
+    assert sorted(found.phases) == pytest.approx(sorted(halved(4).phases), abs=1e-9)
     assert all(order % 4 == 0 for order in found.remaining)
     printed = arranged(MACHINE, "4 quarter turns", 0.3)
     as_printed = choose_phases(printed, [U])

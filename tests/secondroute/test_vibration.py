@@ -185,7 +185,7 @@ def same_joints(pair: Pair) -> None:
     torque = float(np.max(np.abs(pair.wanted.torque)))
     for k, one in enumerate(exact.passes):
         for name in rig_reference.JOINTS:
-            wanted = pair.wanted.joints[name][:, k] @ [1, 1j]
+            wanted = pair.wanted.joints[name][:, k]
             pair.close(turn * one.joints[name].value, wanted, size)
         pair.close(one.drive_torque, pair.wanted.torque[:, k], torque)
 

@@ -18,7 +18,6 @@ from math import inf, isfinite, pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
@@ -32,7 +31,6 @@ Output = tuple[str, str | None, tuple[float, ...]]
 """What a signal is of: its name, the point of a moment, and the orders that count."""
 Parameters = tuple[float, float, float, float]
 """Mass, first moments and moment of inertia of a link about the origin of its axes."""
-Bool = NDArray[np.bool_]
 
 
 # -- outputs of machines ---------------------------------------------------------------------------

@@ -128,10 +128,6 @@ class Response:
         ref, iw = self._reference, 1j * self._frequency[:, None]
         return self._of(lambda mesh: (ref.k[:, 0] + iw * ref.c[:, 0]) * mesh.stretch[..., 0])
 
-    def absorber_displacement(self) -> NDArray:
-        """W of the absorbers' masses, in m, (F, A); 0 where there is none."""
-        return self._of(lambda mesh: mesh.q[:, mesh.columns[:, 2]])
-
     def power(self) -> dict[str, NDArray]:
         """Time averages in W: "fed_in", spent in "shaft", (F,), and in dampers by kind, (F, A)."""
         w, rate = self._frequency, self._frequency[:, None, None] ** 2 / 2 * self._reference.c

@@ -445,12 +445,6 @@ def planter(case: Case | Trochoid) -> Planter:
     return Planter(case)
 
 
-def highest_speed(case: Case | Trochoid, limit: float, *, in_soil: bool = False) -> float:
-    """Crank speed (a size) at which the largest acceleration, of all or in the soil, is `limit`."""
-    low, high = planter(case).visits[0] if in_soil else (0.0, TURN)
-    return float(np.sqrt(limit / planter(case).sharpest(low, high)))
-
-
 @cache
 def figures(case: Case | Trochoid) -> dict[str, Any]:
     """All figures under dotted names, SI units, crank angles in [0, 2 pi)."""
@@ -481,33 +475,3 @@ def figures(case: Case | Trochoid) -> dict[str, Any]:
             "cusps": p.ground.cusps,
         }
     )
-
-
-ANGLES = {"crank_angle", "direction", "attitude", "crank_travel", "min_at", "max_at"}
-ANGLES |= {"first", "second", "duration"}
-LENGTHS = {"x", "y", "height", "width", "length", "path_length_ground", "path_length_machine"}
-LENGTHS |= {"ground_advance", "ground_distance", "hole_length"}
-
-
-def report(case: Case | Trochoid) -> str:
-    """All figures of a case, one a line: SI units, then degrees or centimetres."""
-
-    def numbered(value: Any) -> Any:
-        many = isinstance(value, list | tuple)
-        return {str(k): numbered(item) for k, item in enumerate(value)} if many else value
-
-    lines = []
-    for name, value in flatten({k: numbered(v) for k, v in figures(case).items()}).items():
-        *_, before, last = name.split(".")
-        line = f"  {name:36s}{value:16.9g}"
-        if last in ANGLES or last.isdigit():
-            line += f"{np.degrees(value):16.9g} deg"
-        elif before == "smallest_radius" or (last in LENGTHS and before[-3:] not in {"ity", "ion"}):
-            line += f"{100 * value:16.9g} cm"
-        lines.append(line)
-    return "\n".join(lines)
-
-
-if __name__ == "__main__":
-    for _letter, _case in MACHINES.items():
-        print(f"{_letter}\n{report(_case)}\n")  # noqa: T201

@@ -6,9 +6,6 @@ the crank, as MuJoCo's own places and Jacobians of the two ends at C ask for, an
 Fourier series.  The loop's forces are inside the tree and leave the equations of base and crank
 alone.  MuJoCo's inertia matrix and inverse dynamics, led back on the few free coordinates, then
 give the accelerations of the base and the torque of the motor, without a soft constraint.
-
-`loose_gauge` closes the loop by MuJoCo's own stiff constraint instead and lets a servo turn the
-crank: no better than some 1e-4 of the gauge's swing, but nothing in it is prescribed.
 """
 
 from __future__ import annotations
@@ -52,11 +49,11 @@ def inertial(mass: float, center: complex, inertia: float) -> str:
     )
 
 
-def hinge(name: str, stiffness: float = 0.0, damping: float = 0.0, rest: float = 0.0) -> str:
+def hinge(name: str, stiffness: float = 0.0, damping: float = 0.0) -> str:
     """Write a hinge down that turns in the plane."""
     return (
         f'<joint name="{name}" type="hinge" axis="0 0 1" stiffness="{stiffness!r}" '
-        f'damping="{damping!r}" springref="{rest!r}"/>'
+        f'damping="{damping!r}"/>'
     )
 
 
@@ -78,12 +75,12 @@ def tree(rig: Rig, number: int, row: Row) -> str:
     return crank + link(f"rocker{number}", complex(d), bar.rocker, end)
 
 
-def mjcf(rig: Rig, extra: str = "", option: str = "", turn_rest: float = 0.0) -> str:
+def mjcf(rig: Rig) -> str:
     """Write the rig down; all torsions are one, in the hinge of the base."""
     body = rig.support
     stiffness = sum(spring.stiffness for spring in rig.torsions)
     damping = sum(spring.damping for spring in rig.torsions)
-    joints = hinge("tilt", stiffness, damping, turn_rest)
+    joints = hinge("tilt", stiffness, damping)
     if not body.pivoted:
         slides = (("surge", "1 0 0"), ("heave", "0 1 0"))
         joints = (
@@ -101,18 +98,11 @@ def mjcf(rig: Rig, extra: str = "", option: str = "", turn_rest: float = 0.0) ->
     <mujoco>
       <compiler angle="radian" boundmass="0" boundinertia="0" balanceinertia="false"
                 autolimits="false"/>
-      <option gravity="{xy(rig.gravity)}" {option}/>
+      <option gravity="{xy(rig.gravity)}"/>
       <worldbody>
         <body name="base" pos="{xy(body.origin)}">{joints}{own}{marks}{wheel}{rows}</body>
       </worldbody>
-      {extra}
     </mujoco>"""
-
-
-def strip_constraints(model: mujoco.MjModel) -> None:
-    """Leave the tree to itself: no contacts, no limits."""
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
 
 
 @dataclass(frozen=True)
@@ -153,7 +143,8 @@ class Engine:
         self.rig = rig
         self.speed_given = rig.drive is None
         self.model = mujoco.MjModel.from_xml_string(mjcf(rig))
-        strip_constraints(self.model)
+        flags = mujoco.mjtDisableBit  # no contacts, no limits: the tree is left to itself
+        self.model.opt.disableflags |= flags.mjDSBL_CONTACT | flags.mjDSBL_CONSTRAINT
         self.data = mujoco.MjData(self.model)
         self.series = self._closed()
         forces, moment = self._preloads()
@@ -371,47 +362,3 @@ def steady(
     return Steady(
         states[:, -1], states[:, :-1], np.array(gauge), np.array(pushes), np.array(torque)
     )
-
-
-# -- the loose check -------------------------------------------------------------------------------
-
-
-def loose_gauge(
-    rig: Rig, start: Real, speed: float, turns: float = 1.0, step: float = 2e-5
-) -> tuple[Real, Real]:
-    """Run MuJoCo forward from a state of the base, loops closed by constraints, servo on cranks.
-
-    rig : pivoted and sprung by torsions only.  start : (2,), tilt and its rate at crank angle 0.
-    The servos turn the cranks evenly but for what their torque needs as slip.
-
-    Returns
-    -------
-    times and gauge readings, (N,).
-    """
-    assert rig.support.pivoted and not rig.mounts and not rig.flywheel
-    engine = Engine(rig)
-    rest = float(engine.model.qpos_spring[engine.model.joint("tilt").id])
-    count = range(len(rig.rows))
-    stiff = f'solref="{5 * step!r} 1" solimp="0.9999 0.9999 1e-9"'
-    closing = "".join(
-        f'<connect site1="coupler_end{k}" site2="rocker_end{k}" {stiff}/>' for k in count
-    )
-    servos = "".join(f'<velocity joint="crank{k}" kv="50"/>' for k in count)
-    option = f'timestep="{step!r}" integrator="implicitfast" tolerance="1e-14" iterations="200"'
-    extra = f"<equality>{closing}</equality><actuator>{servos}</actuator>"
-    model = mujoco.MjModel.from_xml_string(mjcf(rig, extra, option, rest))
-    model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
-    data = mujoco.MjData(model)
-    engine._pose(start[:1], start[1:2], 0.0, speed)
-    data.qpos[:], data.qvel[:] = engine.data.qpos, engine.data.qvel
-    data.ctrl[:] = speed
-    gauge = model.site("gauge").id
-    along = np.array([rig.gauge_direction.real, rig.gauge_direction.imag])
-    times, readings = [], []
-    for _ in range(round(turns * TURN / abs(speed) / step)):
-        mujoco.mj_step1(model, data)
-        moved = data.site_xpos[gauge][:2] - [rig.gauge.real, rig.gauge.imag]
-        times.append(data.time)
-        readings.append(float(along @ moved))
-        mujoco.mj_step2(model, data)
-    return np.array(times), np.array(readings)

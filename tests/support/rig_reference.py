@@ -335,7 +335,7 @@ class Balance:
     acceleration : of the support's origin and tilt, (B, 3).  crank_acceleration : against the
     support.  torque : on each row's crank, (B, rows).  motor : torque of the motor.
     joints : force at A (support on crank), B (crank on coupler), C (coupler on rocker) and D
-    (support on rocker) in space axes, (B, rows, 4).  pivot : force of the ground on O.
+    (support on rocker) in space axes, (B, rows, 4).
     """
 
     acceleration: Real
@@ -343,7 +343,6 @@ class Balance:
     torque: Real
     motor: Real
     joints: Complex
-    pivot: Complex
 
 
 @dataclass
@@ -395,11 +394,9 @@ def balance(rig: Rig, now: Instant) -> Balance:
             set_tie(rig, row, tie, posed, now, equations, 3 + 9 * number)
     found = np.linalg.solve(equations.matrix, equations.known[..., None])[..., 0]
     rows = found[:, 3:-1].reshape(count, len(rig.rows), 9)
-    acceleration, pivot = found[:, :3].copy(), found[:, 0] + 1j * found[:, 1]
+    acceleration = found[:, :3].copy()
     if rig.support.pivoted:
         acceleration[:, :2] = 0.0
-    else:
-        pivot = 0 * pivot
     even = rig.drive is None
     return Balance(
         acceleration,
@@ -407,7 +404,6 @@ def balance(rig: Rig, now: Instant) -> Balance:
         rows[..., 8],
         found[:, -1] if even else torque_of(rig, now),
         rows[..., 0:8:2] + 1j * rows[..., 1:8:2],
-        pivot,
     )
 
 
@@ -600,26 +596,6 @@ def begin(rig: Rig, speed: float, state: Real | None) -> Real:
     return np.append(support, 0.0)[:, None]
 
 
-def integrate(
-    rig: Rig,
-    speed: float,
-    turns: float,
-    start_state: Real | None = None,
-    samples_per_turn: int = 64,
-) -> tuple[Real, Real]:
-    """Follow the support from crank angle 0.
-
-    Returns
-    -------
-    times (N + 1,), and states (N + 1, 2 n + 1) after equal steps of the crank: coordinates
-    (tilt, or surge, heave, tilt), their rates, and the crank's speed against the support.
-    """
-    samples = round(turns * samples_per_turn)
-    start = begin(rig, speed, start_state)
-    _, states = run(rig, start, turns, samples, float(np.sign(speed)))
-    return states[:, -1, 0], states[:, :-1, 0]
-
-
 # -- steady motion ---------------------------------------------------------------------------------
 
 
@@ -630,7 +606,7 @@ class Steady:
     state : (N, 2 n + 1), as of `integrate`.  gauge : (N,).  mounts : push (N, mounts).
     torsions : moment (N, torsions).  torque : on each row's crank, (N, rows).  motor : (N,).
     joints : "A" to "D", force on crank, coupler, rocker and rocker by the body before them, in
-    space axes, (N, rows, 2).  pivot : force of the ground on O, (N, 2).
+    space axes, (N, rows).
     acceleration : of origin and tilt, (N, 3).  work, loss : by the motor and in the mounts, a turn.
     """
 
@@ -642,8 +618,7 @@ class Steady:
     torsions: Real
     torque: Real
     motor: Real
-    joints: dict[str, Real]
-    pivot: Real
+    joints: dict[str, Complex]
     acceleration: Real
     work: float
     loss: float
@@ -679,13 +654,15 @@ def slope_and_miss(flow: Flow, at: Real, steps: Real, **tolerances: float) -> tu
 
 
 def fixed_point(flow: Flow, guess: Real, steps: Real) -> Real:
-    """Find where a map stays.
+    """Find where a map stays; a guess that stays is it.
 
     Newton's method on a coarse map, and from there on the sharp one with the last derivative: many
     trajectories at once are slow to follow sharply where a mount lifts off at other instants.
 
     flow : maps columns (m, B) to columns.  steps : of the differences, 1e-4 of what is usual.
     """
+    if np.max(np.abs(flow(guess[:, None])[:, 0] - guess) / steps) < 1e-7:
+        return guess
     for _ in range(20):
         slope, miss = slope_and_miss(flow, guess, steps, rtol=1e-8, atol=1e-10)
         guess = guess - np.linalg.solve(slope - np.eye(guess.size), miss)
@@ -719,23 +696,20 @@ def turn_map(rig: Rig, start: Real) -> Flow:
     return flow
 
 
-def periodic(rig: Rig, speed: float, guess: Real | None, settle: float) -> Real:
+def periodic(rig: Rig, speed: float, guess: Real | None) -> Real:
     """Return the state (2 n + 2, 1) at crank angle 0 that comes back after a turn."""
     start = begin(rig, speed, guess)
-    if settle:
-        start = run(rig, start, settle, 1, float(np.sign(speed)))[1][-1]
-        start[-1] = 0.0
     steps = difference_steps(rig, speed)
     start[: steps.size, 0] = fixed_point(turn_map(rig, start), start[: steps.size, 0], steps)
     return start
 
 
-def multipliers(rig: Rig, speed: float, start_state: Real | None = None) -> Complex:
-    """Return the eigenvalues of the map over one turn about the steady motion.
+def multipliers(rig: Rig, speed: float, start_state: Real) -> Complex:
+    """Return the eigenvalues of the map over one turn about a steady motion.
 
     With a drive, of the map from crank angle 0 to the next: the trivial multiplier 1 is not there.
     """
-    start, steps = periodic(rig, speed, start_state, 0.0), difference_steps(rig, speed)
+    start, steps = begin(rig, speed, start_state), difference_steps(rig, speed)
     slope, _ = slope_and_miss(turn_map(rig, start), start[: steps.size, 0], steps)
     return np.linalg.eigvals(slope).astype(complex)
 
@@ -745,15 +719,13 @@ def steady(
     speed: float,
     samples_per_turn: int = 256,
     start_state: Real | None = None,
-    settle: float = 0.0,
 ) -> Steady:
     """Find the steady motion.
 
-    speed : of the crank, signed; with a drive the first guess of it.  settle : turns (whole) of
-    plain integration before Newton's method, where that needs a near start.
+    speed : of the crank, signed; with a drive the first guess of it.
     """
     forward = float(np.sign(speed))
-    start = np.vstack([periodic(rig, speed, start_state, settle), np.zeros((2, 1))])
+    start = np.vstack([periodic(rig, speed, start_state), np.zeros((2, 1))])
     travel, states = run(rig, start, 1, samples_per_turn, forward)
     work, loss = states[-1, -2:, 0]
     angle, states = forward * travel[:-1], states[:-1, :-2, 0]
@@ -770,17 +742,11 @@ def steady(
         torsions=turns,
         torque=found.torque,
         motor=found.motor,
-        joints={name: parts(found.joints[:, :, k]) for k, name in enumerate(JOINTS)},
-        pivot=parts(found.pivot),
+        joints={name: found.joints[:, :, k] for k, name in enumerate(JOINTS)},
         acceleration=found.acceleration,
         work=float(work),
         loss=float(loss),
     )
-
-
-def parts(vectors: Complex) -> Real:
-    """Return x and y in a last axis."""
-    return np.stack([vectors.real, vectors.imag], -1)
 
 
 # -- the paper's shortened equations ---------------------------------------------------------------
@@ -794,7 +760,7 @@ class Reduced:
     tilt: Real
     tilt_rate: Real
     gauge: Real
-    multipliers: Complex
+    multipliers: Complex | None
 
     @property
     def peak_to_peak(self) -> float:
@@ -888,10 +854,10 @@ def reduced_steady(rig: Rig, speed: float, step: int = 59, samples_per_turn: int
 
     steps = difference_steps(rig, speed)
     start = fixed_point(flow, np.zeros(2), steps)
-    slope, _ = slope_and_miss(flow, start, steps)
+    found = slope_and_miss(flow, start, steps)[0] if step == 54 else None
     tilt, rate = followed(derivative, start[:, None], travel)[:-1, :, 0].T
     lever = mount_lever(rig, rig.gauge, rig.gauge_direction)[2]
-    eigenvalues = np.linalg.eigvals(slope).astype(complex)
+    eigenvalues = None if found is None else np.linalg.eigvals(found).astype(complex)
     return Reduced(np.sign(speed) * travel[:-1], tilt, rate, lever * tilt, eigenvalues)
 
 

@@ -214,18 +214,32 @@ def every_model(path: str) -> dict[str, Any]:
     return found
 
 
+ONE_SIDED = ("planetary-planting-arm", "geared-counterweight", "kim-chung-b")
+"""On which a mount may let go; to look for that takes ten times as long."""
+
+
 @pytest.mark.parametrize("name", CARRIED)
 def test_any_linkage_on_a_support(name: str) -> None:
     """Geared ones with cycles of several turns, loads with windows, soil."""
-    found = every_model(written(example_text(name) + PLANE))
+    held = () if name in ONE_SIDED else (("one_sided = true\n", ""),)
+    found = every_model(written(example_text(name) + PLANE, *held))
     assert set(found) == set(MODELS)
     exact, moment = found["exact"], found["moment"]
     assert exact["energy"]["fed_in"] == pytest.approx(exact["energy"]["lost"], rel=1e-6)
-    if exact["mounts"]["right"]["lifts_off"]:
-        return
+    if name == "quick-return":
+        return  # it shakes its support too hard for a linear model
     for gauge, values in moment["gauges"].items():
         near = exact["gauges"][gauge]["peak_to_peak"]
         assert values["peak_to_peak"] == pytest.approx(near, rel=0.1), gauge
+
+
+def test_a_yoke_that_shakes_its_light_support_off_a_mount() -> None:
+    light = (('mass = "60 kg"', 'mass = "10 kg"'), ('"4 kg m^2"', '"0.7 kg m^2"'))
+    found = every_model(written(example_text("scotch-yoke") + PLANE, *light))
+    assert set(found) == set(MODELS)
+    exact = found["exact"]
+    assert exact["mounts"]["right"]["lifts_off"] > 0.1
+    assert exact["energy"]["fed_in"] == pytest.approx(exact["energy"]["lost"], rel=1e-6)
 
 
 ODD = {

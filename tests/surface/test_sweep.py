@@ -183,7 +183,7 @@ def test_processes() -> None:
 
 
 def test_an_interrupted_sweep_goes_on() -> None:
-    study = written(LENGTHS, ("designs = 200", "designs = 100_000_000"))
+    study = written(LENGTHS, ("designs = 200", "designs = 5_000_000"))
     words = command("sweep", study, "-o", "long.zarr")
     result = interrupted(words, lambda: len([*Path("long.zarr").glob("reason/c/*")]) > 1)
     assert (result.status, result.out) == (130, "")
@@ -405,7 +405,7 @@ def test_a_bar_in_a_terminal() -> None:
     """With rate, time left, best so far and failures; gone in the end."""
     import pty
 
-    study = written(LENGTHS, ("designs = 200", "designs = 300_000"))
+    study = written(LENGTHS, ("designs = 200", "designs = 120_000"))
     ours, theirs = pty.openpty()
     words = command("sweep", study, "-o", "new.zarr")
     environment = {**os.environ, "TERM": "xterm", "COLUMNS": "120"}
@@ -420,8 +420,8 @@ def test_a_bar_in_a_terminal() -> None:
     out, _ = done.communicate()
     text = seen.decode()
     assert done.returncode == 0
-    assert b"300000 designs of 2 numbers" in out
-    assert re.search(r"\d+ %, \d+ of 300000 designs", text)
+    assert b"120000 designs of 2 numbers" in out
+    assert re.search(r"\d+ %, \d+ of 120000 designs", text)
     assert re.search(r"designs/s, \d.* left", text)
     assert "best so far: vertical" in text
     assert "failed: does not turn fully" in text

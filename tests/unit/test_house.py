@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -13,6 +14,8 @@ import equipoise
 
 ROOT = Path(equipoise.__file__).parent
 FILES = sorted(ROOT.rglob("*.py"))
+TOP = Path(__file__).parents[2]
+PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIBUTING.md"]
 LINES, MODULES, FILE, FUNCTION, NAMES = 63_000, 310, 350, 60, 40
 """Most lines and modules in all, lines in a file and in a function, names at the top.
 
@@ -63,3 +66,15 @@ def test_files_and_functions_are_read_without_scrolling(file: Path) -> None:
             assert node.end_lineno is not None
             length = node.end_lineno - node.lineno + 1 - len(said.splitlines())
             assert length <= FUNCTION, node.name
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
+def test_files_that_the_documentation_names_are_there(page: Path) -> None:
+    """By their path from the top, from the package, or by their name alone."""
+    named = re.findall(r"`([\w/]+\.(?:py|ts))`", page.read_text(encoding="utf-8"))
+    found = [
+        file for folder in ("src", "tests", "page/src") for file in (TOP / folder).rglob("*.*")
+    ]
+    names = {file.name for file in found}
+    for name in named:
+        assert name in names or (TOP / name).exists() or (ROOT / name).exists(), name

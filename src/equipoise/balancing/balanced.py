@@ -5,21 +5,36 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from math import isclose, sqrt
 from typing import Any
 
+import numpy as np
+
 from equipoise.balancing.design_variables import Bound
-from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
+from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
-from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.objectives import measured, unit_of
 from equipoise.balancing.phase_search import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
+from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note
-from equipoise.mechanism.balance import Balance
+from equipoise.mechanism.balance import Balance, Objective
+from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.outputs import DECLARED
+from equipoise.planting.summary import plant
+from equipoise.results.analysis import Analysis
+from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array
+from equipoise.vibration.forced import respond, usual_step
+
+GONE, ROUNDING = 1e-9, 1e-7
+"""Share of a figure before below which it is rounding; share of all for a price."""
 
 
 @dataclass(frozen=True)
@@ -79,9 +94,13 @@ class Balanced(Result):
         """Between what was found and the proved bound, over the value before; None without one."""
         if self.bound is None:
             return None
-        before = self.plan.combined([1.0] * len(self.plan.objectives))
         # A bound above the cost is rounding, which is as large as it may be below.
-        return abs(self.cost - self.bound) / before
+        return abs(self.cost - self.bound) / self.whole
+
+    @property
+    def whole(self) -> float:
+        """Cost of the original."""
+        return self.plan.combined([1.0] * len(self.plan.objectives))
 
     @property
     def added_mass(self) -> float:
@@ -119,18 +138,44 @@ class Balanced(Result):
         return names | {name: price.unit for name, price in self.prices.items()}
 
     def columns(self) -> list[tuple[str, str, Array]]:
-        """Name, unit and values (N,) of crank angle, force, moment and torque before and after."""
-        return signal_columns(self.original, self.machine)
+        """Name, unit and values (N,) of crank angle, force, moment and torque before and after.
+
+        Over the longer of their cycles, where an added shaft takes several turns to come back.
+        """
+        machines = {"before": self.original, "after": self.machine}
+        turns = max(move(machine, 1).turns for machine in machines.values())
+        angles = np.arange(ANGLES * turns) * (2 * np.pi / ANGLES)
+        columns = [("crank_angle", "rad", angles)]
+        for name, machine in machines.items():
+            motion = move(machine, angles, acceleration=0.0)
+            columns += [
+                (f"{one.name}.{name}", one.unit, one.values)
+                for one in Outputs.of(Analysis(motion, forces(motion))).ordered
+                if one.declared.compared
+            ]
+        return columns
 
     @property
     def planting_kept(self) -> bool | None:
         """Whether the planting figures are what they were; None where there are none."""
-        return planting_kept(self.before, self.after)
+        old, new = self.before, self.after
+        names = [name for name in old if name.startswith("planting.")]
+        pairs = ((old[name], new.get(name, np.nan)) for name in names)
+        return all(isclose(*pair, rel_tol=1e-9, abs_tol=1e-12) for pair in pairs) if names else None
 
     @property
     def equivalent_speeds(self) -> dict[str, float]:
-        """Speeds (rad/s) at which the new machine shakes as the old one did, by figure."""
-        return equivalent_speeds(self.before, self.after, self.original.drive.speed)
+        """Speeds (rad/s) at which the new machine shakes as the old one did, by figure.
+
+        Shaking forces and moments grow with the square of the speed (Lee and Kim, conclusions).
+        What is gone but for rounding has no such speed.
+        """
+        old, new = self.before, self.after
+        return {
+            name: self.original.drive.speed * sqrt(old[name] / new[name])
+            for name in old
+            if name.startswith(("shaking_", "rows.")) and new.get(name, 0.0) > GONE * old[name] > 0
+        }
 
     def to_dict(self, wanted: Collection[str] | None = None) -> dict[str, Any]:
         """The machine-readable output, SI units and radians.
@@ -165,82 +210,72 @@ class Balanced(Result):
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
     """The result, with what was asked read off the new machine."""
-    problem = found.problem
-    objectives = {
-        one.name: (problem.before[one.name], problem.value_of(found.machine, one))
-        for one in plan.objectives
-    }
+    problem, new, best = found.problem, found.machine, found.best
     pairs = zip(problem.parts, found.numbers, strict=True)
-    changes = [*found.meshes, *(change for part, own in pairs for change in part.changes(own))]
+    changes = (*found.meshes, *(change for part, own in pairs for change in part.changes(own)))
     return Balanced(
-        found.machine,
-        machine,
-        plan,
-        tuple(changes),
-        objectives,
-        problem.cost_of(found.machine),
-        found.best.bound,
-        found.method,
-        _prices(found),
-        found.best.nodes,
-        tuple(_notes(found)),
-        scope=_scope(found),
+        machine=new,
+        original=machine,
+        plan=plan,
+        changes=changes,
+        objectives={
+            one.name: (problem.before[one.name], problem.value_of(new, one))
+            for one in plan.objectives
+        },
+        cost=problem.cost_of(new),
+        bound=best.bound,
+        method=found.method,
+        prices=_prices(found),
+        looked_at=best.nodes,
+        notes=tuple(_notes(found)),
+        scope=tuple(_scope(found)),
     )
 
 
-def _scope(found: Solution) -> tuple[Note, ...]:
+def _scope(found: Solution) -> Iterator[Note]:
     """Of what the bound is proved, where that is not all that the plan allows."""
-    problem, told = found.problem, []
+    problem = found.problem
     pairs = zip(problem.parts, found.numbers, strict=True)
     if problem.reads_gauges and problem.supports_more:
-        told.append(Note("for small changes about it"))
+        yield Note("for small changes about it")
     if any(part.stopped(own) for part, own in pairs):
-        told.append(Note("within where it was stopped"))
+        yield Note("within where it was stopped")
     if problem.flips:
-        told.append(Note("for the flanks of gears in contact here"))
+        yield Note("for the flanks of gears in contact here")
     if any(geared_range(geared) for geared in problem.plan.geared):
-        told.append(Note("for each of the gears tried"))
-    return tuple(told)
+        yield Note("for each of the gears tried")
 
 
 def _prices(found: Solution) -> dict[str, Price]:
-    """Prices of the limits, in SI units."""
+    """Prices of all limits, in SI units: those asked for, and those that parts have of themselves.
+
+    What is nothing but the solver's rounding is 0.
+    """
     problem, plan = found.problem, found.problem.plan
     only = plan.objectives[0] if len(plan.objectives) == 1 else None
     unit = 1.0 if only is None else problem.scale(only) / only.weight
     prices = {}
+
+    def add(bound: Bound, scale: float, rounding: float) -> None:
+        paid = found.best.prices.get(bound.name, 0.0) * unit / scale
+        paid = paid if paid > ROUNDING * unit / rounding else 0.0
+        prices[bound.name] = Price(bound.at_most, bound.used, paid, bound.unit)
+
     for limit in plan.limits:
-        scale = problem.scale(limit.objective)
-        at_most = (
-            limit.at_most
-            if limit.at_most is not None
-            else (limit.ratio or 0.0) * problem.before[limit.name]
-        )
+        scale, at_most = problem.scale(limit.objective), limit.at_most
+        if at_most is None:
+            at_most = (limit.ratio or 0.0) * problem.before[limit.name]
         used = problem.value_of(found.machine, limit.objective)
-        paid = found.best.prices.get(limit.name, 0.0) * unit / scale
-        paid = _rounded(paid, unit / scale)
-        prices[limit.name] = Price(at_most, used, paid, unit_of(limit.objective, problem.machine))
-    return prices | _prices_of_parts(found, unit)
-
-
-def _prices_of_parts(found: Solution, unit: float) -> dict[str, Price]:
-    """Prices of added mass in all, and of the limits that each part has of itself."""
-    problem, most = found.problem, found.problem.plan.added_mass
+        si_unit = unit_of(limit.objective, problem.machine)
+        add(Bound(limit.name, at_most, used, si_unit), scale, scale)
     pairs = [*zip(problem.parts, found.numbers, strict=True)]
-    bounds = [bound for part, own in pairs for bound in part.bounds(own)]
-    if most is not None:
+    for part, own in pairs:
+        for bound in part.bounds(own):
+            add(bound, 1.0, bound.at_most)
+    if plan.added_mass is not None:
         weights = sum(float(own @ part.effect[:, 0]) for part, own in pairs if part.mass_place == 0)
-        bounds.append(Bound(ADDED, most, weights, "kg"))
-    prices = {}
-    for one in bounds:
-        paid = _rounded(found.best.prices.get(one.name, 0.0) * unit, unit / one.at_most)
-        prices[one.name] = Price(one.at_most, one.used, paid, one.unit)
+        add(Bound(ADDED, plan.added_mass, weights, "kg"), 1.0, plan.added_mass)
     return prices
-
-
-def _rounded(price: float, scale: float) -> float:
-    """A price that is nothing but the solver's rounding is 0."""
-    return price if price > 1e-7 * scale else 0.0
 
 
 def _notes(found: Solution) -> Iterator[Note]:
@@ -268,3 +303,51 @@ def _notes(found: Solution) -> Iterator[Note]:
             "the search ended before it had proved that nothing better exists; "
             "the gap tells how far it came"
         )
+
+
+# -- figures before and after ----------------------------------------------------------------------
+
+
+def figures_of(machine: Machine) -> dict[str, float]:
+    """Figures by name, such as ``shaking_force.rms``; SI units.
+
+    Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
+    """
+    motion = move(machine, ANGLES, acceleration=0.0)
+    figures = {"mass": machine.mass}
+    for one in Outputs.of(Analysis(motion, forces(motion))):
+        for measure in one.declared.compared if one.declared.needs == "masses" else ():
+            figures[f"{one.name}.{measure}"] = measured(one.component, measure)
+    return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
+
+
+def _of_rows(machine: Machine) -> dict[str, float]:
+    """Figures of all rows together, where there are several."""
+    rows, phases, figures = Rows(machine), np.array([row.phase for row in machine.rows]), {}
+    for one in DECLARED.values() if len(phases) > 1 else ():
+        for measure in one.compared if one.needs == "rows" else ():
+            objective = Objective(one.name.removeprefix("rows."), measure)
+            value = Term(objective, rows.signals(objective)).value_at(phases)
+            figures[f"{one.name}.{measure}"] = value
+    return figures
+
+
+def _of_support(machine: Machine) -> dict[str, float]:
+    """Figures of gauges, by the model that is usual for the support."""
+    figures: dict[str, float] = {}
+    if machine.support is not None:
+        for name, gauge in respond(machine, model=usual_step(machine)).gauges.items():
+            figures[f"gauges.{name}.peak_to_peak"] = float(gauge.displacement.peak_to_peak)
+            figures[f"gauges.{name}.ripple"] = float(gauge.displacement.vibration_rms)
+    return figures
+
+
+def _of_planting(machine: Machine) -> dict[str, float]:
+    """Figures of the tip's path, which balancing must not change."""
+    if machine.planting is None:
+        return {}
+    try:
+        found = plant(machine).figures
+    except EquipoiseError:  # a tip that never reaches the soil has no figures, and still shakes
+        return {}
+    return {f"planting.{name}": value for name, value in found.items()}

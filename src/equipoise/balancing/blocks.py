@@ -3,26 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import unit_of as si_unit
-from equipoise.balancing.patterns import Pattern, arranged, patterns_for
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import Objective
-from equipoise.quantities import SI, Dimension, angle, in_unit, number
+from equipoise.quantities import SI, Dimension, in_unit, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven, rows_table
 from equipoise.results.outputs import MEASURES, objective_named, output_named, unit_of_measure
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
-    from equipoise.mechanism.model import Machine
 
 EXACT = 1e-12
 """Gap below which nothing more is told of it."""
@@ -37,9 +32,13 @@ OF_UNIT: dict[str, Dimension] = {unit: dimension for dimension, unit in reversed
 
 def quantity(value: float, unit: str, scale: float = 0.0) -> Value:
     """A figure with its SI unit, as a cell."""
+    return Value(value, scale, dimension=OF_UNIT.get(unit), unit=shown_unit(unit))
+
+
+def shown_unit(unit: str) -> str | None:
+    """Unit in which figures with an SI unit are told; None for the one that suits their size."""
     dimension = OF_UNIT.get(unit)
-    usual = USUAL.get(dimension) if dimension is not None else None
-    return Value(value, scale, dimension=dimension, unit=usual)
+    return None if dimension is None else USUAL.get(dimension)
 
 
 def balanced_blocks(found: Balanced) -> Iterator[Block]:
@@ -87,25 +86,19 @@ def objectives_table(found: Balanced) -> Table:
         pair = (quantity(before, unit), quantity(after, unit, before))
         rows.append((name, *pair, Change(before, after, after > (1 + WORSE) * before)))
     if len(rows) > 1:
-        whole = found.plan.combined([1.0] * len(found.plan.objectives))
-        share = found.cost / whole
+        share = found.cost / found.whole
         rows.append((f"{say('together')}, %", Value(100.0), Value(100 * share), Change(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("What was made small"), columns, tuple(rows))
 
 
-def _growths(found: Balanced) -> dict[str, float]:
-    """By how much figures have grown, over what they were."""
-    return {
+def _worse(found: Balanced) -> Iterator[str]:
+    """What has become larger by more than a tenth, the worst first."""
+    grown = {
         name: found.after.get(name, 0.0) / old - 1
         for name, old in found.before.items()
         if old > EXACT and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
     }
-
-
-def _worse(found: Balanced) -> Iterator[str]:
-    """What has become larger by more than a tenth, the worst first."""
-    grown = _growths(found)
     for name in sorted(grown, key=grown.__getitem__, reverse=True)[:MOST_WORSE]:
         if grown[name] > WORSE:
             yield f"{figure_named(found, name)} {100 * grown[name]:+.0f} %"
@@ -134,7 +127,7 @@ def said(text: Note | str) -> str:
     return text.said() if isinstance(text, Note) else text
 
 
-def _within(found: Balanced) -> str:
+def scope_of(found: Balanced) -> str:
     """Of what the proof holds, where that is not all that the plan allows."""
     parts = say(" and ").join(map(said, found.scope))
     return f" {parts}" if parts else ""
@@ -151,31 +144,32 @@ def _proof(found: Balanced) -> str:
         "before{scope}.",
         method=said(found.method),
         gap=f"{max(found.gap, EXACT):.0e}",
-        scope=_within(found),
+        scope=scope_of(found),
     )
 
 
 def before_after(found: Balanced) -> Table:
     """Every figure but those of planting; rounding beside the largest of its unit is 0."""
     before, after = found.before, found.after
-    names = [name for name in before | after if not name.startswith("planting.")]
-    units = {name: figure_unit(found, name) for name in names}
+    units = {
+        name: figure_unit(found, name)
+        for name in before | after
+        if not name.startswith("planting.")
+    }
     largest: dict[str, float] = {}
-    for name in names:
-        kin = _kin(units[name])
+    for name, unit in units.items():
         top = max(before.get(name, 0.0), after.get(name, 0.0))
-        largest[kin] = max(largest.get(kin, 0.0), top)
+        largest[_kin(unit)] = max(largest.get(_kin(unit), 0.0), top)
     rows: list[tuple[Cell, ...]] = []
-    for name in names:
-        least = 10 * largest[_kin(units[name])]
+    for name, unit in units.items():
+        least = 10 * largest[_kin(unit)]
         old, new = before.get(name), after.get(name, 0.0)
-        cells = (
-            quantity(x[name], units[name], least) if name in x else "" for x in (before, after)
-        )
-        nothing = old is not None and old <= 1e-10 * least
-        worse = old is not None and new > (1 + WORSE) * old and name != "mass"
-        changed: Cell = say("new") if old is None else Change(old, new, worse)
-        rows.append((figure_named(found, name), *cells, None if nothing else changed))
+        cells = (quantity(x[name], unit, least) if name in x else "" for x in (before, after))
+        changed: Cell = say("new")
+        if old is not None:
+            worse = new > (1 + WORSE) * old and name != "mass"
+            changed = None if old <= 1e-10 * least else Change(old, new, worse)
+        rows.append((figure_named(found, name), *cells, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
 
@@ -187,23 +181,14 @@ def _kin(unit: str) -> str:
 
 def _prices(found: Balanced) -> Table:
     named = {one.name: objective_named(one.objective) for one in found.plan.limits}
-    rows = tuple(
-        (
-            named.get(name, name),
-            quantity(price.at_most, found.units[name]),
-            _used(price, found.units[name]),
-            _saved(found, price, found.units[name]),
-        )
-        for name, price in found.prices.items()
-    )
+    rows: list[tuple[Cell, ...]] = []
+    for name, price in found.prices.items():
+        unit = found.units[name]
+        used = replace(quantity(price.used, unit), broken=price.used > price.at_most * (1 + 1e-6))
+        most = quantity(price.at_most, unit)
+        rows.append((named.get(name, name), most, used, _saved(found, price, unit)))
     labels = ("", say("at most"), say("used"), say("more of it saves"))
-    return Table(say("Limits"), tuple(map(Column, labels)), rows)
-
-
-def _used(price: Price, unit: str) -> Value:
-    value = quantity(price.used, unit)
-    broken = price.used > price.at_most * (1 + 1e-6)
-    return Value(value.value, broken=broken, dimension=value.dimension, unit=value.unit)
+    return Table(say("Limits"), tuple(map(Column, labels)), tuple(rows))
 
 
 def _saved(found: Balanced, price: Price, unit: str) -> str:
@@ -212,8 +197,7 @@ def _saved(found: Balanced, price: Price, unit: str) -> str:
         return say("nothing")
     per = _shown(unit)
     if len(found.plan.objectives) != 1:
-        whole = found.plan.combined([1.0] * len(found.plan.objectives))
-        share = number(100 * price.price / per[0] / whole)
+        share = number(100 * price.price / per[0] / found.whole)
         return say("{share} % of all per {unit}", share=share, unit=per[1])
     factor, own = _shown(found.units[found.plan.objectives[0].name])
     size = number(price.price * factor / per[0])
@@ -222,11 +206,9 @@ def _saved(found: Balanced, price: Price, unit: str) -> str:
 
 def _shown(unit: str) -> tuple[float, str]:
     """Factor and unit in which a figure with an SI unit is told."""
-    dimension = OF_UNIT.get(unit)
-    if dimension is None or dimension not in USUAL:
-        return 1.0, unit
-    display = in_unit(USUAL[dimension])
-    return display.factor, display.unit
+    usual = shown_unit(unit)
+    display = None if usual is None else in_unit(usual)
+    return (1.0, unit) if display is None else (display.factor, display.unit)
 
 
 def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
@@ -235,25 +217,6 @@ def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
     for name, speed in speeds.items():
         if name.startswith("rows.shaking_") if several else name.count(".") == 1:
             yield figure_named(found, name), Value(speed)
-
-
-def front_blocks(found: Front) -> Iterator[Block]:
-    """The trade-off, a point a row."""
-    labels = (objective_named(found.first), objective_named(found.second), say("added mass"))
-    columns = []
-    for label, (_, unit, _) in zip(labels, found.columns(), strict=True):
-        dimension = OF_UNIT.get(unit)
-        columns.append(Column(label, dimension, USUAL.get(dimension) if dimension else None))
-    values = (column.tolist() for _, _, column in found.columns())
-    rows = tuple(tuple(Value(one, 1e-9) for one in row) for row in zip(*values, strict=True))
-    yield Table(say("Trade-off"), tuple(columns), rows)
-    yield Text(
-        say(
-            "Every point is as good as any can be, to {gap} of the value before{scope}.",
-            gap=f"{max(found.gap, EXACT):.0e}",
-            scope=_within(found.points[0]),
-        )
-    )
 
 
 # -- phases of rows --------------------------------------------------------------------------------
@@ -281,47 +244,7 @@ def phasing_blocks(found: Phasing) -> Iterator[Block]:
     yield Table(say("Twist by the shaking force, RMS"), columns, rows)
 
 
-def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Block]:
-    """Patterns for a number of rows at a spacing (m): what each leaves, and how it twists."""
-    apart = number(1e3 * spacing)
-    yield Text(say("{rows} rows, {apart} mm from row to row", rows=rows, apart=apart))
-    patterns = patterns_for(rows)
-    phases = tuple(
-        (one.name, " ".join(angle(p).removesuffix(".0") for p in one.phases), one.source)
-        for one in patterns
-    )
-    labels = ("", f"{say('phases of the rows')}, deg", say("printed in"))
-    yield Table(say("Patterns"), tuple(map(Column, labels)), phases)
-    left = tuple(
-        (one.name, _left(one), say("yes") if one.twists else say("no")) for one in patterns
-    )
-    labels = ("", say("orders left, of how many rows"), say("twist"))
-    title = say("What is left, up to the order from which it repeats")
-    yield Table(title, tuple(map(Column, labels)), left)
-    together = Pattern("", ((0, 1),) * rows)
-    laid = [(say("all in phase"), arranged(machine, together, spacing))]
-    laid += [(one.name, arranged(machine, one, spacing)) for one in patterns]
-    outputs: dict[str, Dimension] = {"shaking_force": "force"}
-    outputs.update(dict.fromkeys(LATERAL, "torque"))
-    columns = (Column(""), *(Column(output_named(name), kind) for name, kind in outputs.items()))
-    table: tuple[tuple[Cell, ...], ...] = tuple(
-        (name, *(_of_all(one, output) for output in outputs)) for name, one in laid
-    )
-    yield Table(say("Figures of this machine; RMS"), columns, table)
-
-
-def _left(pattern: Pattern) -> str:
-    return ", ".join(f"{order} of {rows:.4g}" for order, rows in pattern.remaining.items())
-
-
-def _of_all(machine: Machine, output: str) -> Value:
-    term = Term(Objective(output), Rows(machine).signals(Objective(output)))
-    phases = np.array([row.phase for row in machine.rows])
-    return Value(float(term.values(phases)), 10 * term.single)
-
-
 SHOWS: dict[str, Any] = {
     "Balanced": balanced_blocks,
-    "Front": front_blocks,
     "Phasing": phasing_blocks,
 }

@@ -7,16 +7,18 @@ nothing.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from equipoise.balancing.linear_conditions import Conditions, conditions, parameter_scales
+from equipoise.balancing.linear_conditions import conditions, parameter_scales
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.mechanism.model import Machine, Vector, unknown
 from equipoise.mechanism.parameters import parameter_values
+from equipoise.results.blocks import Block, Cell, Column, Table, Value
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
@@ -36,7 +38,7 @@ class Added(Result):
     machine : with them; masses, and moments of inertia about the centres of mass, are kept.
     """
 
-    shown_in = "balancing.condition_blocks"
+    shown_in = "balancing.least_norm"
 
     moments: Mapping[str, Vector]
     totals: Mapping[str, Vector]
@@ -69,30 +71,6 @@ def least_moments(machine: Machine, links: Sequence[str], free: Sequence[str] = 
     UsageError : there is no such link, one is named twice or has mass 0, or these links do not
         suffice.
     """
-    names = _checked(machine, links, free)
-    found = conditions(machine)
-    places = [
-        found.parameters.index((link, quantity))
-        for link in names
-        for quantity in ("moment_x", "moment_y")
-    ]
-    scale = _row_scales(machine, found)
-    rows, right = found.coefficients[:, places] / scale[:, None], -found.residuals / scale
-    costed = 2 * len(names) - 2 * len(free)
-    x = _least(rows[:, :costed], rows[:, costed:], right)
-    _refuse_rest(found, rows @ x - right, names)
-    whole = parameter_values(machine)[places] + x
-    changed = machine
-    for link, moment in zip(names, whole.reshape(-1, 2), strict=True):
-        mass = machine.links[link].mass
-        assert mass is not None
-        center = (float(moment[0] / mass), float(moment[1] / mass))
-        changed = changed.with_link(link, center_of_mass=center)
-    cost = float(np.linalg.norm(x[:costed]))
-    return Added(_by_link(names, x), _by_link(names, whole), cost, changed)
-
-
-def _checked(machine: Machine, links: Sequence[str], free: Sequence[str]) -> list[str]:
     names = [*links, *free]
     for k, name in enumerate(names):
         if name not in machine.links:
@@ -101,14 +79,36 @@ def _checked(machine: Machine, links: Sequence[str], free: Sequence[str]) -> lis
             raise UsageError(f"{name} is named twice; name each link once")
         if machine.links[name].mass == 0:
             raise UsageError(f"{name} has mass 0 and so no first moment; give it a mass")
-    return names
-
-
-def _row_scales(machine: Machine, found: Conditions) -> Array:
-    """Size of each condition's terms (B,) at the machine's mass, in its own unit."""
-    mass = machine.mass or 1.0
-    sizes: Array = np.max(np.abs(found.coefficients * parameter_scales(machine)), axis=1) * mass
-    return sizes
+    found = conditions(machine)
+    places = [
+        found.parameters.index((link, moment))
+        for link in names
+        for moment in ("moment_x", "moment_y")
+    ]
+    sizes = np.abs(found.coefficients * parameter_scales(machine))  # of each condition's terms
+    scale = np.max(sizes, axis=1) * (machine.mass or 1.0)
+    rows, right = found.coefficients[:, places] / scale[:, None], -found.residuals / scale
+    costed = 2 * len(links)
+    x = _least(rows[:, :costed], rows[:, costed:], right)
+    rest = np.abs(rows @ x - right)
+    if rest.size and np.max(rest) > MET:
+        worst = found.sentences[int(np.argmax(rest))]
+        raise UsageError(
+            f"first moments of {', '.join(names) or 'no link'} cannot meet {worst}; name more links"
+        )
+    moments, totals = (
+        {
+            link: (float(a), float(b))
+            for link, (a, b) in zip(names, flat.reshape(-1, 2), strict=True)
+        }
+        for flat in (x, parameter_values(machine)[places] + x)
+    )
+    changed = machine
+    for link, (first, second) in totals.items():
+        mass = machine.links[link].mass
+        assert mass is not None
+        changed = changed.with_link(link, center_of_mass=(first / mass, second / mass))
+    return Added(moments, totals, float(np.linalg.norm(x[:costed])), changed)
 
 
 def _least(costed: Array, free: Array, right: Array) -> Array:
@@ -123,20 +123,23 @@ def _blind_to(columns: Array) -> Array:
     """Rows that are orthogonal to columns, and to each other."""
     left, sizes, _ = np.linalg.svd(columns, full_matrices=True)
     rank = int(np.sum(sizes > RANK * np.max(sizes, initial=0.0)))
-    rows: Array = left[:, rank:].T
-    return rows
+    return np.asarray(left[:, rank:].T)
 
 
-def _refuse_rest(found: Conditions, rest: Array, names: list[str]) -> None:
-    if rest.size and np.max(np.abs(rest)) > MET:
-        worst = found.sentences[int(np.argmax(np.abs(rest)))]
-        raise UsageError(
-            f"first moments of {', '.join(names) or 'no link'} cannot meet {worst}; name more links"
-        )
+def added_blocks(added: Added) -> Iterator[Block]:
+    """First moments to be added, and what that makes of the centres of mass."""
+    scale = max((abs(part) for pair in added.totals.values() for part in pair), default=0.0)
+    rows: list[tuple[Cell, ...]] = []
+    for link, moment in added.moments.items():
+        center = added.machine.links[link].center_of_mass or (0.0, 0.0)
+        size = max(map(abs, center))
+        moments = (Value(1e3 * part, 1e3 * scale) for part in (*moment, *added.totals[link]))
+        rows.append((link, *moments, *(Value(part, size) for part in center)))
+    labels = (say("added x"), say("added y"), say("then x"), say("then y"))
+    columns = (Column(""), *(Column(label, unit="kg mm") for label in labels))
+    centers = (Column(say("centre x"), "length", "mm"), Column(say("centre y"), "length", "mm"))
+    title = say("Least first moments that make the shaking force zero, in each link's axes")
+    yield Table(title, (*columns, *centers), tuple(rows))
 
 
-def _by_link(names: list[str], flat: Array) -> dict[str, Vector]:
-    return {
-        link: (float(pair[0]), float(pair[1]))
-        for link, pair in zip(names, flat.reshape(-1, 2), strict=True)
-    }
+SHOWS: dict[str, Any] = {"Added": added_blocks}

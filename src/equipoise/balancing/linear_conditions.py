@@ -8,7 +8,7 @@ conditions of Berkof and Lowen, which are (80) and (83) of Yamashita, Ichikawa a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from typing import Any, ClassVar, Literal
@@ -16,9 +16,11 @@ from typing import Any, ClassVar, Literal
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.i18n import say, to_say
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of, unknown
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import (
     QUANTITIES,
     independent_columns,
@@ -26,13 +28,16 @@ from equipoise.mechanism.parameters import (
     parameter_values,
     regressor,
 )
+from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
+from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array, harmonics
 
 Kind = Literal["zero", "sine"]
 
 KINDS: tuple[Kind, ...] = ("zero", "sine")
-OUTPUTS = ("shaking_force", "shaking_force.x", "shaking_force.y", "shaking_moment")
+OUTPUTS = tuple(sorted(name for name in DECLARED if name.startswith("shaking_")))
+"""What inertia alone makes: weight and loads are no part of it."""
 ANGLES, MOST_ANGLES, LEAST_ANGLES = 360, 40_000, 40
 """Crank angles in a turn; in a cycle of many turns, all together and still in a turn."""
 NOTHING = 1e-10
@@ -57,7 +62,7 @@ class Conditions(Result):
     without_effect : parameters that stand in no row.
     """
 
-    shown_in: ClassVar[str] = "balancing.condition_blocks"
+    shown_in: ClassVar[str] = "balancing.linear_conditions"
     records: ClassVar[str] = "conditions"
 
     kind: Kind
@@ -86,20 +91,20 @@ class Conditions(Result):
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as plain data, in SI units; coefficients by parameter, zeros left out."""
-        rows = []
-        for k, row in enumerate(self.coefficients):
-            terms = {".".join(self.parameters[j]): float(row[j]) for j in np.flatnonzero(row)}
-            rows.append(
-                {
-                    "condition": self.sentences[k],
-                    "coefficients": terms,
-                    "residual": float(self.residuals[k]),
-                    "unit": self.units[k],
-                }
-            )
-        names = [".".join(pair) for pair in self.without_effect]
+        names = [".".join(pair) for pair in self.parameters]
+        each = zip(self.sentences, self.coefficients, self.residuals, self.units, strict=True)
+        rows = [
+            {
+                "condition": sentence,
+                "coefficients": {names[k]: float(row[k]) for k in np.flatnonzero(row)},
+                "residual": float(residual),
+                "unit": unit,
+            }
+            for sentence, row, residual, unit in each
+        ]
+        unused = [".".join(pair) for pair in self.without_effect]
         outputs = list(self.outputs)
-        return {"kind": self.kind, "outputs": outputs, "conditions": rows, "without_effect": names}
+        return {"kind": self.kind, "outputs": outputs, "conditions": rows, "without_effect": unused}
 
 
 def conditions(
@@ -122,7 +127,12 @@ def conditions(
     """
     if kind not in KINDS:
         raise UsageError(f"got {kind!r} for kind; give zero or sine")
-    wanted = _outputs(outputs)
+    wanted = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+    if not wanted:
+        raise UsageError("give at least one output, such as shaking_force")
+    for output in wanted:
+        if output not in OUTPUTS:
+            raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
     scale = parameter_scales(machine)
     effects, turns = _effects(machine, wanted)
     matrix = _must_vanish(effects * scale[:, None, None], turns, kind)
@@ -145,32 +155,21 @@ def parameter_scales(machine: Machine) -> Array:
     return np.tile([1.0, size, size, size**2], len(machine.links))
 
 
-def _outputs(outputs: Sequence[str]) -> tuple[str, ...]:
-    wanted = (outputs,) if isinstance(outputs, str) else tuple(outputs)
-    if not wanted:
-        raise UsageError("give at least one output, such as shaking_force")
-    for output in wanted:
-        if output not in OUTPUTS:
-            raise UsageError(unknown(output, OUTPUTS, "output of this kind"))
-    return wanted
-
-
 def _effects(machine: Machine, outputs: tuple[str, ...]) -> tuple[Array, int]:
     """Effect of each parameter on each component over a cycle (P, C, N), and the cycle's turns.
 
     At 1 rad/s; moments are divided by the size of the machine, to stand beside forces.
     """
     turns = assemble(machine).cycle.turns
-    angles = max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns))
-    found = regressor(move(machine, angles, 1.0, 0.0))
-    force, size = found.shaking_force, machine_size(machine)
-    parts = {
-        "shaking_force": (force.real, force.imag),
-        "shaking_force.x": (force.real,),
-        "shaking_force.y": (force.imag,),
-        "shaking_moment": (found.shaking_moment / size,),
-    }
-    return np.stack([part for output in outputs for part in parts[output]], axis=1), turns
+    motion = move(machine, max(LEAST_ANGLES, min(ANGLES, MOST_ANGLES // turns)), 1.0, 0.0)
+    found = Found(motion, regressor(motion))
+    parts: list[Array] = []
+    for one in map(DECLARED.__getitem__, outputs):
+        whole = one.component(one.vector(found))
+        if one.dimension == "torque":
+            whole = whole / machine_size(machine)
+        parts += [whole.real, whole.imag] if one.is_vector else [whole]
+    return np.stack(parts, axis=1), turns
 
 
 def _must_vanish(effects: Array, turns: int, kind: Kind) -> Array:
@@ -303,3 +302,39 @@ def _term(link: str, quantity: str, value: float) -> tuple[str, str]:
 def _joined(terms: list[tuple[str, str]]) -> str:
     first = "-" if terms[0][0] == "-" else ""
     return " ".join([first + terms[0][1], *(f"{sign} {text}" for sign, text in terms[1:])])
+
+
+# -- what is shown ---------------------------------------------------------------------------------
+
+WANTED = {"zero": to_say("zero"), "sine": to_say("a pure sine of the crank angle")}
+SHOWN = {"kg": ("kg", 1.0), "kg m": ("kg mm", 1e3), "kg m2": ("kg mm^2", 1e6)}
+"""SI unit of a combination -> unit in which it is shown, and how many of these it is."""
+
+
+def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
+    """Conditions, one table for each kind, and whether they can be met."""
+    yield Text(
+        say("moment_x, moment_y: mass times centre of mass; inertia: about the origin of the link")
+    )
+    for one in found:
+        yield _conditions(one)
+    if verdict:
+        title = say("By the links' own masses, none of them lighter than now")
+        yield Facts(title, tuple(verdict))
+
+
+def _conditions(found: Conditions) -> Block:
+    subject = say(" and ").join(map(output_named, found.outputs))
+    told = {"what": subject, "wanted": say(WANTED[found.kind])}
+    if not found.count:
+        return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
+    rows = tuple(
+        (f"{one.text} = 0", Value(times * one.factor * float(residual)), unit)
+        for one, residual in zip(found.readings, found.residuals, strict=True)
+        for unit, times in [SHOWN[one.unit]]
+    )
+    title = say("Conditions for {what} to be {wanted}", **told)
+    return Table(title, (Column(""), Column(say("now")), Column("")), rows)
+
+
+SHOWS: dict[str, Any] = {"Conditions": conditions_blocks}

@@ -10,20 +10,20 @@ its rows are turned after it.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced, result_of
 from equipoise.balancing.geared import Gearing, Mesh, with_shafts
-from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
 from equipoise.errors import MassError, UsageError
-from equipoise.i18n import Note, to_say
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
@@ -52,13 +52,11 @@ def balance(
     UsageError : nothing is free, nothing is asked, limits clash, gears do not mesh.
     MassError : a link has no mass given.
     """
-    plan = machine.balance if plan is None else plan
-    plan = _checked(machine, plan)
+    plan = _checked(machine, machine.balance if plan is None else plan)
     machine = machine.with_balance(None)  # whose names the new links may take
     if plan.phases is not None:
         return balance_rows(machine, plan, progress)
-    found = solve_plan(machine, plan, progress)
-    return result_of(machine, plan, found)
+    return result_of(machine, plan, solve_plan(machine, plan, progress))
 
 
 def _checked(machine: Machine, plan: Balance | None) -> Balance:
@@ -130,112 +128,87 @@ BEST_CHOICES, STEPS, MOST_STEPS = 3, 40, 80
 """Choices that are followed; first steps over a range; programs that are solved for each."""
 
 
+@dataclass(frozen=True, eq=False)
+class _WithShafts:
+    """A machine with shafts that its plan adds: the weights on them, and their gears."""
+
+    machine: Machine
+    plan: Balance
+    base: Machine
+    weights: tuple[AddedWeight, ...] = ()
+    gears: tuple[Change, ...] = ()
+
+    def with_gears(self, gearing: Gearing, mesh: Mesh) -> _WithShafts:
+        base, weight = gearing.added(mesh)
+        gears = (*self.gears, gearing.change(mesh))
+        return replace(self, base=base, weights=(*self.weights, weight), gears=gears)
+
+    def solved(self, progress: Progress | None = None, above: float = inf) -> Solution:
+        problem = Problem.of(self.machine, self.plan, self.base, self.weights)
+        return replace(solve_problem(problem, progress, above), meshes=self.gears)
+
+
 def solve_plan(machine: Machine, plan: Balance, progress: Progress | None = None) -> Solution:
-    """The best of all choices of gears."""
-    base, weights = machine, list[AddedWeight]()
+    """The best of all choices of gears, of which only the last shaft may have several."""
+    found = _WithShafts(machine, plan, machine)
     for shafts in plan.shafts:
-        base, more = with_shafts(base, shafts)
-        weights += more
-    return _with_gears(machine, plan, base, weights, progress)
-
-
-def _with_gears(
-    machine: Machine,
-    plan: Balance,
-    base: Machine,
-    weights: list[AddedWeight],
-    progress: Progress | None,
-) -> Solution:
-    """Add geared weights one by one; only one of them may have several choices of gears."""
-    changes: list[Change] = []
-    open_one: tuple[Gearing, list[Mesh]] | None = None
+        base, more = with_shafts(found.base, shafts)
+        found = replace(found, base=base, weights=(*found.weights, *more))
     for geared in plan.geared:
-        gearing = Gearing(base, geared)
+        gearing = Gearing(found.base, geared)
         meshes = gearing.meshes()
-        if len(meshes) > 1:
-            if geared is not plan.geared[-1]:
-                raise UsageError(
-                    "only the last of [[balance.geared]] may have several ratios; give the others "
-                    "one ratio each"
-                )
-            open_one = (gearing, meshes)
+        if len(meshes) == 1:
+            found = found.with_gears(gearing, meshes[0])
+        elif geared is plan.geared[-1]:
+            return _scan(found, gearing, meshes, progress)
         else:
-            base, weight = gearing.added(meshes[0])
-            weights.append(weight)
-            changes.append(gearing.change(meshes[0]))
-    if open_one is None:
-        return _one(machine, plan, base, weights, changes, progress)
-    return _scan(machine, plan, weights, changes, *open_one, progress)
-
-
-def _one(
-    machine: Machine,
-    plan: Balance,
-    base: Machine,
-    weights: list[AddedWeight],
-    changes: list[Change],
-    progress: Progress | None = None,
-    above: float = inf,
-) -> Solution:
-    problem = Problem.of(machine, plan, base, weights)
-    return replace(solve_problem(problem, progress, above), meshes=tuple(changes))
+            raise UsageError(
+                "only the last of [[balance.geared]] may have several ratios; give the others "
+                "one ratio each"
+            )
+    return found.solved(progress)
 
 
 def _scan(
-    machine: Machine,
-    plan: Balance,
-    weights: list[AddedWeight],
-    changes: list[Change],
-    gearing: Gearing,
-    meshes: list[Mesh],
-    progress: Progress | None,
+    start: _WithShafts, gearing: Gearing, meshes: list[Mesh], progress: Progress | None
 ) -> Solution:
     """Solve for every choice of gears; over a range of ratios, follow the best to their tops."""
     found: list[tuple[Mesh, Solution]] = []
     problems: list[UsageError] = []
-    least = LARGE
-
-    def solved(mesh: Mesh, above: float) -> Solution:
-        base, weight = gearing.added(mesh)
-        told_of = [*changes, gearing.change(mesh)]
-        return _one(machine, plan, base, [*weights, weight], told_of, None, above)
+    most = len(meshes) + (BEST_CHOICES * MOST_STEPS if gearing.ranges else 0)
 
     def at(mesh: Mesh) -> float:
-        nonlocal least
+        least = min((one.best.value for _, one in found), default=LARGE)
         try:
-            one = solved(mesh, least)
+            one = start.with_gears(gearing, mesh).solved(None, least)
         except UsageError as error:
             problems.append(error)
             return inf
         found.append((mesh, one))
-        least = min(least, one.best.value)
         if progress is not None:
             progress(min(len(found), most), most)
         return one.best.value
 
-    most = len(meshes) + (BEST_CHOICES * MOST_STEPS if gearing.ranges else 0)
     values = [at(mesh) for mesh in meshes]
     if not found:
         raise problems[0]
     for k in np.argsort(values)[:BEST_CHOICES]:
         if gearing.ranges and np.isfinite(values[k]):
             _follow(gearing, meshes[k], at)
-    best = _lightest_choice(found, least, lambda mesh: solved(mesh, inf))
-    count = sum(one.best.nodes for _, one in found)
-    template = to_say("{method}, for each of {count} choices of gears")
-    method = Note(template, method=best.method, count=len(found))
-    return replace(best, method=method, best=replace(best.best, nodes=count))
-
-
-def _lightest_choice(
-    found: list[tuple[Mesh, Solution]], least: float, solved: Callable[[Mesh], Solution]
-) -> Solution:
-    """Of the choices that are as good as the best, the one that adds the least mass."""
+    least = min(one.best.value for _, one in found)
     ties = {mesh for mesh, one in found if one.best.value <= least + TIE}
     equal = sorted(ties, key=lambda mesh: (mesh.ratio, mesh.direction))
-    best = [solved(mesh) for mesh in equal[:: max(1, len(equal) // MOST_TIES)]]
-    lightest = min(best, key=lambda one: one.problem.mass_added(one.numbers))
-    return replace(lightest, ties=len(equal))
+    tried = equal[:: max(1, len(equal) // MOST_TIES)]
+    lightest = min(
+        (start.with_gears(gearing, mesh).solved() for mesh in tried),
+        key=lambda one: one.problem.mass_added(one.numbers),
+    )
+    count = sum(one.best.nodes for _, one in found)
+    method = Note(
+        "{method}, for each of {count} choices of gears", method=lightest.method, count=len(found)
+    )
+    best = replace(lightest.best, nodes=count)
+    return replace(lightest, method=method, best=best, ties=len(equal))
 
 
 def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> None:
@@ -269,7 +242,8 @@ ROWS_AFTER_LINKAGE = Note(
 def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:
     """Balance the linkage where the plan frees anything of it, then choose the phases of its rows.
 
-    Nothing is proved of phases: they are looked for on a whole grid, and polished.
+    Nothing is proved of phases: they are looked for on a whole grid, and polished.  Everything
+    before is read off the machine as it was.
     """
     assert plan.phases is not None
     if plan.limits:
@@ -280,22 +254,16 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
         found = result_of(machine, linkage, solve_plan(machine, linkage, progress))
     start = machine if found is None else found.machine
     phasing = choose_phases(start, plan.objectives, plan.phases, plan.combine, progress)
-    return _joined(machine, plan, found, phasing)
-
-
-def _joined(machine: Machine, plan: Balance, found: Balanced | None, phasing: Phasing) -> Balanced:
-    """The result, with everything before read off the machine as it was."""
-    search = PhaseSearch(machine, plan.objectives, plan.phases or Phases(), plan.combine)
+    search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
     before = {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
-    change = Change("phases", "rows", {"phases": phasing.phases})
-    earlier = () if found is None else found.changes
-    notes = phasing.notes if found is None else (ROWS_AFTER_LINKAGE, *found.notes, *phasing.notes)
     after = phasing.after
+    change = Change("phases", "rows", {"phases": phasing.phases})
+    notes = phasing.notes if found is None else (ROWS_AFTER_LINKAGE, *found.notes, *phasing.notes)
     return Balanced(
         machine=phasing.machine,
         original=machine,
         plan=plan,
-        changes=(*earlier, change),
+        changes=(*(() if found is None else found.changes), change),
         objectives={name: (before[name], after[name]) for name in after},
         cost=float(search.cost.of([after[name] for name in before])),
         bound=None,

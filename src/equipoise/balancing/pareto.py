@@ -5,19 +5,23 @@ Each point is the least value of the second with the first as a limit, and as go
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.blocks import EXACT, OF_UNIT, scope_of, shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
+from equipoise.results.blocks import Block, Column, Table, Text, Value
+from equipoise.results.outputs import objective_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
@@ -40,6 +44,7 @@ class Front(Result):
     """
 
     records: ClassVar[str] = "points"
+    shown_in: ClassVar[str] = "balancing.pareto"
 
     original: Machine
     first: Objective
@@ -55,33 +60,28 @@ class Front(Result):
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values of both objectives, and of the added mass."""
         masses = np.array([point.added_mass for point in self.points])
-        return [
-            (self.first.name, unit_of(self.first, self.original), self.values[:, 0]),
-            (self.second.name, unit_of(self.second, self.original), self.values[:, 1]),
-            ("added mass", "kg", masses),
-        ]
+        both = zip((self.first, self.second), self.values.T, strict=True)
+        columns = [(one.name, unit_of(one, self.original), values) for one, values in both]
+        return [*columns, ("added mass", "kg", masses)]
 
     def to_dict(self) -> dict[str, Any]:
         """The machine-readable output, SI units and radians."""
-        points = [
-            {
-                "first": value[0],
-                "second": value[1],
-                "added_mass": point.added_mass,
-                "gap": point.gap,
-                "changes": [change.to_dict() for change in point.changes],
-            }
-            for value, point in zip(self.values.tolist(), self.points, strict=True)
-        ]
-        before = {
-            one.name: Problem.value_of(self.original, one) for one in (self.first, self.second)
-        }
+        both = (self.first, self.second)
         return {
             "title": self.original.title,
             "first": self.first.name,
             "second": self.second.name,
-            "before": before,
-            "points": points,
+            "before": {one.name: Problem.value_of(self.original, one) for one in both},
+            "points": [
+                {
+                    "first": first,
+                    "second": second,
+                    "added_mass": point.added_mass,
+                    "gap": point.gap,
+                    "changes": [change.to_dict() for change in point.changes],
+                }
+                for (first, second), point in zip(self.values.tolist(), self.points, strict=True)
+            ],
         }
 
 
@@ -106,9 +106,7 @@ def trade_off(
     ------
     UsageError : as in `balance`; or both objectives are smallest together.
     """
-    plan = machine.balance if plan is None else plan
-    if plan is None:
-        plan = Balance()
+    plan = plan or machine.balance or Balance()
     if plan.phases is not None:
         raise UsageError("a front is not drawn over phases; leave them out")
     if first.name == second.name:
@@ -123,7 +121,9 @@ def trade_off(
             "trade"
         )
     found = []
-    for done, value in enumerate(_spaced(low, high, points), 1):
+    share = np.linspace(0.0, 1.0, points) ** 2  # closer together near low, where the curve is steep
+    values = low + (high - low) * (TOUCH + (1 - TOUCH) * share)
+    for done, value in enumerate(values.tolist(), 1):
         limit = Limit(first, at_most=value)
         asked = replace(plan, objectives=(second,), limits=(*plan.limits, limit))
         found.append(balance(machine, asked) if done < points else ends[1])
@@ -154,8 +154,24 @@ def _least_of_both(machine: Machine, plan: Balance, first: Objective, least: Bal
     )
 
 
-def _spaced(low: float, high: float, count: int) -> list[float]:
-    """Values from low to high, closer together near low, where the curve is steep."""
-    share = np.linspace(0.0, 1.0, count) ** 2
-    width = high - low
-    return [float(value) for value in low + width * (TOUCH + (1 - TOUCH) * share)]
+def front_blocks(found: Front) -> Iterator[Block]:
+    """The trade-off, a point a row."""
+    labels = (objective_named(found.first), objective_named(found.second), say("added mass"))
+    units = [unit for _, unit, _ in found.columns()]
+    columns = [
+        Column(label, OF_UNIT.get(unit), shown_unit(unit))
+        for label, unit in zip(labels, units, strict=True)
+    ]
+    values = (column.tolist() for _, _, column in found.columns())
+    rows = tuple(tuple(Value(one, 1e-9) for one in row) for row in zip(*values, strict=True))
+    yield Table(say("Trade-off"), tuple(columns), rows)
+    yield Text(
+        say(
+            "Every point is as good as any can be, to {gap} of the value before{scope}.",
+            gap=f"{max(found.gap, EXACT):.0e}",
+            scope=scope_of(found.points[0]),
+        )
+    )
+
+
+SHOWS: dict[str, Any] = {"Front": front_blocks}

@@ -12,20 +12,25 @@ rest twists.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
-from math import lcm, pi
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from math import gcd, lcm, pi
 from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.multi_row import Rows, Term
 from equipoise.errors import UsageError
+from equipoise.i18n import say
+from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.mechanism.support import Row
+from equipoise.quantities import angle, number
+from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
+from equipoise.results.outputs import output_named
 from equipoise.signals import Array
-
-Fractions = tuple[tuple[int, int], ...]
 
 ROUNDING = 1e-9
 """Rows, and spacings, that are rounding."""
@@ -41,7 +46,7 @@ class Pattern:
     """
 
     name: str
-    parts: Fractions
+    parts: tuple[tuple[int, int], ...]
     source: str = ""
 
     @property
@@ -56,7 +61,7 @@ class Pattern:
     @property
     def cycle(self) -> int:
         """Orders after which everything repeats: all rows are in phase at its multiples."""
-        return lcm(*(bottom for _, bottom in self.parts))
+        return lcm(*(bottom // gcd(top, bottom) for top, bottom in self.parts))
 
     def in_phase(self, order: int) -> float:
         """How many rows' worth of an order is left."""
@@ -83,6 +88,11 @@ class Pattern:
         return {n: rows for n in orders if (rows := self.in_phase(n)) > ROUNDING}
 
     @property
+    def left(self) -> str:
+        """The same in words."""
+        return ", ".join(f"{order} of {rows:.4g}" for order, rows in self.remaining.items())
+
+    @property
     def twists(self) -> bool:
         """Whether any order has a roll or yaw moment."""
         return any(self.lever(order) > ROUNDING for order in range(1, self.cycle + 1))
@@ -100,29 +110,23 @@ class Pattern:
         }
 
 
-def _of_quarters(name: str, text: str, source: str = TABLE) -> Pattern:
-    """From quarters of a turn, one digit a row."""
-    reduced = {"0": (0, 1), "1": (1, 4), "2": (1, 2), "3": (3, 4)}
-    return Pattern(name, tuple(reduced[digit] for digit in text), source)
-
-
 PATTERNS: dict[str, Pattern] = {
-    pattern.name: pattern
-    for pattern in (
-        _of_quarters("2 opposed", "02", "section 5-5"),
-        _of_quarters("4 quarter turns", "0231", f"{TABLE}, 4 claws (a)"),
-        _of_quarters("4 mirrored", "0220", f"{TABLE}, 4 claws (b)"),
-        _of_quarters("6 alternate", "020220", f"{TABLE}, 6 claws (a)"),
-        _of_quarters("6 in pairs", "022002", f"{TABLE}, 6 claws (b)"),
-        _of_quarters("6 quarter turns at the end", "020231", f"{TABLE}, 6 claws (c)"),
-        _of_quarters("6 quarter turns within", "023120", f"{TABLE}, 6 claws (d)"),
+    name: Pattern(name, tuple((int(quarter), 4) for quarter in quarters), source)
+    for name, quarters, source in (
+        ("2 opposed", "02", "section 5-5"),
+        ("4 quarter turns", "0231", f"{TABLE}, 4 claws (a)"),
+        ("4 mirrored", "0220", f"{TABLE}, 4 claws (b)"),
+        ("6 alternate", "020220", f"{TABLE}, 6 claws (a)"),
+        ("6 in pairs", "022002", f"{TABLE}, 6 claws (b)"),
+        ("6 quarter turns at the end", "020231", f"{TABLE}, 6 claws (c)"),
+        ("6 quarter turns within", "023120", f"{TABLE}, 6 claws (d)"),
     )
 }
-"""Name -> pattern: what is printed."""
+"""Name -> pattern: what is printed, in quarters of a turn, one digit a row."""
 
 
-def halving(rows: int) -> tuple[float, ...]:
-    """Phases (rad) by the rule (a) of section 5-6, for 2, 4, 8 ... rows.
+def halved(rows: int) -> Pattern:
+    """Rows by the rule (a) of section 5-6, for 2, 4, 8 ... rows.
 
     Two rows half a turn apart are a pair, which leaves the even orders; two pairs a quarter apart
     are four, which leave every fourth; and so on: orders that are no multiple of the number of rows
@@ -132,23 +136,12 @@ def halving(rows: int) -> tuple[float, ...]:
     ------
     UsageError : the number of rows is no power of two.
     """
-    return Pattern("", _halved(rows)).phases
-
-
-def _halved(rows: int) -> Fractions:
     if rows < 2 or rows & (rows - 1):
         raise UsageError(f"got {rows} rows; halving needs 2, 4, 8 or another power of two")
-    parts = [(0, 1)]
-    count = 1
-    while count < rows:
-        count *= 2
-        parts += [_added(part, (1, count)) for part in parts]
-    return tuple(parts)
-
-
-def _added(one: tuple[int, int], other: tuple[int, int]) -> tuple[int, int]:
-    bottom = max(one[1], other[1])
-    return (one[0] * bottom // one[1] + other[0] * bottom // other[1], bottom)
+    parts = [0]
+    while len(parts) < rows:
+        parts += [part + rows // (2 * len(parts)) for part in parts]
+    return Pattern(f"{rows} halved", tuple((part, rows) for part in parts), "section 5-6 (a)")
 
 
 def patterns_for(rows: int) -> tuple[Pattern, ...]:
@@ -162,7 +155,7 @@ def patterns_for(rows: int) -> tuple[Pattern, ...]:
         raise UsageError(f"got {rows} rows; give two at least")
     found = [pattern for pattern in PATTERNS.values() if pattern.rows == rows]
     if rows >= 8 and not rows & (rows - 1):
-        found.append(Pattern(f"{rows} halved", _halved(rows), "section 5-6 (a)"))
+        found.append(halved(rows))
     if rows not in {2, 4}:  # where they are printed already
         found.append(Pattern(f"{rows} evenly spread", tuple((k, rows) for k in range(rows))))
     if rows >= 6 and rows % 2 == 0:
@@ -203,3 +196,39 @@ def arranged(machine: Machine, pattern: str | Pattern, spacing: float) -> Machin
         Row(phase, spacing * place, offset)
         for phase, place in zip(chosen.phases, chosen.places, strict=True)
     )
+
+
+# -- what is shown ---------------------------------------------------------------------------------
+
+
+def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Block]:
+    """Patterns for a number of rows at a spacing (m): what each leaves, and how it twists."""
+    apart = number(1e3 * spacing)
+    yield Text(say("{rows} rows, {apart} mm from row to row", rows=rows, apart=apart))
+    patterns = patterns_for(rows)
+    phases = [
+        (one.name, " ".join(angle(p).removesuffix(".0") for p in one.phases), one.source)
+        for one in patterns
+    ]
+    heads = ("", f"{say('phases of the rows')}, deg", say("printed in"))
+    yield Table(say("Patterns"), tuple(map(Column, heads)), tuple(phases))
+    left = [(one.name, one.left, say("yes") if one.twists else say("no")) for one in patterns]
+    heads = ("", say("orders left, of how many rows"), say("twist"))
+    title = say("What is left, up to the order from which it repeats")
+    yield Table(title, tuple(map(Column, heads)), tuple(left))
+    outputs = ("shaking_force", *OF_ROWS)
+    columns = (
+        Column(output_named(name), "torque" if name in OF_ROWS else "force") for name in outputs
+    )
+    together = replace(patterns[0], name=say("all in phase"), parts=((0, 1),) * rows)
+    figures: tuple[tuple[Cell, ...], ...] = tuple(
+        (one.name, *(_of_all(arranged(machine, one, spacing), output) for output in outputs))
+        for one in (together, *patterns)
+    )
+    yield Table(say("Figures of this machine; RMS"), (Column(""), *columns), figures)
+
+
+def _of_all(machine: Machine, output: str) -> Value:
+    term = Term(Objective(output), Rows(machine).signals(Objective(output)))
+    phases = np.array([row.phase for row in machine.rows])
+    return Value(float(term.values(phases)), 10 * term.single)

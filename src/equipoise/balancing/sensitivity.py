@@ -7,24 +7,36 @@ there stays as it is whatever the parameter.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import product
+from math import degrees
 from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.linear_conditions import machine_size
 from equipoise.errors import UsageError
+from equipoise.i18n import say
 from equipoise.mechanism.model import Link, Machine, unknown
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.mechanism.tip import roots
+from equipoise.quantities import angle
+from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
+from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
-CHANGES = ("mass", "center_x", "center_y", "inertia")
-"""Mass at a fixed centre of mass, kg; that centre at a fixed mass, m; inertia about it, kg m2."""
+CHANGES: dict[str, tuple[str, float]] = {
+    "mass": ("kg", 1.0),
+    "center_x": ("mm", 1e-3),
+    "center_y": ("mm", 1e-3),
+    "inertia": ("kg mm^2", 1e-6),
+}
+"""Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: unit in which each
+is shown, and what that is in SI units."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
 LEAST_ANGLES = 8
@@ -67,7 +79,7 @@ class Sensitivities(Result):
     crank_angle : (N,) rad, over the whole cycle.  turns : of the crank in it.
     """
 
-    shown_in = "balancing.condition_blocks"
+    shown_in = "balancing.sensitivity"
 
     machine: Machine
     output: str
@@ -131,15 +143,22 @@ def sensitivities(
     """
     if output not in known_outputs():
         raise UsageError(unknown(output, known_outputs(), "output of this kind"))
-    motion = move(machine, _count(angles), acceleration=0.0)
+    given: Any = angles
+    if not isinstance(given, int | np.integer) or given < LEAST_ANGLES:
+        raise UsageError(f"got {given!r} crank angles; give a number of at least {LEAST_ANGLES}")
+    motion = move(machine, int(angles), acceleration=0.0)
     values = _derivatives(motion, output)
-    values[_absent(machine, values)] = 0.0
-    zeros = _sign_changes(motion, output, values)
-    names = [(link, change) for link in machine.links for change in CHANGES]
-    ones = [
-        _one(machine, *pair, own, at) for pair, own, at in zip(names, values, zeros, strict=True)
-    ]
-    by_name = {one.name: one for one in ones}
+    size, mass = machine_size(machine), machine.mass or 1.0
+    effects = np.max(np.abs(values), axis=1)
+    effects = effects * np.tile([mass, size, size, mass * size**2], len(machine.links))
+    values[effects <= NOTHING * np.max(effects)] = 0.0  # which is only rounding
+    by_name = {}
+    each = zip(values, _sign_changes(motion, output, values), strict=True)
+    for (link, change), (own, at) in zip(product(machine.links, CHANGES), each, strict=True):
+        body = machine.links[link]
+        step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(change, size)
+        rms = float(np.sqrt(np.mean(own**2)))
+        by_name[f"{link}.{change}"] = Sensitivity(link, change, own, rms, at, 0.01 * step * rms)
     return Sensitivities(machine, output, motion.crank_angle, motion.turns, by_name)
 
 
@@ -149,13 +168,6 @@ def _derivatives(motion: Motion, output: str) -> Array:
     columns = one.component(one.vector(Found(motion, regressor(motion))))
     of_links = columns.reshape(len(links), len(QUANTITIES), -1)
     return np.concatenate(list(map(_by_change, links.values(), of_links)))
-
-
-def _count(angles: Any) -> int:
-    whole = isinstance(angles, int | np.integer) and not isinstance(angles, bool)
-    if not whole or angles < LEAST_ANGLES:
-        raise UsageError(f"got {angles!r} crank angles; give a number of at least {LEAST_ANGLES}")
-    return int(angles)
 
 
 def _by_change(link: Link, columns: Array) -> Array:
@@ -175,25 +187,6 @@ def _by_change(link: Link, columns: Array) -> Array:
     )
 
 
-def _absent(machine: Machine, raw: Array) -> Array:
-    """Which derivatives are only rounding, at the size and mass of the machine."""
-    size = machine_size(machine)
-    mass = machine.mass or 1.0
-    scale = np.tile([mass, size, size, mass * size**2], len(machine.links))
-    sizes = np.max(np.abs(raw), axis=1) * scale
-    found: Array = sizes <= NOTHING * np.max(sizes)
-    return found
-
-
-def _one(machine: Machine, link: str, change: str, values: Array, zeros: Array) -> Sensitivity:
-    body = machine.links[link]
-    step = {"mass": body.mass or 0.0, "inertia": body.inertia or 0.0}.get(
-        change, machine_size(machine)
-    )
-    rms = float(np.sqrt(np.mean(values**2)))
-    return Sensitivity(link, change, values, rms, zeros, 0.01 * step * rms)
-
-
 def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
     """Crank angles at which each derivative (4 L, N) changes sign, rising, within the cycle.
 
@@ -209,9 +202,45 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
 
     def signal(theta: Array) -> Array:
         there = move(motion.machine, theta[0], motion.speed, 0.0)
-        found: Array = _derivatives(there, output)[which, each]
-        return found[None]
+        return _derivatives(there, output)[which, each][None]
 
     low = k * step
     found = np.mod(roots(signal, low[None], low[None] + step)[0], period)
     return [np.sort(found[which == row]) for row in range(len(values))]
+
+
+def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
+    """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
+    if zero:
+        yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    rows: list[tuple[Cell, ...]] = []
+    for one in found.ranked:
+        unit, size = CHANGES[one.change]
+        shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
+        places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
+        rows.append((one.name, Value(size * one.rms), unit, Value(one.percent), places))
+    kind = DECLARED[found.output].dimension
+    columns = (
+        Column(""),
+        Column(say("RMS"), kind),
+        Column(say("per")),
+        Column(say("RMS of 1 %"), kind),
+        Column(f"{say('no effect at')}, deg"),
+    )
+    title = say(
+        "{what}: effect of each parameter, at constant crank speed",
+        what=output_named(found.output),
+    )
+    yield Table(title, columns, tuple(rows))
+    yield Text(
+        say(
+            "1 %: of the link's mass or inertia, or its centre of mass moved by 1 % of the "
+            "machine's size"
+        )
+    )
+    still = [one.name for one in found.by_name.values() if not one.has_effect]
+    if still:
+        yield Text(say("No effect at any crank angle: {names}", names=say(", ").join(still)))
+
+
+SHOWS: dict[str, Any] = {"Sensitivities": sensitivities_blocks}

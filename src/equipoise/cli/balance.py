@@ -126,7 +126,7 @@ def trade_off(
 def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed()) -> None:
     """When the shaking force is zero or a pure sine, and whether mass can make it so."""
     from equipoise.balancing import linear_conditions as balancing
-    from equipoise.balancing.condition_blocks import conditions_blocks
+    from equipoise.balancing.linear_conditions import conditions_blocks
     from equipoise.balancing.physical_consistency import feasibility
 
     machine = linkage_of(file, speed)
@@ -137,7 +137,9 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
         outputs.print(
             machine.title,
             lambda: values | {"verdict": told.to_dict()},
-            lambda: conditions_blocks(*found.values(), verdict=told),
+            lambda: conditions_blocks(
+                *found.values(), verdict=[one.reason for one in told.answers]
+            ),
         )
 
 
@@ -190,8 +192,7 @@ def arrangements(
     spacing
         From row to row, 300 mm if not given.
     """
-    from equipoise.balancing.blocks import pattern_blocks
-    from equipoise.balancing.patterns import patterns_for
+    from equipoise.balancing.patterns import pattern_blocks, patterns_for
     from equipoise.vibration.forced import check_moving
 
     machine = linkage_of(file, speed)

@@ -174,7 +174,8 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.figures.objectives import landscape_charts, told_best
+    from equipoise.figures.objectives import landscape as drawn_map
+    from equipoise.figures.objectives import told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 
@@ -192,7 +193,7 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    pictures = landscape_charts(found)
+    pictures = {"landscape": drawn_map(found)}
     write_pictures(pictures, folder, format)
     for name in pictures:
         print(os.path.join(folder, f"{name}.{format}"))

@@ -23,16 +23,13 @@ from equipoise.figures.shared import (
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.reactions import JointForce, SliderForce
 from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
 
-MM = 1000.0
 ONE, ALL = "one", "all"
 """Roles of one row, and of all of them together."""
 NOTHING = 1e-11
@@ -61,7 +58,7 @@ def about(analysis: Analysis) -> str:
     for name, place in analysis.machine.frame.items():
         if complex(*place) == pole:
             return short(name)
-    return f"({shown(MM * pole.real)} mm, {shown(MM * pole.imag)} mm)"
+    return f"({shown(1000 * pole.real)} mm, {shown(1000 * pole.imag)} mm)"
 
 
 def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:
@@ -82,46 +79,6 @@ def angle_axis(analysis: Analysis) -> Axis:
 
 
 # -- rows ------------------------------------------------------------------------------------------
-
-
-def has_rows(analysis: Analysis) -> bool:
-    """Whether all rows together differ from one, and can be told."""
-    return len(analysis.machine.rows) > 1 and analysis.motion.whole_cycle
-
-
-def outputs(analysis: Analysis) -> dict[str, Array]:
-    """Shaking force (complex), shaking moment and drive torque, (N,), of one row."""
-    found = analysis.forces
-    whole = {
-        "shaking_force": found.shaking_force.value,
-        "shaking_moment": found.shaking_moment,
-        "drive_torque": found.drive_torque,
-    }
-    return _settled(analysis, whole)
-
-
-def together(analysis: Analysis) -> dict[str, Array]:
-    """The same of all rows, each with its crank ahead by its phase."""
-    found = outputs(analysis)
-    count = len(analysis.crank_angle)
-    force, moment, torque = found.values()
-    one = Periodic.of(np.array([force.real, force.imag, moment, torque]), analysis.motion.turns)
-    whole = np.zeros((4, count))
-    for row in analysis.machine.rows:
-        values = one.shifted(row.phase).samples(count)
-        values[2] += cross(complex(*row.offset), values[0] + 1j * values[1])
-        whole += values
-    summed = (whole[0] + 1j * whole[1], whole[2], whole[3])
-    return _settled(analysis, dict(zip(found, summed, strict=True)))
-
-
-def _settled(analysis: Analysis, found: dict[str, Array]) -> dict[str, Array]:
-    """Zeros where nothing but rounding is left beside what each link needs."""
-    force, moment = rounding(analysis)
-    return {
-        name: settled(values, force if name == "shaking_force" else moment)
-        for name, values in found.items()
-    }
 
 
 def settled(values: Array, least: float) -> Array:
@@ -150,18 +107,31 @@ def size_of(analysis: Analysis) -> float:
 
 
 def each(analysis: Analysis, output: str) -> Mapping[str, Array]:
-    """An output of one row and, where there are several, of all together, by role."""
-    one = outputs(analysis)[output]
-    return {ONE: one, ALL: together(analysis)[output]} if has_rows(analysis) else {ALL: one}
+    """Shaking force (complex), shaking moment or drive torque by role, (N,).
+
+    Of one row and, where there are several, of all together, each with its crank ahead by its
+    phase.  Zeros where nothing but rounding is left beside what each link needs.
+    """
+    force, moment = rounding(analysis)
+    own = getattr(analysis.forces, output)
+    if output == "shaking_force":
+        own, least = own.value, force
+    else:
+        least = moment
+    if not analysis.together:
+        return {ALL: settled(own, least)}
+    return {ONE: settled(own, least), ALL: settled(analysis.together[output], least)}
 
 
 def row_keys(analysis: Analysis) -> tuple[tuple[str, str], ...]:
     """What the two lines are, for a legend; nothing where there is one."""
-    if not has_rows(analysis):
+    if not analysis.together:
         return ()
     count = len(analysis.machine.rows)
     return (ONE, say("one row")), (ALL, say("all {count} rows", count=count))
 
+
+# -- joints ----------------------------------------------------------------------------------------
 
 LEAST_FORCE = 1e-10
 """Over the largest force in a joint, and that at the length of the machine: less is rounding."""
@@ -217,12 +187,13 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
 
 
 def _over_angle(analysis: Analysis, joint: Joint) -> Panel:
-    values = joint.values if joint.couple else np.abs(joint.values)
     if joint.couple:
+        values, most = joint.values, 2
         y = Axis.of(say("couple"), "torque", values, room=ROOM)
     else:
+        values, most = np.abs(joint.values), 1
         y = Axis.of(say("force"), "force", values, low=0.0, room=ROOM)
-    places = sampled_extremes(analysis.crank_angle, values)[: 2 if joint.couple else 1]
+    places = sampled_extremes(analysis.crank_angle, values)[:most]
     return Panel(
         angle_axis(analysis),
         y,
@@ -239,24 +210,21 @@ def joint_polars(analysis: Analysis) -> Iterator[Chart]:
     found = {name: joint for name, joint in joints_of(analysis).items() if not joint.couple}
     every = list(found)
     for suffix, names in groups(every, MOST_SQUARES):
-        whole = np.concatenate([found[name].values for name in names])
-        axis = Axis.of("", "force", whole)
-        what = say("Force in each joint along x and y")
+        axis = Axis.of("", "force", np.concatenate([found[name].values for name in names]))
+        what = say("Force in each joint along x and y") + continued(names, every)
         remark = say("in {unit}; numbers: crank angle, deg", unit=axis.unit_name)
-        told = title(analysis, what + continued(names, every), remark, of_one=True)
-        panels = []
-        for name in names:
-            values = found[name].values
-            marks: tuple[Mark, ...] = ()
-            if analysis.motion.whole_cycle:
-                size = extent(values, np.zeros(1))
-                marks = numbers(told_angles(analysis.crank_angle), values, "all", size)
-            line = over(analysis, values)[1]
-            curve = Curve(line.real, line.imag, "", "thin")
-            titled = found[name].told
-            panels.append(Panel(axis, axis, (curve,), marks, title=titled, equal=True, rings=True))
-        columns = len(names) if len(names) < IN_LINE else 2 if len(names) == 4 else IN_LINE
-        title_of = analysis.machine.title
-        yield Chart(
-            f"joint-polars{suffix}", title_of, told, tuple(panels), columns=columns, stacked=False
-        )
+        told = title(analysis, what, remark, of_one=True)
+        panels = tuple(_square(analysis, found[name], axis) for name in names)
+        columns = 2 if len(names) == 4 else min(len(names), IN_LINE)
+        own = f"joint-polars{suffix}"
+        yield Chart(own, analysis.machine.title, told, panels, columns, stacked=False)
+
+
+def _square(analysis: Analysis, joint: Joint, axis: Axis) -> Panel:
+    values = joint.values
+    marks: tuple[Mark, ...] = ()
+    if analysis.motion.whole_cycle:
+        size = extent(values, np.zeros(1))
+        marks = numbers(told_angles(analysis.crank_angle), values, "all", size)
+    curve = Curve.of(over(analysis, values)[1], "", "thin")
+    return Panel(axis, axis, (curve,), marks, title=joint.told, equal=True, rings=True)

@@ -12,6 +12,7 @@ from equipoise.balancing.multi_row import Rows
 from equipoise.figures.analysis import rounding, settled
 from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.shared import (
+    by_name,
     closed,
     compared,
     continued,
@@ -34,17 +35,12 @@ from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
-    from equipoise.balancing.phase_search import Phasing
     from equipoise.mechanism.model import Drive, Machine
 
 Pair = Mapping[str, Array]
 """``before`` and ``after``, or the latter alone."""
 
-WHEN = {
-    "before": to_say("before"),
-    "after": to_say("after"),
-    "unchanged": to_say("unchanged"),
-}
+WHEN = {"before": to_say("before"), "after": to_say("after"), "unchanged": to_say("unchanged")}
 SIGNALS = {
     "moment": (
         "shaking_moment",
@@ -76,21 +72,15 @@ def charts(found: Balanced) -> dict[str, Chart]:
     ``phases`` and ``rows`` where phases of rows are chosen.
     """
     of_linkage = any(change.kind != "phases" for change in found.changes)
-    drawn = signals(found) if of_linkage else {}
-    drawn |= {chart.name: chart for chart in orders(found)}
+    drawn = (signals(found) if of_linkage else {}) | by_name(orders(found))
     if found.phasing is not None:
         drawn |= row_charts(found.original, found.machine)
     return drawn
 
 
-def phasing_charts(found: Phasing, original: Machine | None) -> dict[str, Chart]:
-    """Of phases alone, which do not know the machine before."""
-    return row_charts(original, found.machine)
-
-
 def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
-    """``phases`` and ``rows``."""
-    return {"phases": phases(original, machine), "rows": together(original, machine)}
+    """``phases`` and ``rows``; phases alone do not know the machine before."""
+    return by_name([phases(original, machine), together(original, machine)])
 
 
 # -- before and after ------------------------------------------------------------------------------
@@ -178,11 +168,9 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
     """The end of the shaking force's arrow over a cycle, on axes of one scale."""
     ends = {when: force["x"][when] + 1j * force["y"][when] for when in ("before", "after")}
     drawn, size = roles_of(ends), extent(*ends.values(), np.zeros(1))
-    at, curves = told_angles(angles), []
+    at = told_angles(angles)
     marks: list[Mark] = []
-    for role, values in drawn.items():
-        line = np.append(values, values[0])
-        curves.append(Curve(line.real, line.imag, "", role))
+    curves = [Curve.of(np.append(one, one[0]), "", role) for role, one in drawn.items()]
     for role, values in reversed(drawn.items()):
         if np.any(values):
             marks += numbers(at, values, role, size)
@@ -201,39 +189,37 @@ def polar(found: Balanced, angles: Array, force: Mapping[str, Pair]) -> Chart:
 
 def orders(found: Balanced) -> Iterator[Chart]:
     """Bars of the orders of each objective that is a force, moment or torque."""
-    drawn = {one.name: one for one in found.plan.objectives if _is_drawn(found, one)}
+    with_rows = found.phasing is not None
+    drawn = {
+        one.name: one
+        for one in found.plan.objectives
+        if (with_rows if one.output in OF_ROWS else not one.output.startswith(GAUGES))
+    }
     every = list(drawn)
+    both = {"bar before": found.original, "bar after": found.machine}
     for suffix, names in groups(every, MOST_PANELS):
         what = say("Amplitude of each order") + continued(names, every)
         if len(found.original.rows) > 1:
-            what += ", " + (say("all rows") if found.phasing is not None else say("of one row"))
+            what += ", " + (say("all rows") if with_rows else say("of one row"))
         speed = told_speed(found.original.drive.speed)
         what += ", " + say("before and after, at {speed}", speed=speed)
-        read = {name: _read(found, drawn[name]) for name in names}
+        read = {
+            name: {role: amplitudes(one, drawn[name], with_rows) for role, one in both.items()}
+            for name in names
+        }
         last = max(last_order(one) for one in read.values())
-        panels = []
-        for name in names:
-            dimension = output_of(drawn[name].output, found.original).dimension
-            panels.append(order_panel(_named(found, drawn[name]), dimension, read[name], last))
+        panels = tuple(_orders_panel(found, drawn[name], read[name], last) for name in names)
         keyed = tuple((f"bar {when}", say(WHEN[when])) for when in ("before", "after"))
-        yield Chart(f"orders{suffix}", found.original.title, what, tuple(panels), keys=keyed)
+        yield Chart(f"orders{suffix}", found.original.title, what, panels, keys=keyed)
 
 
-def _named(found: Balanced, one: Objective) -> str:
-    """An objective in words; of a vector the bars are of both components."""
-    count = len(found.original.rows) if found.phasing is not None else 1
-    told = objective_named(one, count)
-    if output_of(one.output, found.original).is_vector:
-        return say("{what}: both components together", what=told)
-    return told
-
-
-def _is_drawn(found: Balanced, objective: Objective) -> bool:
-    """Whether it is a force, moment or torque; a twist comes from rows together."""
-    output = objective.output
-    if output in OF_ROWS:
-        return found.phasing is not None
-    return not output.startswith(GAUGES)
+def _orders_panel(found: Balanced, one: Objective, read: Read, last: int) -> Panel:
+    """Bars of an objective; of a vector they are of both components."""
+    output = output_of(one.output, found.original)
+    told = objective_named(one, len(found.original.rows) if found.phasing is not None else 1)
+    if output.is_vector:
+        told = say("{what}: both components together", what=told)
+    return order_panel(told, output.dimension, read, last)
 
 
 def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tuple[Array, Array]:
@@ -251,12 +237,6 @@ def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tu
     parts = np.array([values.real, values.imag] if np.iscomplexobj(values) else [values])
     periodic = Periodic.of(parts, signal.turns)
     return periodic.orders, np.linalg.norm(periodic.sizes, axis=0)
-
-
-def _read(found: Balanced, objective: Objective) -> Read:
-    rows = found.phasing is not None
-    machines = {"bar before": found.original, "bar after": found.machine}
-    return {role: amplitudes(one, objective, rows) for role, one in machines.items()}
 
 
 # -- rows ------------------------------------------------------------------------------------------
@@ -277,10 +257,8 @@ def phases(original: Machine | None, machine: Machine) -> Chart:
 def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
     """The crank of one row, in a circle of radius 1."""
     turn = np.exp(1j * np.radians(np.arange(0, 361, 4)))
-    curves = [Curve(turn.real, turn.imag, "", "dial")]
-    for way in (1, 1j, -1, -1j):
-        tick = np.array([0.9 * way, way])
-        curves.append(Curve(tick.real, tick.imag, "", "dial"))
+    ticks = [np.array([0.9 * way, way]) for way in (1, 1j, -1, -1j)]
+    curves = [Curve.of(line, "", "dial") for line in (turn, *ticks)]
     told = [Axis.of("", "length", [0.3]).quantity(machine.rows[k].lateral)]
     arrows = []
     for role, one in hands.items():

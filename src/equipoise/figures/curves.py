@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from itertools import groupby, pairwise
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -31,16 +31,12 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
         edges = np.flatnonzero(np.diff(np.concatenate([[False], there, [False]]).astype(int)))
         parts = [thinned(places[a:b]) for a, b in edges.reshape(-1, 2)]
         longer = tuple(part for part in parts if len(part) > 1)
-        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
+        alone = np.array([part[0] for part in parts if len(part) == 1])
         if longer:
-            view.sheet.add(
-                Stroke(longer, look.color, look.width, dashes, clip=view.box), look.order
-            )
-        alone = [part[0] for part in parts if len(part) == 1]
-        if alone:
-            view.sheet.add(
-                signs_at(np.array(alone), Look(look.color, sign=".", size=2.5)), look.order
-            )
+            line = Stroke(longer, look.color, look.width, look.lengths, clip=view.box)
+            view.sheet.add(line, look.order)
+        if len(alone):
+            view.sheet.add(signs_at(alone, Look(look.color, sign=".", size=2.5)), look.order)
     if look.sign:
         at = _spaced(places, number) if look.spaced else np.flatnonzero(there)
         clip = None if look.spaced else view.box
@@ -69,8 +65,7 @@ def thinned(places: Array) -> Array:
 
 def _spaced(places: Array, number: int) -> Array:
     """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
-    x = places[:, 0]
-    x = np.where(np.isfinite(x), x, -1e9)
+    x = np.where(np.isfinite(places[:, 0]), places[:, 0], -1e9)
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS
     nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
     return np.asarray(nearest[np.isfinite(places[nearest, 1])])
@@ -78,45 +73,35 @@ def _spaced(places: Array, number: int) -> Array:
 
 def signs_at(places: Array, look: Look, clip: Box | None = None) -> Signs:
     """Signs at places (N, 2) of the sheet."""
-    face = look.fill or ("#ffffff" if look.hollow else look.color)
-    return Signs(places, look.sign, look.size, look.color, face, max(look.width, 1.0), clip)
+    width = max(look.width, 1.0)
+    return Signs(places, look.sign, look.size, look.color, look.inside, width, clip)
 
 
 def draw_area(view: View, area: Area) -> None:
     """What lies between two lines."""
     low, high = view.places(area.x, area.low), view.places(area.x, area.high)
-    view.area(np.concatenate([high, low[::-1]]), look_of(area.role))
+    view.area(look_of(area.role), np.concatenate([high, low[::-1]]))
 
 
 def draw_bars(view: View, bars: Bars) -> None:
     """Bars of one kind, each in the look of its role."""
     half = np.broadcast_to(np.asarray(bars.width, float) / 2, bars.at.shape)
-    ends = (bars.at - half, bars.at + half)
-    lowest = (
-        np.zeros_like(bars.size) if view_low(view, bars) <= 0 else np.full_like(bars.size, 1e-300)
-    )
+    along, up = (view.x, view.y) if bars.across == "x" else (view.y, view.x)
+    lowest = 0.0 if up.low <= 0 else 1e-300
     by_role: dict[str, list[Array]] = {}
-    for k, (start, stop, size) in enumerate(zip(*ends, bars.size, strict=True)):
+    for k, (at, wide, size) in enumerate(zip(bars.at, half, bars.size, strict=True)):
         if not np.isfinite(size):
             continue
+        start, stop = along.at([at - wide, at + wide])
+        foot, top = up.at([lowest, size])
         if bars.across == "x":
-            (left, right), (foot, top) = view.x.at([start, stop]), view.y.at([lowest[k], size])
-            foot = min(foot, view.y.start)
+            box = (start, top, stop, min(foot, up.start))
         else:
-            (foot, top), (left, right) = view.y.at([start, stop]), view.x.at([lowest[k], size])
-            left = max(left, view.x.start)
+            box = (max(foot, up.start), stop, top, start)
         role = bars.roles[k] if bars.roles else bars.role
-        by_role.setdefault(role, []).append(corners_of((left, top, right, foot)))
+        by_role.setdefault(role, []).append(corners_of(box))
     for role, corners in by_role.items():
-        look = look_of(role)
-        fill = look.fill or look.color
-        item = Stroke(tuple(corners), fill=fill, opacity=look.opacity, closed=True, clip=view.box)
-        view.sheet.add(item, look.order)
-
-
-def view_low(view: View, bars: Bars) -> float:
-    """Where the axis begins along which bars grow."""
-    return view.y.low if bars.across == "x" else view.x.low
+        view.area(look_of(role), *corners)
 
 
 def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
@@ -130,18 +115,14 @@ def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
     along = way / size
     foot, beside = end - length * along, 0.4 * length * np.array([-along[1], along[0]])
     if look.width and size > length:
-        view.sheet.add(
-            Stroke((np.array([start, foot + 0.3 * length * along]),), look.color, look.width), 3.5
-        )
-    head_of = np.array([end, foot + beside, foot - beside])
-    view.sheet.add(Stroke((head_of,), fill=look.color, closed=True), 3.6)
+        shaft = np.array([start, foot + 0.3 * length * along])
+        view.sheet.add(Stroke((shaft,), look.color, look.width), 3.5)
+    corners = np.array([end, foot + beside, foot - beside])
+    view.sheet.add(Stroke((corners,), fill=look.color, closed=True), 3.6)
     view.labels.avoid(np.array([start, end]))
 
 
 # -- values over two numbers -----------------------------------------------------------------------
-
-Filled = tuple[list[Array], list[Array]]
-"""Points of areas, each (N, 2), and where the lines in each begin and end."""
 
 LEVELS = 12
 """Lines at most."""
@@ -159,8 +140,7 @@ def draw_surface(view: View, surface: Surface) -> None:
 
     left, top, right, bottom = view.box
     if surface.lacking:
-        corners = np.array([(left, top), (right, top), (right, bottom), (left, bottom)])
-        view.sheet.add(Stroke((corners,), fill="#f2f2f2", closed=True), 0.1)
+        view.sheet.add(Stroke((corners_of(view.box),), fill="#f2f2f2", closed=True), 0.1)
         reach = bottom - top
         slants = tuple(
             np.array([(x, bottom), (x + reach, top)])
@@ -177,13 +157,14 @@ def draw_surface(view: View, surface: Surface) -> None:
     for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
         share = number / max(len(ends) - 2, 1)
         color = "#" + "".join(f"{round(c):02x}" for c in DARK + (LIGHT - DARK) * min(share, 1.0))
-        found = cast("Filled", drawn.filled(low, high))
+        found: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
         for points, parts in zip(*found, strict=True):
             lines = tuple(points[a:b] for a, b in pairwise(parts.tolist()))
             view.sheet.add(Stroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0)
     told = []
     for level in levels:
-        lines = tuple(line for line in cast("list[Array]", drawn.lines(level)) if len(line) > 1)
+        every: Any = drawn.lines(level)
+        lines = tuple(line for line in every if len(line) > 1)
         if lines:
             view.sheet.add(Stroke(lines, INK, 0.8, clip=view.box), 2.0)
             told.append((level, max(lines, key=_length)))
@@ -233,6 +214,7 @@ def _tell(view: View, text: str, line: Array) -> None:
 Placing = Callable[[Array], Array]
 """Places (n,) complex, m -> places (n, 2) on the sheet."""
 
+AROUND = np.exp(1j * np.radians(np.arange(0, 360, 4)))
 UNIT = 0.64
 """Points: size of a unit of signs on paper."""
 GROUND, BEFORE = 0.6, 1.3
@@ -278,32 +260,22 @@ def draw_shapes(
         if run[0].grown:
             middles = np.concatenate([_corners(one, at, size) for one in run])
             wide = 2 * run[0].grown * UNIT * size
-            drawn = Signs(middles, "o", wide, color or fill, fill, width or 0.1, clip)
-            sheet.add(drawn, above)
+            sheet.add(Signs(middles, "o", wide, color or fill, fill, width or 0.1, clip), above)
             continue
-        lines = tuple(_ring(one, at) if to_scale else _corners(one, at, size) for one in run)
+        lines = tuple(
+            at(one.places[0] + one.radius * AROUND) if to_scale else _corners(one, at, size)
+            for one in run
+        )
         dashes = tuple(length * UNIT * size for length in look.dashes or ())
+        filled = fill if closed or len(lines[0]) > 2 else ""
         flat = bool(look.dashes) or look.flat
-        sheet.add(
-            Stroke(lines, color, width, dashes, fill if closed or len(lines[0]) > 2 else "", 1.0,
-                   closed, clip, not flat),
-            above,
-        )  # fmt: skip
-
-
-def _kind(shape: Shape) -> tuple[str, bool, bool]:
-    return shape.role, shape.radius > 0, shape.closed
+        stroke = Stroke(lines, color, width, dashes, filled, 1.0, closed, clip, not flat)
+        sheet.add(stroke, above)
 
 
 def _corners(shape: Shape, at: Placing, size: float) -> Array:
     offsets = UNIT * size * shape.offsets
     return np.asarray(at(shape.places) + np.column_stack([offsets.real, -offsets.imag]))
-
-
-def _ring(shape: Shape, at: Placing) -> Array:
-    """A circle to scale."""
-    around = shape.radius * np.exp(1j * np.radians(np.arange(0, 360, 4)))
-    return at(shape.places[0] + around)
 
 
 def _keep_clear(
@@ -335,8 +307,7 @@ def sample_of(role: str) -> list[Shape]:
     if role == "soil":
         return [sign(role, 0, box, closed=True), sign("surface", 0, box[[3, 2]])]
     if role == "support":
-        edge = sign("rim", 0, box, closed=True)
-        return [edge, sign("wheel", 0, box, closed=True)]
+        return [sign(name, 0, box, closed=True) for name in ("rim", "wheel")]
     if look.fill and look.line:
         return [sign(role, 0, box, closed=True)]
     return [sign(role, 0, [-15, 15])]

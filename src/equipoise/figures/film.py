@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.figures.moving import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import Arrow, check_seconds, check_width
@@ -103,7 +103,7 @@ def mp4(
     ------
     UsageError : as in `gif`, or the extra is missing.
     """
-    av = _library()
+    av = needed("av", "a film as MP4")
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
     drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
     whole = _in_a_cycle(drawn)
@@ -128,19 +128,6 @@ def mp4(
 def in_a_turn(kind: str, seconds: float) -> int:
     """Frames in a turn of the crank that takes some seconds."""
     return max(1, round(seconds * RATES[kind]))
-
-
-def _library() -> Any:
-    try:
-        import av
-    except ModuleNotFoundError as error:
-        if error.name != "av":
-            raise
-        raise UsageError(
-            "a film as MP4 needs av, which is not installed; install it with: "
-            'pip install "equipoise[video]"'
-        ) from error
-    return av
 
 
 def _prepared(
@@ -210,15 +197,12 @@ class Shades:
         codes = frame.astype(np.uint32) @ np.array([1 << 16, 1 << 8, 1], np.uint32)
         found = self._known[codes]
         new = np.unique(codes[found == MOST_COLORS])
-        if new.size:
-            self._learn(new)
-            found = self._known[codes]
-        return found
-
-    def _learn(self, codes: Array) -> None:
-        few = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.int32)
+        if not new.size:
+            return found
+        few = np.stack([new >> 16, new >> 8 & 255, new & 255], axis=-1).astype(np.int32)
         apart = few[:, None] - self.palette.astype(np.int32)
-        self._known[codes] = np.sum(apart**2, axis=-1).argmin(axis=-1)
+        self._known[new] = np.sum(apart**2, axis=-1).argmin(axis=-1)
+        return self._known[codes]
 
 
 def _colors(drawn: Moving) -> set[str]:
@@ -295,9 +279,7 @@ def _path(shape: Stroke) -> Path:
     if shape.radius:
         return Path.circle((shape.points[0].real, shape.points[0].imag), shape.radius)
     corners = np.column_stack([shape.points.real, shape.points.imag])
-    if not shape.closed:
-        return Path(corners)
-    return Path(np.vstack([corners, corners[:1]]), closed=True)
+    return Path(np.vstack([corners, corners[:1]]), closed=True) if shape.closed else Path(corners)
 
 
 def _brush(canvas: Any, look: Look, colors: Colors, unit: float) -> Any:

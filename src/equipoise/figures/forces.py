@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from equipoise.figures.analysis import (
     about,
     angle_axis,
     each,
-    has_rows,
     over,
     row_keys,
     title,
@@ -23,14 +23,12 @@ from equipoise.figures.shared import (
     compared,
     degrees_told,
     extent,
-    halves,
     numbers,
     told_angles,
 )
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
-from equipoise.results.analysis import LEAST_ANGLES
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES
 from equipoise.signals import Periodic
@@ -48,11 +46,8 @@ FEWEST, BAR_WIDE, MOST_NUMBERED = 6, 0.72, {False: 12, True: 7}
 numbered, of one kind or of two."""
 
 
-def has_orders(analysis: Analysis) -> bool:
-    """Whether `spectrum` can be drawn."""
-    motion = analysis.motion
-    enough = len(motion.crank_angle) >= LEAST_ANGLES * motion.turns
-    return analysis.solved is not None and motion.whole_cycle and enough
+Signals = tuple[str, Dimension, Mapping[str, Array]]
+"""Label and dimension of some signals, and these by role, (N,), SI units."""
 
 
 # -- over crank angle ------------------------------------------------------------------------------
@@ -62,12 +57,11 @@ def over_crank(
     analysis: Analysis,
     name: str,
     what: str,
-    panels: Sequence[tuple[str, Dimension | None, Mapping[str, Array]]],
-    **rest: Any,
+    panels: Sequence[Signals],
 ) -> Chart:
     """Signals over crank angle, below each other.
 
-    panels : label and dimension of each, and its signals (N,) by role, SI units.
+    panels : what is in each.
     """
     x = angle_axis(analysis)
     drawn = [
@@ -81,7 +75,7 @@ def over_crank(
         )
         for label, dimension, signals in panels
     ]
-    return Chart(name, analysis.machine.title, what, tuple(drawn), keys=row_keys(analysis), **rest)
+    return Chart(name, analysis.machine.title, what, tuple(drawn), keys=row_keys(analysis))
 
 
 def force(analysis: Analysis) -> Chart:
@@ -92,15 +86,11 @@ def force(analysis: Analysis) -> Chart:
         say("along {axis}", axis="y"): np.imag,
         say("size"): np.abs,
     }
-    return over_crank(
-        analysis,
-        "force",
-        title(analysis, say("Shaking force")),
-        [
-            (label, "force", {role: part(values) for role, values in found.items()})
-            for label, part in parts.items()
-        ],
-    )
+    panels: list[Signals] = [
+        (label, "force", {role: part(values) for role, values in found.items()})
+        for label, part in parts.items()
+    ]
+    return over_crank(analysis, "force", title(analysis, say("Shaking force")), panels)
 
 
 def moment(analysis: Analysis) -> Chart:
@@ -124,15 +114,11 @@ def torque(analysis: Analysis) -> Chart:
 
 def with_mean(panel: Panel, values: Array) -> Panel:
     """A panel with a dashed line at the mean of a signal (N,), and its value above."""
-    from dataclasses import replace
-
     mean = float(np.mean(values))
     if abs(mean) <= RESIDUE * float(np.max(np.abs(values))):
         mean = 0.0
-    told = {
-        "mean": panel.y.quantity(mean),
-        "rms": panel.y.quantity(float(np.sqrt(np.mean(np.square(values))))),
-    }
+    rms = float(np.sqrt(np.mean(np.square(values))))
+    told = {"mean": panel.y.quantity(mean), "rms": panel.y.quantity(rms)}
     remark = say("dashed: mean {mean}; RMS {rms}", **told)
     return replace(panel, lines=(Line(mean, "mean", axis="y"),), remark=remark)
 
@@ -150,7 +136,7 @@ def _causes(analysis: Analysis) -> Panel:
         curves = [Curve(*over(analysis, 0 * analysis.crank_angle))]
     every = np.concatenate([curve.y for curve in curves])
     y = Axis.of(say("by cause"), "torque", every, room=ROOM / 2)
-    remark = say("of one row") if has_rows(analysis) else ""
+    remark = say("of one row") if analysis.together else ""
     return Panel(angle_axis(analysis), y, tuple(curves), title=remark, keyed=True)
 
 
@@ -169,7 +155,7 @@ def polar(analysis: Analysis) -> Chart:
         told = told_angles(analysis.crank_angle)
         for role, values in reversed([*found.items()]):
             marks += numbers(told, values, role, extent(every, np.zeros(1)))
-    lines = [Curve(*halves(over(analysis, values)[1]), "", role) for role, values in found.items()]
+    lines = [Curve.of(over(analysis, values)[1], "", role) for role, values in found.items()]
     panel = Panel(
         x,
         y,
@@ -196,17 +182,18 @@ def _told_sizes(
     circle = mean * np.exp(1j * np.radians(np.arange(0, 361, 2)))
     marks: list[Mark] = []
     arrows: tuple[Arrow, ...] = ()
+
+    def tell(place: complex, text: str, role: str) -> None:
+        marks.append(Mark.of(place, text, role, float(np.degrees(np.angle(place))), sign=False))
+
     if np.ptp(sizes) > ALIKE * sizes[k]:
         arrows = (Arrow(0j, peak, "stress"),)
         at = degrees_told(float(analysis.crank_angle[k]))
         text = say("peak {value} at {angle}", value=axis.quantity(abs(peak)), angle=at)
-        wish = float(np.degrees(np.angle(peak)))
-        marks.append(Mark(peak.real, peak.imag, text, "stress", wish, sign=False))
+        tell(peak, text, "stress")
     away = mean * complex(np.exp(1j * (np.angle(peak) + 2.4)))
-    text = say("mean size {value}", value=axis.quantity(mean))
-    wish = float(np.degrees(np.angle(away)))
-    marks.append(Mark(away.real, away.imag, text, "mean size", wish, sign=False))
-    return marks, [Curve(*halves(circle), "", "mean size")], arrows, ""
+    tell(away, say("mean size {value}", value=axis.quantity(mean)), "mean size")
+    return marks, [Curve.of(circle, "", "mean size")], arrows, ""
 
 
 # -- orders ----------------------------------------------------------------------------------------
@@ -221,43 +208,31 @@ def spectrum(analysis: Analysis) -> Chart:
     """
     _ = analysis.by_order  # raises where there are none
     vector = each(analysis, "shaking_force")
-    signals: list[tuple[str, Dimension, Mapping[str, Array]]] = [
+    signals: list[Signals] = [
         (
-            say("shaking force along {axis}", axis="x"),
+            say("shaking force along {axis}", axis=axis),
             "force",
-            {r: v.real for r, v in vector.items()},
-        ),
-        (
-            say("shaking force along {axis}", axis="y"),
-            "force",
-            {r: v.imag for r, v in vector.items()},
-        ),
-        (
-            say("shaking moment about {point}", point=about(analysis)),
-            "torque",
-            each(analysis, "shaking_moment"),
-        ),
-        (say("drive torque"), "torque", each(analysis, "drive_torque")),
+            {role: part(values) for role, values in vector.items()},
+        )
+        for axis, part in (("x", np.real), ("y", np.imag))
     ]
+    about_point = say("shaking moment about {point}", point=about(analysis))
+    signals.append((about_point, "torque", each(analysis, "shaking_moment")))
+    signals.append((say("drive torque"), "torque", each(analysis, "drive_torque")))
     turns = analysis.motion.turns
     read = [
-        (
-            told,
-            dimension,
-            {BAR_ROLES[role]: orders_of(values, turns) for role, values in by.items()},
-        )
-        for told, dimension, by in signals
+        {BAR_ROLES[role]: orders_of(values, turns) for role, values in by.items()}
+        for _, _, by in signals
     ]
-    last = max(FEWEST, *(last_order(bars) for _, _, bars in read))
-    most = MOST_NUMBERED[has_rows(analysis)]
-    panels = tuple(order_panel(told, dimension, bars, last, most) for told, dimension, bars in read)
-    return Chart(
-        "spectrum",
-        analysis.machine.title,
-        title(analysis, say("Amplitude of each order")),
-        panels,
-        keys=tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis)),
+    last = max(FEWEST, *(last_order(bars) for bars in read))
+    most = MOST_NUMBERED[bool(analysis.together)]
+    panels = tuple(
+        order_panel(told, dimension, bars, last, most)
+        for (told, dimension, _), bars in zip(signals, read, strict=True)
     )
+    what = title(analysis, say("Amplitude of each order"))
+    keys = tuple((BAR_ROLES[role], name) for role, name in row_keys(analysis))
+    return Chart("spectrum", analysis.machine.title, what, panels, keys=keys)
 
 
 BAR_ROLES = {ONE: "bar before", ALL: "bar after"}
@@ -299,12 +274,8 @@ def order_panel(
         told_too = last / finest <= most_told
         bars.append(Bars(at, sizes[seen], wide, role, told=told_too))
     ticks = tuple((float(k), f"{k}" if k else say("mean")) for k in range(last + 1))
-    x = Axis(
-        say("order: events in one turn of the crank"),
-        low=-0.7 * finest,
-        high=last + 0.7 * finest,
-        ticks=ticks,
-    )
+    label, room = say("order: events in one turn of the crank"), 0.7 * finest
+    x = Axis(label, low=-room, high=last + room, ticks=ticks)
     every = np.concatenate([sizes for _, sizes in read.values()])
     y = Axis.of(say("amplitude"), dimension, every, low=0.0, room=0.2)
     message = "" if largest else say("zero at every order")

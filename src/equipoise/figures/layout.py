@@ -122,9 +122,9 @@ def _same_x(one: Cell, other: Cell) -> bool:
 
 def _cell(panel: Panel, height: float) -> Cell:
     curves = panel.curves
-    x: list[Any] = [curve.x for curve in curves] + [area.x for area in panel.areas]
-    y: list[Any] = [curve.y for curve in curves] + [area.high for area in panel.areas]
-    y += [area.low for area in panel.areas]
+    x: list[Any] = [*(curve.x for curve in curves), *(area.x for area in panel.areas)]
+    y: list[Any] = [curve.y for curve in curves]
+    y += [ends for area in panel.areas for ends in (area.low, area.high)]
     for bars in panel.bars:
         half = np.asarray(bars.width, float) / 2
         along, up = np.concatenate([bars.at - half, bars.at + half]), [*bars.size, 0.0]
@@ -132,22 +132,15 @@ def _cell(panel: Panel, height: float) -> Cell:
         y.append(up if bars.across == "x" else along)
     x += [[mark.x] for mark in panel.marks]
     y += [[mark.y] for mark in panel.marks]
-    for ends in panel.arrows:
-        x.append([ends.tail.real, ends.head.real])
-        y.append([ends.tail.imag, ends.head.imag])
-    for outline in panel.outlines:
-        x.append(outline.places.real)
-        y.append(outline.places.imag)
-    if panel.held is not None:
-        held = np.array(panel.held)
-        x.append(held.real)
-        y.append(held.imag)
+    places = [np.array([arrow.tail, arrow.head]) for arrow in panel.arrows]
+    places += [outline.places for outline in panel.outlines]
+    places += [np.array(panel.held)] if panel.held is not None else []
+    places += [np.zeros(1)] if panel.rings or (panel.equal and panel.zero) else []
+    x += [one.real for one in places]
+    y += [one.imag for one in places]
     if panel.surface is not None:
         x.append(panel.surface.x)
         y.append(panel.surface.y)
-    if panel.rings or (panel.equal and panel.zero):
-        x.append([0.0])
-        y.append([0.0])
     return Cell(panel, ends_of(panel.x, x), ends_of(panel.y, y), height)
 
 
@@ -189,11 +182,12 @@ def _sides(cell: Cell) -> None:
     if panel.equal:
         numbers.append("−0000")
     wide = max(width_of(text, SMALL) for text in numbers)
-    cell.left = 7 + wide + (15 if panel.y.label else 2)
-    if panel.left:
-        cell.left = max(cell.left, 10 + max(width_of(text, NORMAL) for text in panel.left))
-    if panel.flag_words:
-        cell.left = max(cell.left, 10 + max(width_of(text, SMALL) for text in panel.flag_words))
+    cell.left = max(
+        7 + wide + (15 if panel.y.label else 2),
+        *(10 + width_of(text, NORMAL) for text in panel.left),
+        *(10 + width_of(text, SMALL) for text in panel.flag_words),
+        0.0,
+    )
     cell.right = 8.0
     if panel.asides:
         cell.right = LEAD + 4 + max(width_of(aside.text, SMALL) for aside in panel.asides)
@@ -202,9 +196,7 @@ def _sides(cell: Cell) -> None:
     if panel.right_axis is not None:
         texts = [text for _, text in panel.right_axis.ticks or ()]
         cell.right = 24 + max((width_of(text, SMALL) for text in texts), default=0.0)
-    cell.below = 4.0
-    if cell.numbered:
-        cell.below = 14.0 + (LINE if panel.x.label else 0.0)
+    cell.below = 14.0 + (LINE if panel.x.label else 0.0) if cell.numbered else 4.0
 
 
 def _settle(cell: Cell, width: float, small: bool) -> None:
@@ -221,10 +213,9 @@ def _settle(cell: Cell, width: float, small: bool) -> None:
         high, room = fixed or MOST, 0.0 if cell.panel.bare else ROOM
         point = max(np.ptp(x) / (width - 2 * room), np.ptp(y) / (high - 2 * room)) or 1.0
         cell.height = fixed or min(max(np.ptp(y) / point + 2 * room, LEAST), MOST)
-    middle_x, middle_y = float(np.mean(x)), float(np.mean(y))
     half_x, half_y = point * width / 2, point * cell.height / 2
-    cell.x_ends = (middle_x - half_x, middle_x + half_x)
-    cell.y_ends = (middle_y - half_y, middle_y + half_y)
+    cell.x_ends = (float(np.mean(x)) - half_x, float(np.mean(x)) + half_x)
+    cell.y_ends = (float(np.mean(y)) - half_y, float(np.mean(y)) + half_y)
 
 
 def _above(cell: Cell, width: float) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from equipoise.figures.curves import draw_shapes, sample_of
-from equipoise.figures.sheet import MIDDLE, Sheet, Signs, Stroke, Words, set_in, width_of
-from equipoise.figures.style import INK, NORMAL, Look, look_of
+from equipoise.figures.curves import draw_shapes, sample_of, signs_at
+from equipoise.figures.sheet import MIDDLE, Sheet, Stroke, Words, set_in, width_of
+from equipoise.figures.style import INK, NORMAL, look_of
+from equipoise.figures.view import corners_of
 from equipoise.results.charts import Panel
 from equipoise.symbols.looks import LOOKS
 
@@ -36,9 +39,7 @@ def kind_of(role: str) -> str:
     if role in LOOKS:
         return "machine"
     look = look_of(role)
-    if look.fill and not look.sign:
-        return "patch"
-    return "line"
+    return "patch" if look.fill and not look.sign else "line"
 
 
 def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
@@ -49,12 +50,10 @@ def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
     elif not chart_level:
         return []
     if chart_level:
-        found += [Key(b.role, b.label, "patch") for b in panel.bars if b.label]
-        found += [Key(a.role, a.label, "patch") for a in panel.areas if a.label]
-        found += [Key(o.role, o.label, "patch") for o in panel.outlines if o.label]
-        found += [Key(line.role, line.label, "line") for line in panel.lines if line.label]
-        found += [Key(m.role, m.label, "sign") for m in panel.marks if m.label]
-        found += [Key(b.role, b.label, "patch") for b in panel.bands if b.label]
+        patches: Sequence[Any] = (*panel.bars, *panel.areas, *panel.outlines)
+        kinds = ("patch", patches), ("line", panel.lines), ("sign", panel.marks)
+        for kind, every in (*kinds, ("patch", panel.bands)):
+            found += [Key(one.role, one.label, kind) for one in every if one.label]
         if panel.surface is not None and panel.surface.lacking:
             found.append(Key("whole", panel.surface.lacking, "patch"))
     return [*dict.fromkeys(found)]
@@ -94,20 +93,14 @@ def _sample(sheet: Sheet, key: Key, x: float, y: float) -> None:
         return
     look = look_of(key.role, key.dashed)
     if key.kind == "patch":
-        fill = look.fill or look.color
-        corners = np.array([(x + 3, y - 4), (x + 17, y - 4), (x + 17, y + 4), (x + 3, y + 4)])
-        sheet.add(Stroke((corners,), fill=fill, opacity=look.opacity, closed=True), 6)
+        corners = corners_of((x + 3, y - 4, x + 17, y + 4))
+        sheet.add(Stroke((corners,), fill=look.inside, opacity=look.opacity, closed=True), 6)
         return
     if look.width and key.kind == "line" and not (look.sign and look.order >= 4):
-        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
         ends = np.array([(x, y), (x + SAMPLE, y)])
-        sheet.add(Stroke((ends,), look.color, look.width, dashes), 6)
+        sheet.add(Stroke((ends,), look.color, look.width, look.lengths), 6)
     if look.sign or key.kind == "sign":
-        sheet.add(_key_sign(look, x + SAMPLE / 2, y), 6.1)
-
-
-def _key_sign(look: Look, x: float, y: float) -> Signs:
-    face = look.fill or ("#ffffff" if look.hollow else look.color)
-    sign, size = (look.sign, look.size) if look.sign else ("o", 4.0)
-    size = 3.0 if sign == "." else size
-    return Signs(np.array([(x, y)]), sign, size, look.color, face, max(look.width, 1.0))
+        shown = replace(look, size=3.0 if look.sign == "." else look.size)
+        if not look.sign:
+            shown = replace(look, sign="o", size=4.0)
+        sheet.add(signs_at(np.array([(x + SAMPLE / 2, y)]), shown), 6.1)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from equipoise.errors import UsageError
+from equipoise.figures.points import moving
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.motion import move
@@ -25,7 +26,7 @@ MOST = 24
 MANY, SMALLER = 3, 0.75
 """Panels beside each other in which signs are smaller, and how much."""
 STILL = 1e-9
-"""Over the motion of what moves most: what is less stands still."""
+"""Over the size of the machine: what is less stands still."""
 
 
 def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
@@ -53,14 +54,10 @@ def linkage(analysis: Analysis, at: Sequence[float] | None = None) -> Chart:
     columns = 1 if len(angles) == 1 else 2 if len(angles) <= 4 else MANY
     paths = tuple(_paths(motion))
     panels = tuple(_panel(scene, k, paths, columns) for k in which)
-    drive = short(analysis.machine.drive.link)
+    told = {"link": short(analysis.machine.drive.link), "angle": told_angle(angles[0])}
+    what = say("Linkage, to scale; above each: angle of {link} in the frame", **told)
     if columns == 1:
-        told = told_angle(angles[0])
-        what = say(
-            "Linkage, to scale; angle of {link} in the frame: {angle}", link=drive, angle=told
-        )
-    else:
-        what = say("Linkage, to scale; above each: angle of {link} in the frame", link=drive)
+        what = say("Linkage, to scale; angle of {link} in the frame: {angle}", **told)
     keys = tuple(keys_of(scene))
     return Chart("linkage", analysis.machine.title, what, panels, columns, keys=keys)
 
@@ -86,32 +83,26 @@ def drawn(scene: Scene, k: int) -> dict[str, Any]:
 
 
 def _panel(scene: Scene, k: int, paths: tuple[Curve, ...], columns: int) -> Panel:
-    marks = [*joint_names(scene, k)] + ([*_link_names(scene, k)] if columns == 1 else [])
-    title = "" if columns == 1 else told_angle(float(scene.crank_angle[k]))
-    size = SMALLER if columns == MANY else 1.0
+    alone = columns == 1
     return Panel(
         *plane_axes(scene),
         paths,
-        tuple(marks),
-        title=title,
+        (*joint_names(scene, k), *(_link_names(scene, k) if alone else ())),
+        title="" if alone else told_angle(float(scene.crank_angle[k])),
         equal=True,
         zero=False,
         held=scene.box,
-        sign_size=size,
+        sign_size=SMALLER if columns == MANY else 1.0,
         **drawn(scene, k),
     )
 
 
 def _paths(motion: Motion) -> Iterator[Curve]:
     """Paths of points that do not stand still, closed where the cycle is whole."""
-    fastest = {name: float(np.max(np.abs(point.place_1))) for name, point in motion.points.items()}
-    least = STILL * max(fastest.values())
-    label = say("paths of points")
-    for name, rate in fastest.items():
-        if rate > least:
-            place = motion.points[name].place
-            place = np.append(place, place[:1]) if motion.whole_cycle else place
-            yield Curve(place.real, place.imag, label, "point path")
+    for name in moving(motion):
+        place = motion.points[name].place
+        place = np.append(place, place[:1]) if motion.whole_cycle else place
+        yield Curve.of(place, say("paths of points"), "point path")
 
 
 def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
@@ -122,9 +113,7 @@ def joint_names(scene: Scene, k: int, optional: bool = False) -> Iterator[Mark]:
         ways = [complex(np.mean(_outline(scene, body.outline, k))) - z for body in met]
         out = -sum(way / abs(way) for way in ways if way)
         wish = float(np.degrees(np.angle(out))) if abs(out) > 0.1 else 45.0
-        yield Mark(
-            z.real, z.imag, short(name), "strong", wish, False, optional, near=5.0, bold=True
-        )
+        yield Mark.of(z, short(name), "strong", wish, False, optional, near=5.0, bold=True)
 
 
 def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
@@ -138,7 +127,7 @@ def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
         else:
             wish = float(np.degrees(np.angle(1j * (around[1] - around[0]))))
             wish = wish if wish >= 0 else wish + 180
-        yield Mark(z.real, z.imag, short(body.name), "lines", wish, sign=False, near=5.0)
+        yield Mark.of(z, short(body.name), "lines", wish, sign=False, near=5.0)
 
 
 def _outline(scene: Scene, names: tuple[str, ...], k: int) -> Array:

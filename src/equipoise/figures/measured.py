@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +11,7 @@ import numpy as np
 
 from equipoise.exposure.daily import ACTION, LIMIT, partial_exposure
 from equipoise.exposure.weighting import EDGES, factor
+from equipoise.figures.shared import by_name, ends
 from equipoise.figures.style import free_name, short
 from equipoise.i18n import say
 from equipoise.quantities import Display
@@ -65,22 +67,15 @@ def spectrum(weighted: Weighted, title: str) -> Chart:
     label = say("weighted, a_hv = {value} m/s²", value=shown(weighted.a_hv))
     areas.append(_stairs(after, low, "weighted", label))
     curves = tuple(Curve(area.x, area.high, "", area.role) for area in areas)
-    x = _frequencies()
-    smooth = np.geomspace(EDGES[0], EDGES[-1], 400)
+    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)
+    first, last = float(EDGES[0]), float(EDGES[-1])
+    x = Axis(say("frequency"), Display("Hz", 1.0), "log", first, last, ticks=ticks)
+    y = Axis(say("RMS"), RATE, "log", low, 1.6 * top)
+    smooth = np.geomspace(first, last, 400)
+    wh, weights = Axis("Wh", scale="log", low=0.005, high=1.5), factor(smooth)
     panels = (
-        Panel(
-            x,
-            Axis(say("RMS"), RATE, "log", low, 1.6 * top),
-            curves,
-            areas=tuple(areas),
-            height=200.0,
-        ),
-        Panel(
-            x,
-            Axis("Wh", scale="log", low=0.005, high=1.5),
-            (Curve(smooth, factor(smooth), "", "ink"),),
-            height=62.0,
-        ),
+        Panel(x, y, curves, areas=tuple(areas), height=200.0),
+        Panel(x, wh, (Curve(smooth, weights, "", "ink"),), height=62.0),
     )
     return Chart("spectrum", title, say("One-third-octave bands, all axes together"), panels)
 
@@ -91,33 +86,25 @@ def _stairs(values: Array, low: float, role: str, label: str) -> Area:
     return Area(x, np.full(len(x), low), high, role, label)
 
 
-def _frequencies() -> Axis:
-    ticks = tuple((float(10 ** (0.1 * round(10 * np.log10(one)))), f"{one:g}") for one in TOLD)
-    ends = {"low": float(EDGES[0]), "high": float(EDGES[-1])}
-    return Axis(say("frequency"), Display("Hz", 1.0), "log", **ends, ticks=ticks)
-
-
 def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
     """A(8) against hours of work, of every task and of the day, with action and limit value."""
     lines = [(name, a_hv) for name, a_hv in tools if a_hv > 0]
     x, y = _axes(lines, day)
-    assert x.low is not None and x.high is not None and y.low is not None and y.high is not None
-    ends = np.array([x.low, x.high])
-    curves = [Curve(ends, _a8(a_hv, ends), "", "thin") for _, a_hv in lines]
+    reach, (least, most) = np.array(ends(x)), ends(y)
+    curves = [Curve(reach, _a8(a_hv, reach), "", "thin") for _, a_hv in lines]
     marks = []
     for value, name in ((ACTION, say("action value")), (LIMIT, say("limit value"))):
         text = f"{name} {value:g} m/s²"
-        marks.append(Mark(x.low, value, text, "lines", 60.0, sign=False, near=3.0))
+        marks.append(Mark(float(reach[0]), value, text, "lines", 60.0, sign=False, near=3.0))
     if day is None:
         for name, a_hv in lines[:MOST_NAMES]:
-            hours = float(np.clip(8 * y.low * ACTION / a_hv**2, SHORTEST * 1.5, LONGEST / 1.5))
-            place = (hours, float(_a8(a_hv, hours)))
-            marks.append(Mark(*place, short(name), "main", -45.0, sign=False))
+            hours = float(np.clip(8 * least * ACTION / a_hv**2, SHORTEST * 1.5, LONGEST / 1.5))
+            at = float(_a8(a_hv, hours))
+            marks.append(Mark(hours, at, short(name), "main", -45.0, sign=False))
     else:
         if len(day.tasks) > 1 and day.a8 > 0:
-            curves.append(Curve(ends, _a8(day.a_hv, ends), "", "stress"))
-            place = (day.duration / 3600, day.a8)
-            marks.append(Mark(*place, say("all of them"), "day", 90.0))
+            curves.append(Curve(reach, _a8(day.a_hv, reach), "", "stress"))
+            marks.append(Mark(day.duration / 3600, day.a8, say("all of them"), "day", 90.0))
         tasks = [task for task in day.tasks if task.acceleration > 0]
         for number, task in enumerate(tasks):
             text = short(task.name) if number < MOST_NAMES else ""
@@ -128,7 +115,7 @@ def exposure(tools: Sequence[tuple[str, float]], day: Exposure | None) -> Chart:
         y,
         tuple(curves),
         tuple(marks),
-        (Band(LIMIT, y.high, "forbidden", axis="y"),),
+        (Band(LIMIT, most, "forbidden", axis="y"),),
         levels,
         height=250.0,
     )
@@ -171,7 +158,7 @@ BEYOND = 1.5
 
 def decay_charts(decay: Decay, title: str) -> dict[str, Chart]:
     """``record`` and ``swings``, names that also do for files."""
-    return {"record": record(decay, title), "swings": swings(decay, title)}
+    return by_name([record(decay, title), swings(decay, title)])
 
 
 def record(decay: Decay, title: str) -> Chart:
@@ -211,19 +198,15 @@ def swings(decay: Decay, title: str) -> Chart:
     slope, cut = decay.line["slope"].value, decay.line["intercept"].value
     most = 1.08 * float(np.max(heights))
     reach = np.array([0.0, most])
-    ends: dict[str, Any] = {"low": 0.0, "high": most}
-    x = Axis.of(say("height of a half-swing"), decay.kind, heights, **ends)
-    y = Axis.of(say("height of the next"), decay.kind, heights, **ends)
+    x = Axis.of(say("height of a half-swing"), decay.kind, heights, low=0.0, high=most)
+    y = replace(x, label=say("height of the next"))
     sign = "\N{MINUS SIGN}" if cut < 0 else "+"
     line = {"slope": shown(slope), "sign": sign, "cut": x.quantity(abs(cut))}
     told, at = say("next = {slope} height {sign} {cut}", **line), 0.3 * most
     panel = Panel(
         x,
         y,
-        (
-            Curve(reach, reach, "", "even"),
-            Curve(reach, slope * reach + cut, "", "thin"),
-        ),
+        (Curve(reach, reach, "", "even"), Curve(reach, slope * reach + cut, "", "thin")),
         (
             *(Mark(float(one), float(two), "", "turning") for one, two in pairwise(heights)),
             Mark(at, slope * at + cut, told, "main", -45.0, sign=False),

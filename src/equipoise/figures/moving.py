@@ -11,7 +11,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.figures.stage import Arrow, Label, Moves, Stage, captions, ruler_ends
 from equipoise.mechanism.model import unknown
-from equipoise.symbols.pieces import Piece, Track, pieces
+from equipoise.symbols.pieces import Track, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Array, Shape, arrow
 
@@ -85,19 +85,15 @@ def laid_out(
     behind: list[Part] = []
     before: list[Part] = []
     for piece in pieces(scene, names):
-        part = _part(stage, piece, moves)
+        origin = stage.origin if piece.hold is None else 0
+        strokes = tuple(_stroke(stage, shape, origin) for shape in piece.shapes)
+        track = None if piece.hold in moves else piece.track(scene)
+        if track is not None:  # pieces with one hold share their moves
+            moves[piece.hold] = stage.moves(track)
+        part = Part(strokes, moves.get(piece.hold))
         (behind if piece.layer in BEHIND else before).append(part)
     behind.append(Part((*_paths(stage, names), _ruler(stage))))
     return Moving(stage, tuple(behind), captions(stage, names), (*before, *_force(stage)))
-
-
-def _part(stage: Stage, piece: Piece, moves: dict[Any, Moves]) -> Part:
-    """Pieces with one hold share their moves."""
-    if piece.hold is None:
-        return Part(tuple(_stroke(stage, shape, stage.origin) for shape in piece.shapes))
-    if piece.hold not in moves and (track := piece.track(stage.scene)) is not None:
-        moves[piece.hold] = stage.moves(track)
-    return Part(tuple(_stroke(stage, shape) for shape in piece.shapes), moves[piece.hold])
 
 
 def _stroke(stage: Stage, shape: Shape, origin: complex = 0) -> Stroke:
@@ -109,12 +105,8 @@ def _paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[Stroke]:
     for name in traced:
         yield Stroke("trace", stage.path(stage.at(stage.scene.places[name])), stage.closed)
     if stage.arrow is not None:
-        yield Stroke("force-path", stage.path(_tips(stage, stage.arrow)), stage.closed)
-
-
-def _tips(stage: Stage, force: Arrow) -> Array:
-    """Where the arrow ends, (N,) pixels."""
-    return np.asarray(stage.at(force.place) + np.conj(force.force) * stage.strength)
+        tips = stage.at(stage.arrow.place) + np.conj(stage.arrow.force) * stage.strength
+        yield Stroke("force-path", stage.path(tips), stage.closed)
 
 
 def _force(stage: Stage) -> Iterator[Part]:

@@ -19,12 +19,7 @@ if TYPE_CHECKING:
     from equipoise.balancing.pareto import Front
     from equipoise.studies.objective_map import Landscape
 
-HANDY = {
-    "mass": "g",
-    "inertia": "kg mm^2",
-    "angular speed": "rpm",
-    "stiffness": "N/mm",
-}
+HANDY = {"mass": "g", "inertia": "kg mm^2", "angular speed": "rpm", "stiffness": "N/mm"}
 """Units of numbers of a model beside the usual ones."""
 
 
@@ -39,18 +34,12 @@ def number_unit(dimension: str | None) -> Display:
 
 def told_best(found: Landscape) -> str:
     """The best place in a sentence."""
-    axes = [Axis(path, number_unit(found.dimensions[path])) for path in found.paths]
     places = (
-        f"{axis.label} = {axis.quantity(value)}"
-        for axis, value in zip(axes, found.best, strict=True)
+        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        for path, value in zip(found.paths, found.best, strict=True)
     )
     value = f"{shown(found.least)} {typeset(found.unit)}"
     return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
-
-
-def landscape_charts(found: Landscape) -> dict[str, Chart]:
-    """``landscape``: the objective over its two numbers."""
-    return {"landscape": landscape(found)}
 
 
 def landscape(found: Landscape) -> Chart:
@@ -67,8 +56,13 @@ def landscape(found: Landscape) -> Chart:
     unit = typeset(found.unit)
     told = f"{x.quantity(found.best[0])}, {y.quantity(found.best[1])}"
     places = {"least": (found.best, f"{shown(found.least)} {unit}\n{told}", say("least"))}
-    if found.start is not None and not np.isnan(found.before) and _is_inside(found, found.start):
-        places["own"] = (found.start, f"{shown(found.before)} {unit}", say("as it is"))
+    if found.start is not None and not np.isnan(found.before):
+        inside = (
+            values[0] <= one <= values[-1]
+            for values, one in zip((found.x, found.y), found.start, strict=True)
+        )
+        if all(inside):
+            places["own"] = (found.start, f"{shown(found.before)} {unit}", say("as it is"))
     marks = [
         Mark(*at, text, role, bold=True, label=name) for role, (at, text, name) in places.items()
     ]
@@ -88,10 +82,6 @@ def landscape(found: Landscape) -> Chart:
     return Chart("landscape", found.machine.title, what, (panel,))
 
 
-def _is_inside(found: Landscape, pair: tuple[float, float]) -> bool:
-    return all(v[0] <= one <= v[-1] for v, one in zip((found.x, found.y), pair, strict=True))
-
-
 SENSIBLE, MARGIN = 3.0, 0.12
 """Times the size of a trade-off: how far off the machine as it is may be to be in the picture;
 free at each side, over what is drawn."""
@@ -99,8 +89,10 @@ free at each side, over what is drawn."""
 
 def front(found: Front) -> Chart:
     """The second objective against the first, each point as good as any can be."""
-    values, before = found.values, np.array(_before(found))
-    names = [objective_named(one, len(found.original.rows)) for one in (found.first, found.second)]
+    values = found.values
+    both = (found.first, found.second)
+    before = np.array([Problem.value_of(found.original, which) for which in both])
+    names = [objective_named(one, len(found.original.rows)) for one in both]
     seen = _is_near(values, before)
     held = np.vstack([values, before]) if seen else values
     x, y = (
@@ -136,12 +128,6 @@ def _objective_axis(label: str, unit: str, values: Array) -> Axis:
     low, high = float(np.min(values)), float(np.max(values))
     room = MARGIN * (high - low if high > low else max(abs(high), 1e-12))
     return Axis(label, in_unit(shown_in), low=low - room, high=high + room)
-
-
-def _before(found: Front) -> tuple[float, float]:
-    """Both objectives of the machine as it is, SI units."""
-    one, other = (Problem.value_of(found.original, which) for which in (found.first, found.second))
-    return one, other
 
 
 def _is_near(values: Array, before: Array) -> bool:

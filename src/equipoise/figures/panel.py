@@ -16,10 +16,12 @@ from equipoise.figures.curves import (
     signs_at,
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of
-from equipoise.figures.style import GRID, INK, LINES, NORMAL, PALE, SMALL, Look, look_of
-from equipoise.figures.view import Scale, View, corners_of
+from equipoise.figures.style import GRID, INK, KINDS, LINES, NORMAL, PALE, SMALL, Look, look_of
+from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Mark, Panel
 
+Number = tuple[str, float, float, str]
+"""At a bar: text, place on the sheet, colour."""
 RINGS = 4
 """Circles of a polar diagram at most, out to its farthest corner."""
 
@@ -29,13 +31,15 @@ def draw(view: View) -> None:
     panel = view.panel
     if not panel.bare:
         _grid(view)
+    left, top, right, bottom = view.box
     for band in panel.bands:
-        ends = np.array([band.low, band.high])
-        across = view.y.at(ends) if band.axis == "y" else view.x.at(ends)
-        left, top, right, bottom = view.box
-        box = (left, across[1], right, across[0]) if band.axis == "y" else (*across, top, bottom)
-        corners = corners_of(box) if band.axis == "y" else corners_of((box[0], top, box[1], bottom))
-        view.area(corners, look_of(band.role))
+        if band.axis == "y":
+            low, high = view.y.at([band.low, band.high])
+            box = (left, high, right, low)
+        else:
+            low, high = view.x.at([band.low, band.high])
+            box = (low, top, high, bottom)
+        view.area(look_of(band.role), corners_of(box))
     if panel.surface is not None:
         draw_surface(view, panel.surface)
     for area in panel.areas:
@@ -52,7 +56,7 @@ def draw(view: View) -> None:
         _level(view, line.at, look_of(line.role), line.axis)
     for bars in panel.bars:
         draw_bars(view, bars)
-    numbers = {role: k for k, role in enumerate(f"kind {n}" for n in range(6))}
+    numbers = {f"kind {number}": number for number in range(len(KINDS))}
     for curve in panel.curves:
         draw_curve(view, curve, numbers.get(curve.role, 0))
     for arrow in panel.arrows:
@@ -69,12 +73,10 @@ def _grid(view: View) -> None:
     if panel.rings:
         _rings(view)
     elif panel.grid:
-        across, up = (
-            [float(s.of(p)) for p, _ in t] for s, t in zip(_both(view), view.ticks, strict=True)
-        )
+        across = [float(view.x.of(place)) for place, _ in view.ticks[0]]
+        up = [float(view.y.of(place)) for place, _ in view.ticks[1]]
         if panel.bars:
-            standing = panel.bars[0].across
-            across, up = (across, []) if standing == "y" else ([], up)
+            across, up = (across, []) if panel.bars[0].across == "y" else ([], up)
         lines = [np.array([(x, top), (x, bottom)]) for x in across]
         lines += [np.array([(left, y), (right, y)]) for y in up]
         if lines:
@@ -85,34 +87,30 @@ def _grid(view: View) -> None:
             _level(view, 0.0, look_of("zero"), axis)
 
 
-def _both(view: View) -> tuple[Scale, Scale]:
-    return view.x, view.y
-
-
 def _rings(view: View) -> None:
     """Circles of round sizes about the origin."""
-    corners = [
-        abs(complex(x, y)) for x in (view.x.low, view.x.high) for y in (view.y.low, view.y.high)
-    ]
-    step = 10.0 ** floor(log10(max(corners) / RINGS))
-    step *= next(by for by in (1, 2, 5, 10) if RINGS * by * step >= max(corners))
+    x, y = view.x, view.y
+    most = max(abs(complex(a, b)) for a in (x.low, x.high) for b in (y.low, y.high))
+    step = 10.0 ** floor(log10(most / RINGS))
+    step *= next(by for by in (1, 2, 5, 10) if RINGS * by * step >= most)
     turn = np.radians(np.arange(0, 361, 3))
     lines = tuple(
-        np.column_stack([view.x.of(k * step * np.cos(turn)), view.y.of(k * step * np.sin(turn))])
-        for k in range(1, ceil(max(corners) / step) + 1)
+        np.column_stack([x.of(k * step * np.cos(turn)), y.of(k * step * np.sin(turn))])
+        for k in range(1, ceil(most / step) + 1)
     )
     view.sheet.add(Stroke(lines, PALE, 0.6, clip=view.box), 0.5)
 
 
 def _level(view: View, at: float, look: Look, axis: str) -> None:
+    """A line from end to end at a value of an axis, where that is in sight."""
     left, top, right, bottom = view.box
     if axis == "y":
         y = float(view.y.at(at))
-        ends = [(left, y), (right, y)] if top - 0.1 <= y <= bottom + 0.1 else []
+        inside, ends = top - 0.1 <= y <= bottom + 0.1, [(left, y), (right, y)]
     else:
         x = float(view.x.at(at))
-        ends = [(x, bottom), (x, top)] if left - 0.1 <= x <= right + 0.1 else []
-    if ends:
+        inside, ends = left - 0.1 <= x <= right + 0.1, [(x, bottom), (x, top)]
+    if inside:
         view.line(np.array(ends), look)
 
 
@@ -121,13 +119,13 @@ def frame(view: View, numbers: bool) -> None:
     left, _, right, bottom = view.box
     panel = view.panel
     view.sheet.add(Stroke((corners_of(view.box),), LINES, 0.7, closed=True), 5.0)
-    lines, (across, up) = [], view.ticks
-    for place, text in across:
+    lines = []
+    for place, text in view.ticks[0]:
         x = float(view.x.of(place))
         lines.append(np.array([(x, bottom), (x, bottom + 3)]))
         if numbers:
             view.write(x, bottom + 9, text, "middle")
-    for place, text in up:
+    for place, text in view.ticks[1]:
         y = float(view.y.of(place))
         lines.append(np.array([(left - 3, y), (left, y)]))
         view.write(left - 5, y, text, "end")
@@ -166,14 +164,8 @@ def write_words(view: View) -> None:
     _marks(view)
     if panel.message:
         left, top, right, bottom = view.box
-        view.write(
-            (left + right) / 2,
-            top + 0.4 * (bottom - top),
-            panel.message,
-            "middle",
-            size=NORMAL,
-            backed=True,
-        )
+        middle = (left + right) / 2, top + 0.4 * (bottom - top)
+        view.write(*middle, panel.message, "middle", size=NORMAL, backed=True)
     _flags(view)
     _asides(view)
 
@@ -183,10 +175,8 @@ def _marks(view: View) -> None:
     size = np.array([view.x.length, view.y.length])
     for mark in view.panel.marks:
         (place,) = view.places(mark.x, mark.y)
-        near = (
-            bool(np.all(np.abs(place - other) < ALIKE * size)) and one.text for one, other in apart
-        )
-        if mark.text and any(near):
+        told = [at for one, at in apart if one.text]
+        if mark.text and any(np.all(np.abs(place - at) < ALIKE * size) for at in told):
             continue
         apart.append((mark, place))
         look = look_of(mark.role)
@@ -196,9 +186,8 @@ def _marks(view: View) -> None:
             view.labels.reserve(float(place[0]), float(place[1]), max(signs.size / 2, 2.0))
     for mark, (x, y) in apart:
         if mark.text:
-            text = Text(
-                mark.text, look_of(mark.role).ink, mark.wish, mark.near, mark.optional, mark.bold
-            )
+            ink = look_of(mark.role).ink
+            text = Text(mark.text, ink, mark.wish, mark.near, mark.optional, mark.bold)
             view.labels.put(float(x), float(y), text)
 
 
@@ -212,20 +201,16 @@ def _bar_numbers(view: View) -> None:
     largest = factor * max(float(np.max(bars.size, initial=0.0)) for bars in told)
     if not largest:
         return
-    seen = []
-    for bars in told:
-        color = look_of(bars.role).ink
-        for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True):
-            if size > VISIBLE * largest:
-                seen.append((size, at, color))
+    seen = [
+        (size, at, look_of(bars.role).ink)
+        for bars in told
+        for at, size in zip(bars.at.tolist(), (factor * bars.size).tolist(), strict=True)
+        if size > VISIBLE * largest
+    ]
     if scale is view.x:
         for size, at, _ in seen:
-            view.write(
-                float(scale.of(size)) + 4,
-                float(view.y.at(at)),
-                f"{size:.1f} {scale.axis.unit_name}",
-                color=INK,
-            )
+            text = f"{size:.1f} {scale.axis.unit_name}"
+            view.write(float(scale.of(size)) + 4, float(view.y.at(at)), text, color=INK)
         return
     decimals = max(0, 2 - floor(log10(largest)))
     if decimals > MOST_DECIMALS:
@@ -243,17 +228,17 @@ def _bar_numbers(view: View) -> None:
         view.write(x, y - 5.5, text, "middle", color=color)
 
 
-def _clear(texts: list[tuple[str, float, float, str]]) -> list[tuple[str, float, float, str]]:
+def _clear(texts: list[Number]) -> list[Number]:
     """Those that lie on no number of a higher bar."""
-    clear: list[tuple[str, float, float, str]] = []
-    for text in sorted(texts, key=lambda one: one[2]):
-        half = width_of(text[0], SMALL) / 2
+    clear: list[Number] = []
+    for one in sorted(texts, key=lambda one: one[2]):
+        text, x, y, _ = one
+        half = width_of(text, SMALL) / 2
         if all(
-            abs(text[1] - other[1]) > half + width_of(other[0], SMALL) / 2 + 2
-            or abs(text[2] - other[2]) > SMALL + 1
-            for other in clear
+            abs(x - at) > half + width_of(other, SMALL) / 2 + 2 or abs(y - up) > SMALL + 1
+            for other, at, up, _ in clear
         ):
-            clear.append(text)
+            clear.append(one)
     return clear
 
 
@@ -280,11 +265,8 @@ def upright(panel: Panel, width: float) -> bool:
 def _flags(view: View) -> None:
     """Words above the axes, each with a line down to its place."""
     panel = view.panel
-    flags = [
-        f
-        for f in panel.flags
-        if view.x.low - 1e-9 <= f.at * view.x.axis.unit.factor <= view.x.high * (1 + 1e-9)
-    ]
+    low, high = view.x.low - 1e-9, view.x.high * (1 + 1e-9)
+    flags = [f for f in panel.flags if low <= f.at * view.x.axis.unit.factor <= high]
     turned = upright(panel, view.x.length)
     wide = [STAND if turned else max(width_of(text, SMALL) for text in f.texts) + 6 for f in flags]
     while flags and sum(wide) > view.x.length + 12:
@@ -298,16 +280,15 @@ def _flags(view: View) -> None:
     count = max(len(flag.texts) for flag in flags)
     for flag, place, x in zip(flags, places, moved.tolist(), strict=True):
         view.line(np.array([(place, top), (x, top - LEAD)]), look_of("zero"), 2.0)
+        if turned:
+            foot = x + MIDDLE * SMALL, top - LEAD - 2
+            view.sheet.add(Words(*foot, flag.texts[0], SMALL, INK, turned=True), 7.0)
+            continue
         for row, text in enumerate(flag.texts):
-            if turned:
-                words = Words(x + MIDDLE * SMALL, top - LEAD - 2, text, SMALL, INK, turned=True)
-                view.sheet.add(words, 7.0)
-            else:
-                view.write(x, top - LEAD - 1 - ROW * (count - row - 0.5), text, "middle")
+            view.write(x, top - LEAD - 1 - ROW * (count - row - 0.5), text, "middle")
     for row, text in enumerate(panel.flag_words):
-        view.write(
-            view.x.start - 8, top - LEAD - 1 - ROW * (count - row - 0.5), text, "end", color=LINES
-        )
+        y = top - LEAD - 1 - ROW * (count - row - 0.5)
+        view.write(view.x.start - 8, y, text, "end", color=LINES)
 
 
 def _asides(view: View) -> None:

@@ -7,6 +7,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.results.charts import Chart
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -15,10 +16,10 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
-    from equipoise.results.charts import Chart
     from equipoise.vibration.free import FreeVibration
 
-    Pictures = dict[str, Chart]
+
+Pictures = dict[str, Chart]
 
 CHARTS = {
     "Response": "vibration:response_charts",
@@ -28,9 +29,9 @@ CHARTS = {
     "Transmissions": "tool_speeds:transmission_charts",
     "ToolResponse": "tool_shaft:response_charts",
     "ToolExposure": "tool_speeds:exposure_charts",
-    "ToolDesign": "tool_designs:design_charts",
+    "ToolDesign": "tool_designs:design",
     "Variation": "tool_designs:variation_charts",
-    "Landscape": "objectives:landscape_charts",
+    "Landscape": "objectives:landscape",
 }
 """Kind of result that needs nothing else for its charts -> module here, and the function."""
 
@@ -48,8 +49,8 @@ def pictures_of(result: Any) -> Pictures:
     if kind not in CHARTS:
         raise UsageError(f"there are no pictures of {kind}; draw one of {', '.join(KINDS)}")
     module, _, name = CHARTS[kind].partition(":")
-    charts: Pictures = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
-    return {**charts}
+    drawn = getattr(import_module(f"equipoise.figures.{module}"), name)(result)
+    return {drawn.name: drawn} if isinstance(drawn, Chart) else drawn
 
 
 def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
@@ -77,7 +78,7 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
         return found
     for chart in (forces.polar, forces.force, forces.moment, forces.torque):
         found[chart.__name__] = chart(analysis)
-    if forces.has_orders(analysis):
+    if analysis.has_orders:
         found["spectrum"] = forces.spectrum(analysis)
     of_joints = (*joints(analysis), *joint_polars(analysis))
     return found | {chart.name: chart for chart in of_joints}
@@ -117,7 +118,7 @@ def balance_pictures(
     if isinstance(found, Front):
         return {"front": objectives.front(found)}
     if isinstance(found, Phasing):
-        return {**view.phasing_charts(found, original)}
+        return {**view.row_charts(original, found.machine)}
     pictures: Pictures = {**view.charts(found)}
     if any(change.kind != "phases" for change in found.changes):
         pictures["changes"] = changes(found)

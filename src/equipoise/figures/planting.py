@@ -10,6 +10,7 @@ import numpy as np
 from equipoise.figures.analysis import named
 from equipoise.figures.shared import (
     ROOM,
+    by_name,
     closed,
     crank_axis,
     degrees_told,
@@ -23,8 +24,6 @@ from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Axis, Band, Chart, Curve, Flag, Line, Mark, Panel
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.dynamics import Forces
-    from equipoise.mechanism.reactions import JointForce
     from equipoise.planting.summary import PlantingFigures
 
 Extremes = Sequence[tuple[float, float]]
@@ -46,11 +45,7 @@ QUANTITIES: dict[str, tuple[str, str, Dimension, str]] = {
     ),
 }
 """Name -> title, label, dimension, and what the figures call its size."""
-PARTS = {
-    "": ("", ""),
-    "-x": (to_say("part along x"), " x"),
-    "-y": (to_say("part along y"), " y"),
-}
+PARTS = {"": ("", ""), "-x": (to_say("part along x"), " x"), "-y": (to_say("part along y"), " y")}
 
 
 def charts(figures: PlantingFigures) -> dict[str, Chart]:
@@ -59,17 +54,13 @@ def charts(figures: PlantingFigures) -> dict[str, Chart]:
     ``ratio-LINK`` for each link but the drive; ``velocity``, ``velocity-x``, ``velocity-y`` and the
     same of ``acceleration``; ``torque`` and ``joints`` where there are forces in the soil.
     """
-    machine = figures.machine
     drawn: dict[str, Chart] = {}
-    for link in machine.links:
-        if link != machine.drive.link:
+    for link in figures.machine.links:
+        if link != figures.machine.drive.link:
             name = free_name(f"ratio-{link}", drawn)
             drawn[name] = ratio(figures, link).named(name)
-    drawn |= {chart.name: chart for chart in tips(figures)}
-    if figures.forces is not None:
-        drawn["torque"] = torque(figures)
-        drawn["joints"] = joints(figures)
-    return drawn
+    of_soil = (torque, joints) if figures.forces is not None else ()
+    return drawn | by_name([*tips(figures), *(draw(figures) for draw in of_soil)])
 
 
 # -- over crank angle, with the stay in the soil ---------------------------------------------------
@@ -92,24 +83,21 @@ def stay_panel(
     figures: PlantingFigures, y: Axis, curves: Sequence[Curve], marks: Sequence[Mark], **rest: Any
 ) -> Panel:
     """Signals over crank angle, with the stay in the soil shaded and its events."""
-    at = {name: figures[f"{name}.crank_angle"] for name in EVENTS}
     return Panel(
         crank_axis(figures.machine.drive.link, figures["speed"], figures.curve.turns),
         y,
         tuple(curves),
         tuple(marks),
         tuple(Band(low, high, "soil") for low, high in soil_spans(figures)),
-        tuple(Line(angle, name) for name, angle in at.items()),
+        tuple(Line(figures[f"{name}.crank_angle"], name) for name in EVENTS),
         **rest,
     )
 
 
 def _flags(figures: PlantingFigures) -> tuple[Flag, ...]:
     """What the events are, and when."""
-    at = {name: figures[f"{name}.crank_angle"] for name in EVENTS}
-    return tuple(
-        Flag(at[name], (say(text), degrees_told(at[name]))) for name, text in EVENTS.items()
-    )
+    at = {text: figures[f"{name}.crank_angle"] for name, text in EVENTS.items()}
+    return tuple(Flag(angle, (say(text), degrees_told(angle))) for text, angle in at.items())
 
 
 def _chart(
@@ -131,13 +119,10 @@ def ratio(figures: PlantingFigures, link: str) -> Chart:
         (figures[f"ratio.{link}.{which}_at"], figures[f"ratio.{link}.{which}"])
         for which in ("max", "min")
     ]
-    drive = figures.machine.drive.link
-    what = say(
-        "Angular velocity of {link} over that of {drive}", link=short(link), drive=short(drive)
-    )
-    label = say(
-        "angular velocity ratio, {link} / {drive}", link=short(link, 14), drive=short(drive, 14)
-    )
+    both = {"link": link, "drive": figures.machine.drive.link}
+    names, brief = ({k: short(one, most) for k, one in both.items()} for most in (24, 14))
+    what = say("Angular velocity of {link} over that of {drive}", **names)
+    label = say("angular velocity ratio, {link} / {drive}", **brief)
     return _chart(figures, f"ratio-{link}", what, Axis(label, room=ROOM), rates, places)
 
 
@@ -185,11 +170,9 @@ def _vector(figures: PlantingFigures, name: str, theta: Array, order: int = 0) -
     tip = curve.at(theta)
     rates = (tip.place_1, tip.place_2, curve.place_3(theta) if order and name != "velocity" else 0)
     if name == "velocity":
-        velocity: Array = rates[order] * curve.speed
-        return velocity
+        return np.asarray(rates[order] * curve.speed)
     change = figures.machine.drive.acceleration
-    acceleration: Array = rates[order + 1] * curve.speed**2 + rates[order] * change
-    return acceleration
+    return np.asarray(rates[order + 1] * curve.speed**2 + rates[order] * change)
 
 
 def _component(vector: Array, part: str) -> Array:
@@ -216,7 +199,7 @@ def joints(figures: PlantingFigures) -> Chart:
     """Size of the force in every joint, each with axes of its own."""
     found = figures.forces
     assert found is not None
-    air, soil = _joints(found.in_air), _joints(found.in_soil)
+    air, soil = ({**one.joints, **one.gears} for one in (found.in_air, found.in_soil))
     panels = []
     for name, joint in soil.items():
         pair = {"air": air[name].size, "soil signal": joint.size}
@@ -245,7 +228,3 @@ def _air_and_soil(
         Curve(*closed(angles, values, period), names[role], role) for role, values in pair.items()
     ]
     return stay_panel(figures, y, curves, marks, **rest)
-
-
-def _joints(forces: Forces) -> dict[str, JointForce]:
-    return {**forces.joints, **forces.gears}

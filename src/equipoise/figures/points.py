@@ -13,13 +13,12 @@ from equipoise.figures.shared import (
     angle_step,
     compared,
     extent,
-    halves,
     numbers,
     told_angles,
     told_speed,
 )
 from equipoise.figures.style import short
-from equipoise.i18n import say, to_say
+from equipoise.i18n import say
 from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.outputs import joint_named
 from equipoise.quantities import Dimension
@@ -61,56 +60,46 @@ def traced(motion: Motion) -> list[str]:
     return sorted(found, key=lambda name: name in joints.pins)
 
 
-def followed(analysis: Analysis, points: Sequence[str] | None, most: int) -> list[str]:
-    """The points that are asked for, or as many as a picture can hold."""
-    return traced(analysis.motion)[:most] if points is None else [*points]
-
-
 def curves(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     """Paths of points of couplers, with dots after equal times; those of other points pale.
 
     points : names; where they are not given, some that are no joint of the frame's links.
     """
     motion = analysis.motion
-    names = followed(analysis, points, MOST_POINTS)
+    names = traced(motion)[:MOST_POINTS] if points is None else [*points]
     others = [name for name in moving(motion) if name not in names]
     frame = {name: complex(*place) for name, place in analysis.machine.frame.items()}
     every = [motion.points[name].place for name in (*names, *others)]
     size = extent(*every, np.array([*frame.values()]))
-    drawn = [
-        Curve(*halves(over(analysis, motion.points[name].place)[1]), "", "faint") for name in others
-    ]
+    drawn = [Curve.of(over(analysis, motion.points[name].place)[1], "", "faint") for name in others]
     marks = [
-        Mark(z.real, z.imag, short(name), "stand", 45.0, near=5.0, bold=True)
-        for name, z in frame.items()
+        Mark.of(z, short(name), "stand", 45.0, near=5.0, bold=True) for name, z in frame.items()
     ]
-    arrows, dots = [], []
+    arrows: list[Arrow] = []
+    dots: list[Mark] = []
+    numbered: list[Mark] = []
     for number, name in enumerate(names, 1):
         role, path = f"several {number}", motion.points[name].place
         label = say("path of {point}", point=short(name, 12))
-        drawn.append(Curve(*halves(over(analysis, path)[1]), label, role))
+        drawn.append(Curve.of(over(analysis, path)[1], label, role))
         arrows += _sense(analysis, name, role, size)
         if motion.whole_cycle:
             ways = np.arange(0, 360 * motion.turns, angle_step(motion.turns))
             at = np.round(ways * len(path) / (360 * motion.turns)).astype(int)
-            dots += [Mark(float(z.real), float(z.imag), "", role) for z in path[at]]
+            dots += [Mark.of(z, "", role) for z in path[at]]
+            numbered += numbers(told_angles(motion.crank_angle), path, role, size)
     for name in (*names, *others):
         role = f"several {names.index(name) + 1}" if name in names else "lines"
         path = motion.points[name].place
-        k = int(np.argmax((path * np.exp(-0.7j)).real))
-        at_k = (float(path[k].real), float(path[k].imag))
-        marks.append(Mark(*at_k, short(name), role, 40.0, sign=False, near=4.0, bold=True))
-    if motion.whole_cycle:
-        told = told_angles(motion.crank_angle)
-        for number, name in enumerate(names, 1):
-            path = motion.points[name].place
-            dots += numbers(told, path, f"several {number}", size)
+        farthest = path[np.argmax((path * np.exp(-0.7j)).real)]
+        named = Mark.of(farthest, short(name), role, 40.0, sign=False, near=4.0, bold=True)
+        marks.append(named)
     x, y = (Axis.of(say("{axis} in the frame", axis=a), "length", every and size) for a in "xy")
     panel = Panel(
         x,
         y,
         tuple(drawn),
-        (*marks, *dots),
+        (*marks, *dots, *numbered),
         arrows=tuple(arrows),
         message="" if names else say("no point moves"),
         equal=True,
@@ -146,44 +135,50 @@ def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
 
     points : names; where they are not given, the same as of `curves`.
     """
-    names = followed(analysis, points, MOST_VECTORS)
+    names = traced(analysis.motion)[:MOST_VECTORS] if points is None else [*points]
     every = [analysis.motion.points[name] for name in names]
-    pairs: tuple[tuple[str, Dimension, list[Array]], ...] = (
-        (VELOCITY, "speed", [point.velocity for point in every]),
-        (ACCELERATION, "acceleration", [point.acceleration_vector for point in every]),
+    panels = (
+        _ends(analysis, names, say("velocity"), "speed", [one.velocity for one in every]),
+        _ends(
+            analysis,
+            names,
+            say("acceleration"),
+            "acceleration",
+            [one.acceleration_vector for one in every],
+        ),
     )
-    panels = []
-    for what, dimension, values in pairs:
-        whole = np.concatenate([*values, [0]])
-        x, y = (
-            Axis.of(say("{quantity} along {axis}", quantity=say(what), axis=axis), dimension, whole)
-            for axis in ("x", "y")
-        )
-        marks: list[Mark] = [Mark(0.0, 0.0, "", "pivot")]
-        drawn = []
-        told: dict[int, int] = {}
-        if analysis.motion.whole_cycle:
-            told = told_angles(analysis.crank_angle)
-            told = {a: k for a, k in told.items() if len(values) < 2 or a in FEW}
-        for number, (name, one) in enumerate(zip(names, values, strict=True), 1):
-            role = f"several {number}"
-            drawn.append(Curve(*halves(over(analysis, one)[1]), short(name, 14), role))
-            marks += numbers(told, one, role, extent(whole))
-        message = "" if names else say("no point moves")
-        panels.append(Panel(x, y, tuple(drawn), tuple(marks), message=message, equal=True))
-    told_what = title(
-        analysis,
-        say("Hodographs of velocity and acceleration"),
-        say("numbers: crank angle, deg"),
-        of_one=True,
-    )
-    return Chart(
-        "hodograph", analysis.machine.title, told_what, tuple(panels), columns=2, stacked=False
-    )
+    shown_here = say("Hodographs of velocity and acceleration")
+    what = title(analysis, shown_here, say("numbers: crank angle, deg"), of_one=True)
+    return Chart("hodograph", analysis.machine.title, what, panels, columns=2, stacked=False)
 
 
-VELOCITY, ACCELERATION = to_say("velocity"), to_say("acceleration")
+def _ends(
+    analysis: Analysis,
+    names: Sequence[str],
+    quantity: str,
+    dimension: Dimension,
+    values: Sequence[Array],
+) -> Panel:
+    """Ends of arrows (N,), complex, of some points, with crank angles along them."""
+    whole = np.concatenate([*values, [0]])
+    x, y = (
+        Axis.of(say("{quantity} along {axis}", quantity=quantity, axis=axis), dimension, whole)
+        for axis in ("x", "y")
+    )
+    told: dict[int, int] = {}
+    if analysis.motion.whole_cycle:
+        told = told_angles(analysis.crank_angle)
+        told = {a: k for a, k in told.items() if len(values) < 2 or a in FEW}
+    drawn, marks = [], [Mark(0.0, 0.0, "", "pivot")]
+    for number, (name, one) in enumerate(zip(names, values, strict=True), 1):
+        role = f"several {number}"
+        drawn.append(Curve.of(over(analysis, one)[1], short(name, 14), role))
+        marks += numbers(told, one, role, extent(whole))
+    message = "" if names else say("no point moves")
+    return Panel(x, y, tuple(drawn), tuple(marks), message=message, equal=True)
 
+
+# -- any output ------------------------------------------------------------------------------------
 
 MOST_LINKS = 3
 """Links whose motion stands in a report."""
@@ -227,13 +222,10 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
 def main_kinematics(analysis: Analysis) -> list[Chart]:
     """Those that matter most: of sliders, or driven links, on the frame; transmission angles."""
     machine = analysis.machine
-    driven = [
-        link
-        for link, body in machine.links.items()
-        if link != machine.drive.link and set(body.points) & set(machine.frame)
-    ]
     wanted = [slider.name for slider in machine.sliders if slider.on == FRAME]
-    wanted += driven[:MOST_LINKS] if not wanted else []
+    if not wanted:
+        pinned = [link for link, body in machine.links.items() if {*body.points} & {*machine.frame}]
+        wanted = [link for link in pinned if link != machine.drive.link][:MOST_LINKS]
     names = {"kinematics-transmission", *map(_name, wanted)}
     return [chart for chart in kinematics(analysis) if chart.name in names]
 

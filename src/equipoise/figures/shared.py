@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import pi
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -13,7 +13,9 @@ from equipoise import signals
 from equipoise.figures.style import KINDS, short
 from equipoise.i18n import say
 from equipoise.quantities import Dimension
-from equipoise.results.charts import DEGREES, RPM, Array, Axis, Curve, Mark, Panel, shown
+from equipoise.results.charts import DEGREES, RPM, Array, Axis, Chart, Curve, Mark, Panel, shown
+
+One = TypeVar("One")
 
 ROOM = 0.17
 """Share of what is drawn that stays free above and below for the numbers at extremes."""
@@ -60,6 +62,17 @@ def crank_axis(drive: str, speed: float, turns: int, with_motor: bool = False) -
     return Axis(label, DEGREES, "crank", 0.0, 2 * pi * turns)
 
 
+def ends(axis: Axis) -> tuple[float, float]:
+    """Both ends of an axis whose ends are given, SI units."""
+    assert axis.low is not None and axis.high is not None
+    return axis.low, axis.high
+
+
+def by_name(charts: Iterable[Chart]) -> dict[str, Chart]:
+    """Charts by their names."""
+    return {chart.name: chart for chart in charts}
+
+
 def angle_step(turns: int) -> int:
     """Degrees between crank angles that are told along a path."""
     return next((step for step in STEPS if 360 * turns / step < 13), 360 * turns)
@@ -95,7 +108,7 @@ def continued(names: Sequence[Any], every: Sequence[Any]) -> str:
     return " " + say("({first} to {last} of {count})", first=first, last=last, count=len(every))
 
 
-def groups(names: Sequence[str], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[str]]]:
+def groups(names: Sequence[One], most: int = MOST_PANELS) -> Iterator[tuple[str, Sequence[One]]]:
     """Names by so many for each picture, with what is added to the name of the picture."""
     for number, start in enumerate(range(0, len(names), most), 1):
         yield f"-{number}" if number > 1 else "", names[start : start + most]
@@ -120,15 +133,13 @@ def extremes(
 
     places : crank angles (rad) and values.  angles : whether the crank angles are told too.
     """
-    if not varies(values):
-        return ()
-    middle = float(np.mean(values))
     found = []
-    for angle, value in places:
+    for angle, value in places if varies(values) else ():
         text = axis.told(value)
         if angles:
             text = say("{value} at {angle}", value=text, angle=degrees_told(angle))
-        found.append(Mark(angle, value, text, role, 90.0 if value > middle else -90.0))
+        wish = 90.0 if value > float(np.mean(values)) else -90.0
+        found.append(Mark(angle, value, text, role, wish))
     return tuple(found)
 
 
@@ -176,23 +187,14 @@ def told_angles(angles: Array) -> dict[int, int]:
 
 def numbers(told: Mapping[int, int], values: Array, role: str, size: float) -> tuple[Mark, ...]:
     """Marks at crank angles of a path (N,), complex, of some size; of several at one place one."""
-    apart: dict[int, int] = {}
-    for angle, k in told.items():
-        if all(abs(values[k] - values[other]) > ALIKE * size for other in apart.values()):
-            apart[angle] = k
+    found: dict[complex, Mark] = {}
     middle = complex(np.mean(values))
-    return tuple(
-        Mark(
-            float(values[k].real),
-            float(values[k].imag),
-            f"{angle}",
-            role,
-            float(np.degrees(np.angle(values[k] - middle))),
-            optional=True,
-            near=5.0,
-        )
-        for angle, k in apart.items()
-    )
+    for angle, k in told.items():
+        place = complex(values[k])
+        if all(abs(place - other) > ALIKE * size for other in found):
+            wish = float(np.degrees(np.angle(place - middle)))
+            found[place] = Mark.of(place, f"{angle}", role, wish, optional=True, near=5.0)
+    return tuple(found.values())
 
 
 def extent(*parts: Array) -> float:
@@ -201,10 +203,7 @@ def extent(*parts: Array) -> float:
     return max(float(np.ptp(every.real)), float(np.ptp(every.imag)))
 
 
-def halves(places: Array) -> tuple[Array, Array]:
-    """Real and imaginary parts of places, complex."""
-    return places.real, places.imag
-
+# -- over speed ------------------------------------------------------------------------------------
 
 UNBOUNDED = 5e3
 """Over the median, what only a resonance without damping can reach."""

@@ -145,10 +145,6 @@ class Stage:
         """Pixels of a place, m."""
         return np.conj(place) * self.scale + self.origin
 
-    def first(self, point: str) -> complex:
-        """Where a point is at the beginning."""
-        return complex(self.at(self.scene.places[point][0]))
-
     def path(self, values: Array) -> Array:
         """Of N values as many as a smooth line needs."""
         return values[:: max(1, int(len(values) / max(self.turns, 1) / IN_A_TURN))]
@@ -223,10 +219,9 @@ def _strip(stage: Stage) -> Iterator[list[Label]]:
     yield [Label(words, right + 8 * stage.unit - 2j, "start")]
     if stage.arrow is not None:
         peak = shown(abs(stage.arrow.force).max())
+        words = say("shaking force, at most {peak} N", peak=peak)
         if stage.arrow.of_one:
             words = say("shaking force of one row, at most {peak} N", peak=peak)
-        else:
-            words = say("shaking force, at most {peak} N", peak=peak)
         corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
         yield [Label(words, corner, "end", "stress")]
 
@@ -244,12 +239,11 @@ def _ruler_length(stage: Stage) -> float:
 
 
 def _of_pivots(stage: Stage) -> Iterator[list[Label]]:
-    side, below = 22 * stage.unit, (FOOT + 8) * stage.unit
+    side, down, below = (by * stage.unit for by in (22, 10j, (FOOT + 8) * 1j))
     for name in stage.scene.standing:
-        place = stage.first(name)
-        down = 10j * stage.unit
+        place = complex(stage.at(stage.scene.places[name][0]))
         yield [
-            Label(name, place + 1j * below),
+            Label(name, place + below),
             Label(name, place + side + down, "start"),
             Label(name, place - side + down, "end"),
         ]
@@ -260,13 +254,13 @@ def _of_paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[list[Label]]:
     off = 14 * stage.unit
     for name in traced:
         path = stage.path(stage.at(stage.scene.places[name]))
-        top, bottom = path[np.argmin(path.imag)], path[np.argmax(path.imag)]
-        left, right = path[np.argmin(path.real)], path[np.argmax(path.real)]
+        ends = (path.imag.argmin(), path.real.argmin(), path.real.argmax(), path.imag.argmax())
+        top, left, right, bottom = (complex(path[k]) for k in ends)
         yield [
-            Label(name, complex(top) - 1j * off, color="main"),
-            Label(name, complex(left) - off, "end", "main"),
-            Label(name, complex(right) + off, "start", "main"),
-            Label(name, complex(bottom) + 1j * off, color="main"),
+            Label(name, top - 1j * off, color="main"),
+            Label(name, left - off, "end", "main"),
+            Label(name, right + off, "start", "main"),
+            Label(name, bottom + 1j * off, color="main"),
         ]
 
 

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import combinations, zip_longest
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.shared import continued, groups
+from equipoise.figures.shared import by_name, continued, groups
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.quantities import Display
@@ -52,9 +52,9 @@ def best_charts(found: Best, title: str, units: Units) -> dict[str, Chart]:
 
     More than ten numbers go on in ``designs-2`` and so on.
     """
-    columns = {name: found.values[:, k] for k, name in enumerate(found.numbers)}
-    columns |= {name: found.figures[:, k] for k, name in enumerate(found.outputs)}
-    labels = tuple(str(number) for number in found.designs.tolist())
+    columns = dict(zip(found.numbers, found.values.T, strict=True))
+    columns |= dict(zip(found.outputs, found.figures.T, strict=True))
+    labels = [str(number) for number in found.designs.tolist()]
     return _of(Designs(title, found.by, found.numbers, columns, labels, units))
 
 
@@ -64,12 +64,10 @@ def searched_charts(found: Searched, units: Units, own: Own | None = None) -> di
     own : the model itself, for comparison.
     """
     study = found.study
-    columns = {name: found.values[:, k] for k, name in enumerate(study.paths)}
-    columns |= {name: found.figures[:, k] for k, name in enumerate(study.names)}
-    labels = tuple(str(number) for number in range(len(found.values)))
-    before = None
-    if own is not None:
-        before = dict(zip((*study.paths, *study.names), (*own[0], *own[1]), strict=True))
+    names = (*study.paths, *study.names)
+    columns = dict(zip(names, (*found.values.T, *found.figures.T), strict=True))
+    labels = [str(number) for number in range(len(found.values))]
+    before = None if own is None else dict(zip(names, (*own[0], *own[1]), strict=True))
     by = dict(found.objectives)
     designs = Designs(study.title, by, study.paths, columns, labels, units, before)
     return {**_of(designs), "search": grown(found, units)}
@@ -102,20 +100,18 @@ class Designs:
 
 
 def _of(designs: Designs) -> dict[str, Chart]:
-    drawn = {"front": front(designs)} if len(designs.by) > 1 else {}
-    return drawn | {chart.name: chart for chart in over_numbers(designs)}
+    fronts = [front(designs)] if len(designs.by) > 1 else []
+    return by_name([*fronts, *over_numbers(designs)])
 
 
 def front(designs: Designs) -> Chart:
     """Every two aims against each other."""
     pairs = list(combinations(designs.by, 2))
     alone = len(pairs) == 1
-    panels = [
-        _against(designs, first, second, 40 if alone else 26, told=alone) for first, second in pairs
-    ]
+    most, columns = (40, 1) if alone else (26, 2)
+    panels = tuple(_against(designs, *pair, most, told=alone) for pair in pairs)
     what = say("{count} designs that no other beats in everything", count=len(designs.labels))
-    columns = 1 if alone else 2
-    return Chart("front", designs.title, what, tuple(panels), columns, False, _keys(designs))
+    return Chart("front", designs.title, what, panels, columns, False, _keys(designs))
 
 
 def over_numbers(designs: Designs) -> Iterator[Chart]:
@@ -126,9 +122,8 @@ def over_numbers(designs: Designs) -> Iterator[Chart]:
         panels = tuple(_against(designs, name, aim, 34) for name in names)
         what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
         what += continued(names, every)
-        columns = min(2, len(panels))
-        name = f"designs{suffix}"
-        yield Chart(name, designs.title, what, panels, columns, False, _keys(designs))
+        own, columns = f"designs{suffix}", min(2, len(panels))
+        yield Chart(own, designs.title, what, panels, columns, False, _keys(designs))
 
 
 def _against(designs: Designs, first: str, second: str, most: int, told: bool = False) -> Panel:
@@ -178,34 +173,30 @@ def tolerance_charts(found: Tolerances, units: Units) -> dict[str, Chart]:
 
     More than ten figures go on in ``scatter-2`` and so on.
     """
-    drawn = (*scatter(found, units), tighten(found), *shares(found))
-    return {chart.name: chart for chart in drawn}
+    return by_name([*scatter(found, units), tighten(found), *shares(found)])
 
 
 def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
     """A histogram of each figure; bars outside of its limits are pale."""
     every = list(found.scatters)
-    limited = any(_limits(one) for one in found.scatters.values())
     keys = [("machines", say("machines")), ("model", say("the model itself"))]
-    if limited:
+    if any(_limits(one) for one in found.scatters.values()):
         keys += [("outside", say("outside of limits")), ("bound", say("limit"))]
     for suffix, names in groups(every):
         what = say("Scatter over {count} machines", count=found.designs) + continued(names, every)
         panels = tuple(
             _histogram(name, found.scatters[name], units[name], found.designs) for name in names
         )
-        columns = min(2, len(panels))
-        title = found.study.title
-        yield Chart(f"scatter{suffix}", title, what, panels, columns, False, tuple(keys))
+        own, columns = f"scatter{suffix}", min(2, len(panels))
+        yield Chart(own, found.study.title, what, panels, columns, False, tuple(keys))
 
 
 def _histogram(name: str, one: Scatter, unit: Unit, designs: int) -> Panel:
     edges, shares = np.asarray(one.edges, float), one.counts / designs
-    inside = np.ones(len(shares), bool)
-    if one.output.at_least is not None:
-        inside &= edges[1:] > one.output.at_least
-    if one.output.at_most is not None:
-        inside &= edges[:-1] < one.output.at_most
+    output = one.output
+    least = -np.inf if output.at_least is None else output.at_least
+    most = np.inf if output.at_most is None else output.at_most
+    inside = (edges[1:] > least) & (edges[:-1] < most)
     roles = tuple("machines" if good else "outside" for good in inside)
     lines = [Line(limit, "bound") for limit in _limits(one)]
     if np.isfinite(one.base):
@@ -243,22 +234,20 @@ def shares(found: Tolerances) -> Iterator[Chart]:
     """Share of each tolerance in the variance of each figure."""
     causes = found.causes
     every = [name for name in found.scatters if name in causes[0].effects]
-    keys = (
-        ("part", say("by itself")),
-        ("whole", say("with all that it does together with others")),
-    )
+    together = say("with all that it does together with others")
+    keys = (("part", say("by itself")), ("whole", together))
+    rows = np.arange(len(causes))
+    x = Axis(say("share of the variance"), PERCENT, low=0.0, high=1.0)
     for suffix, names in groups(every, MOST_SHARES):
         panels = []
         for name in names:
             effects = [cause.effects[name] for cause in causes]
             total = np.array([max(effect.total.value, 0.0) for effect in effects])
             first = np.array([max(effect.first.value, 0.0) for effect in effects])
-            rows = np.arange(len(causes))
             bars = (
                 Bars(rows, total, TALL, "whole", across="y"),
                 Bars(rows, first, THIN, "part", across="y"),
             )
-            x = Axis(say("share of the variance"), PERCENT, low=0.0, high=1.0)
             panels.append(_bars_of(causes, bars, x, title=short(name, 50)))
         what = say("What causes the scatter of each figure") + continued(names, every)
         yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
@@ -266,21 +255,17 @@ def shares(found: Tolerances) -> Iterator[Chart]:
 
 def _bars_of(causes: Sequence[Cause], bars: tuple[Bars, ...], x: Axis, **rest: Any) -> Panel:
     """Lying bars, one for each cause, the first at the top."""
-    ticks = tuple(
-        (float(row), short(joined(cause.numbers), 38)) for row, cause in enumerate(causes)
-    )
+    names = (short(joined(cause.numbers), 38) for cause in causes)
+    ticks = tuple((float(row), name) for row, name in enumerate(names))
     y = Axis(low=len(causes) - 0.5, high=-0.5, ticks=ticks)
     return Panel(x, y, bars=bars, height=BAR * len(causes), **rest)
 
 
 def joined(names: Sequence[str]) -> str:
     """Paths that vary together: what they have in common is said once."""
-    first, *others = names
-    if not others:
-        return first
+    if len(names) == 1:
+        return names[0]
     parts = [name.split(".") for name in names]
-    same = 0
-    while all(part[: same + 1] == parts[0][: same + 1] for part in parts):
-        same += 1
+    same = next(k for k, column in enumerate(zip_longest(*parts)) if len({*column}) > 1)
     ends = [".".join(part[same:]) for part in parts]
     return ".".join([*parts[0][:same], " + ".join(ends)])

@@ -43,6 +43,16 @@ class Look:
         """Colour of words about it."""
         return self.color or LINES
 
+    @property
+    def inside(self) -> str:
+        """Colour of what it fills: a sign, a bar, a patch."""
+        return self.fill or ("#ffffff" if self.hollow else self.color)
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """Of its dashes, points."""
+        return tuple(max(self.width, 0.8) * dash for dash in self.dashes)
+
 
 LONG, MEDIUM, DOTS, DOT_DASH = (5.0, 2.0), (4.0, 2.0), (1.5, 1.5), (5.0, 2.0, 1.0, 2.0)
 KINDS = (

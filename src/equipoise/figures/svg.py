@@ -73,13 +73,16 @@ def animated_svg(
     moves = [list(_steps(one, drawn.stage.times)) for one in every]
     mark = f"e{sha256(repr((shapes, moves, seconds)).encode()).hexdigest()[:8]}"
     lasting = seconds * drawn.stage.turns
+    names = ", ".join(body.name for body in scene.bodies)
+    words = [say("The linkage turns through its whole cycle."), say("Links: {names}.", names=names)]
+    words += [say("Path of {names}.", names=", ".join(traced))] if traced else []
     style = "\n".join([*_colors(mark, drawn), *_motions(mark, moves, lasting, drawn.stage.closed)])
     stage = drawn.stage
     return f"""\
 <svg xmlns="http://www.w3.org/2000/svg" class="linkage {mark}" role="img" \
 viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.height}">
 <title>{escape(title)}</title>
-<desc>{escape(_description(scene, traced))}</desc>
+<desc>{escape(" ".join(words))}</desc>
 <style>
 {style}
 </style>
@@ -87,14 +90,6 @@ viewBox="0 0 {stage.width} {stage.height}" width="{stage.width}" height="{stage.
 {shapes}
 </svg>
 """
-
-
-def _description(scene: Scene, traced: Collection[str]) -> str:
-    words = [say("The linkage turns through its whole cycle.")]
-    words.append(say("Links: {names}.", names=", ".join(body.name for body in scene.bodies)))
-    if traced:
-        words.append(say("Path of {names}.", names=", ".join(traced)))
-    return " ".join(words)
 
 
 def _group(part: Part, numbers: dict[int, int]) -> str:
@@ -124,10 +119,8 @@ def _path(stroke: Stroke) -> str:
 
 def _text(label: Label) -> str:
     x, y = pixels(label.place.real), pixels(label.place.imag)
-    return (
-        f'<text class="{label.color}" x="{x}" y="{y}" text-anchor="{label.anchor}">'
-        f"{escape(label.text)}</text>"
-    )
+    place = f'x="{x}" y="{y}" text-anchor="{label.anchor}"'
+    return f'<text class="{label.color}" {place}>{escape(label.text)}</text>'
 
 
 def _steps(moves: Moves, times: Any) -> Iterator[str]:
@@ -137,11 +130,9 @@ def _steps(moves: Moves, times: Any) -> Iterator[str]:
         times, moves.place, np.degrees(moves.angle), moves.stretch, strict=True
     ):
         x, y = pixels(place.real), pixels(place.imag)
-        by = f"scale({pixels(stretch, 4)},1)" if stretched else ""
-        yield (
-            f"{pixels(100 * time, 3)}%{{transform:translate({x}px,{y}px)"
-            f"rotate({pixels(angle)}deg){by}}}"
-        )
+        by = f"rotate({pixels(angle)}deg)"
+        by += f"scale({pixels(stretch, 4)},1)" if stretched else ""
+        yield f"{pixels(100 * time, 3)}%{{transform:translate({x}px,{y}px){by}}}"
 
 
 def _stretches(moves: Moves) -> bool:
@@ -149,12 +140,12 @@ def _stretches(moves: Moves) -> bool:
 
 
 def _motions(mark: str, moves: list[list[str]], seconds: float, closed: bool) -> Iterator[str]:
-    way = "" if closed else " alternate"
+    way = "normal" if closed else "alternate"
     for number, steps in enumerate(moves, 1):
         yield f".{mark} .m{number}{{animation-name:{mark}-{number}}}"
         yield f"@keyframes {mark}-{number}{{{''.join(steps)}}}"
     yield f".{mark} .m{{animation-duration:{seconds:g}s;animation-iteration-count:infinite;"
-    yield f"animation-timing-function:linear;animation-direction:{way.strip() or 'normal'}}}"
+    yield f"animation-timing-function:linear;animation-direction:{way}}}"
     yield f".{mark}:hover .m{{animation-play-state:paused}}"
     yield f"@media (prefers-reduced-motion:reduce){{.{mark} .m{{animation:none}}}}"
     yield f"@media print{{.{mark} .m{{animation:none}}}}"
@@ -164,8 +155,7 @@ def _colors(mark: str, drawn: Moving) -> Iterator[str]:
     unit = drawn.stage.unit
     used = {stroke.role for part in drawn.parts for stroke in part.strokes}
     yield f".{mark}{{{_properties(LIGHT)};max-width:100%;height:auto}}"
-    dark = f".{mark}{{{_properties(DARK)}}}"
-    yield f"@media screen and (prefers-color-scheme:dark){{{dark}}}"
+    yield f"@media screen and (prefers-color-scheme:dark){{.{mark}{{{_properties(DARK)}}}}}"
     size = drawn.stage.size_of_type
     yield f".{mark} path{{stroke-linecap:round;stroke-linejoin:round}}"
     yield f".{mark} .paper{{fill:var(--paper)}}"

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from math import pi
@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.shared import Named, bounded, curves_of, log_ends, ordered, read_axis
+from equipoise.figures.shared import (
+    Named,
+    bounded,
+    by_name,
+    curves_of,
+    ends,
+    log_ends,
+    ordered,
+    read_axis,
+)
 from equipoise.figures.style import KINDS
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
@@ -46,10 +55,9 @@ QUANTITIES = {
         "acceleration_rms",
     ),
 }
-PEAKS, ALIKE = 3, 0.02
-"""Curves whose highest peak is told; share by which two peaks differ that are told apart."""
-MOST_SPEEDS = 0.9
-"""Share of the values that the unit suits."""
+PEAKS, ALIKE, MOST_SPEEDS = 3, 0.02, 0.9
+"""Curves whose highest peak is told; share by which two peaks differ that are told apart; share of
+the values that the unit suits."""
 MOST_ORDERS, USUAL_ORDERS = 20, (1.0, 2.0, 3.0)
 """Orders that are drawn in the map at most, and where none meets a mode."""
 HERTZ = Display("Hz", 1 / (2 * pi))
@@ -61,13 +69,9 @@ def sweep_charts(sweep: Sweep) -> dict[str, Chart]:
     ``response``, ``velocity`` and ``acceleration`` of the gauges; ``resonance-map``; ``mounts``
     where there are any.
     """
-    drawn = {"response": gauges(sweep, "displacement").named("response")}
-    drawn["resonance-map"] = resonance_map(sweep)
-    if sweep.mounts:
-        drawn["mounts"] = mounts(sweep)
-    for quantity in ("velocity", "acceleration"):
-        drawn[quantity] = gauges(sweep, quantity)
-    return drawn
+    response, *others = (gauges(sweep, quantity) for quantity in QUANTITIES)
+    of_mounts = [mounts(sweep)] if sweep.mounts else []
+    return by_name([response.named("response"), resonance_map(sweep), *of_mounts, *others])
 
 
 # -- curves ----------------------------------------------------------------------------------------
@@ -109,29 +113,22 @@ def fraction(order: float) -> str:
     return str(Fraction(order).limit_denominator(1000))
 
 
-def peaks(
-    axis: Axis, speed: Array, found: Sequence[Named], told: str, most: int = PEAKS
-) -> tuple[Mark, ...]:
-    """Value and speed at the highest places of the loudest of the named curves.
-
-    told : a text with ``{value}`` and ``{speed}``.
-    """
-    marks: list[tuple[int, float, Mark]] = []
+def peaks(axis: Axis, speed: Array, found: Sequence[Named]) -> tuple[Mark, ...]:
+    """Value and speed at the highest places of the loudest of the named curves."""
+    marks: list[Mark] = []
     named = [*enumerate(found[: len(KINDS)])]
-    for number, one in sorted(named, key=lambda pair: -pair[1].largest)[:most]:
+    for number, one in sorted(named, key=lambda pair: -pair[1].largest)[:PEAKS]:
         if not one.largest or np.nanmax(one.values) > one.largest:
             continue
         k, size = int(np.nanargmax(one.values)), one.largest
-        if any(k == peak and abs(size - same) < ALIKE * size for peak, same, _ in marks):
+        at, role, text = float(speed[k]), f"kind {number}", ""
+        if any(mark.x == at and abs(size - mark.y) < ALIKE * size for mark in marks):
             continue
-        text = ""
         if 0 < k < len(speed) - 1:
-            text = say(told, value=axis.told(size), speed=shown(speed[k] * RPM.factor))
-        mark = Mark(
-            float(speed[k]), size, text, f"kind {number}", 20.0, sign=False, optional=bool(marks)
-        )
-        marks.append((k, size, mark))
-    return tuple(mark for _, _, mark in marks if mark.text)
+            told = {"value": axis.told(size), "speed": shown(at * RPM.factor)}
+            text = say("{value} at {speed} rpm", **told)
+        marks.append(Mark(at, size, text, role, 20.0, sign=False, optional=bool(marks)))
+    return tuple(mark for mark in marks if mark.text)
 
 
 # -- a range of speeds -----------------------------------------------------------------------------
@@ -163,25 +160,17 @@ def mounts(sweep: Sweep) -> Chart:
         }
         if read:
             panels.append(_panel(sweep, say("peak to peak"), "force", rotation, ordered(read)))
-    handed = {
-        name: curve.transmissibility
-        for name, curve in sweep.mounts.items()
-        if np.any(np.isfinite(curve.transmissibility))
-    }
+    shares = {name: curve.transmissibility for name, curve in sweep.mounts.items()}
+    handed = {name: share for name, share in shares.items() if np.any(np.isfinite(share))}
     what = say("Force in the mounts")
     if handed:
-        found = _in_order_of(panels[0], handed)
+        names = [curve.label for curve in panels[0].curves if curve.label in handed]
+        found = ordered(handed)  # as the first panel has them, if it has all
+        if len(names) == len(handed):
+            found = [Named(name, handed[name]) for name in names]
         panels.append(_panel(sweep, say("transmissibility"), "", False, found))
         what += "; " + say("transmissibility: its RMS over the shaking force's")
     return _chart(sweep, "mounts", what, panels)
-
-
-def _in_order_of(panel: Panel, read: Mapping[str, Array]) -> list[Named]:
-    """Curves in the order of those of the same names in another panel."""
-    names = [curve.label for curve in panel.curves if curve.label in read]
-    if len(names) < len(read):
-        return ordered(read)
-    return [Named(name, read[name]) for name in names]
 
 
 def _panel(
@@ -194,22 +183,15 @@ def _panel(
     if quantity:
         usual = np.quantile(heard, MOST_SPEEDS) if heard.size else 0.0
         y = read_axis(label, quantity, rotation, usual)
-    parts: dict[str, Any] = {"bands": bands(sweep), "lines": _lines(sweep), "keyed": True}
+    lines = (Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances)
+    parts: dict[str, Any] = {"bands": bands(sweep), "lines": tuple(lines), "keyed": True}
     if not np.any(heard > 0):
         y = replace(y, low=0.0, high=1.0 / y.unit.factor, ticks=())
         return Panel(speed_axis(sweep), y, message=say("nothing moves"), **parts)
     low, high = log_ends(found, 1.6, 3.0)
     y = replace(y, low=low, high=high, scale="log")
-    told = "{value} at {speed} rpm"
-    marks = peaks(y, speed, found, told) if quantity else ()
+    marks = peaks(y, speed, found) if quantity else ()
     return Panel(speed_axis(sweep), y, curves_of(speed, found, sweep.stable), marks, **parts)
-
-
-def _lines(sweep: Sweep) -> tuple[Line, ...]:
-    """Where an order meets a mode."""
-    return tuple(
-        Line(abs(r.speed), "loud" if r.share >= LOUD else "quiet") for r in sweep.resonances
-    )
 
 
 def flags(resonances: Sequence[Resonance]) -> tuple[Flag, ...]:
@@ -224,11 +206,7 @@ def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
     """Panels below each other, the first under names of resonances."""
     words = (say("order"), say("mode")) if sweep.resonances else ()
     first = replace(panels[0], flags=flags(sweep.resonances), flag_words=words)
-    keys = []
-    if sweep.resonances:
-        keys.append(("loud", say("order meets mode")))
-    if any(resonance.avoid is not None for resonance in sweep.resonances):
-        keys.append(("loud band", say("keep away (pale: quiet)")))
+    keys = _keys(sweep, "loud")
     if np.any(~sweep.stable & np.isfinite(sweep.fluctuation)):
         keys.append(("not stable", say("not stable")))
     what = f"{what}; {say('model {model}', model=sweep.model)}"
@@ -236,24 +214,31 @@ def _chart(sweep: Sweep, name: str, what: str, panels: list[Panel]) -> Chart:
     return Chart(name, sweep.machine.title, what, whole, keys=tuple(keys))
 
 
+def _keys(sweep: Sweep, meeting: str) -> list[tuple[str, str]]:
+    """What is told of resonances; meeting : role of an order that meets a mode."""
+    keys = [(meeting, say("order meets mode"))] if sweep.resonances else []
+    if any(resonance.avoid is not None for resonance in sweep.resonances):
+        keys.append(("loud band", say("keep away (pale: quiet)")))
+    return keys
+
+
 # -- the resonance map -----------------------------------------------------------------------------
 
 
 def resonance_map(sweep: Sweep) -> Chart:
     """Natural frequencies, orders, and their meetings, each as large as it is loud (Campbell)."""
-    axis = speed_axis(sweep)
-    ends = (axis.low or 0.0, axis.high or 1.0)
-    top = highest(sweep)
+    axis, top = speed_axis(sweep), highest(sweep)
+    first, last = ends(axis)
+    low, high = min(first, last), max(first, last)
     marks = tuple(Mark(abs(r.speed), r.frequency, "", meeting(r.share)) for r in sweep.resonances)
-    asides, lines = [], []
+    asides: list[Aside] = []
+    lines, curves, above = [], [], []
     for number, mode in enumerate(sweep.modes, 1):
         if mode.swings:
             at = 2 * pi * mode.cycles_per_second
             told = {"number": number, "frequency": shown(mode.cycles_per_second)}
             lines.append(Line(at, "mode", axis="y"))
             asides.append(Aside(at, say("mode {number}: {frequency} Hz", **told), "mode"))
-    curves, above = [], []
-    low, high = min(ends), max(ends)
     for order in _orders(sweep):
         curves.append(Curve(np.array([low, high]), order * np.array([low, high]), "", "order"))
         if order * high <= top:
@@ -261,7 +246,7 @@ def resonance_map(sweep: Sweep) -> Chart:
             asides.append(Aside(order * high, text))
         elif order * low < top:
             above.append(Flag(top / order, (fraction(order),), order))
-    if ends[0] > ends[1]:  # the names stand where the lines leave at the right
+    if first > last:  # the names stand where the lines leave at the right
         asides = [a for a in asides if a.role == "mode"]
     panel = Panel(
         axis,
@@ -275,9 +260,7 @@ def resonance_map(sweep: Sweep) -> Chart:
         asides=tuple(asides),
         height=240.0,
     )
-    keys = [("meeting", say("order meets mode"))] if sweep.resonances else []
-    if any(resonance.avoid is not None for resonance in sweep.resonances):
-        keys.append(("loud band", say("keep away (pale: quiet)")))
+    keys = _keys(sweep, "meeting")
     what = say("Orders of the crank's speed, natural frequencies, and how loud they meet (size)")
     return Chart("resonance-map", sweep.machine.title, what, (panel,), keys=tuple(keys))
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import Named, curves_of, log_ends
+from equipoise.figures.shared import Named, curves_of, ends, log_ends
 from equipoise.figures.style import short
 from equipoise.figures.tool_shaft import plane_named, turns_told
 from equipoise.figures.tool_speeds import RATE, engine_axis, hand_peaks, work_line, work_mark
@@ -24,7 +24,6 @@ from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Line, Mark,
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
-    from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.studies import DeterminantChart, Variation
 
@@ -49,10 +48,7 @@ NUMBERS = {
     "rotational_stiffness": to_say("rotational stiffness"),
     "rotational_damping": to_say("rotational damping"),
 }
-SHOWN_IN = {
-    "mass": ("kg", "g", "kg"),
-    "stiffness": ("kN/m", "kN/m", "kN/m"),
-}
+SHOWN_IN = {"mass": ("kg", "g", "kg"), "stiffness": ("kN/m", "kN/m", "kN/m")}
 ALLOWED = {"lowest": to_say("lowest allowed"), "highest": to_say("highest allowed")}
 
 
@@ -97,22 +93,22 @@ def zeros_of(parameter: Array, value: Array, known: Array) -> list[float]:
 def variation_charts(variation: Variation) -> dict[str, Chart]:
     """``variation``: lambda and frequency against a number of a station (their Figs. 3 and 4)."""
     tool, values = variation.tool, variation.values
-    planes = 2 if _apart(variation) else 1
+    vertical, lateral = variation.parameter
+    apart = not np.allclose(vertical, lateral, rtol=1e-6, atol=1e-9)
     top = 1.06 * float(np.max(variation.parameter)) or 1.0
     x = Axis(named(variation), number_unit(KEYS[variation.key]), *_along(values))
-    names = [say("both planes")] if planes == 1 else [plane_named(k, alike=False) for k in (0, 1)]
+    names = [plane_named(plane, alike=not apart) for plane in ((0, 1) if apart else (0,))]
     curves = [
         Curve(values, row, name, f"several {number}")
         for number, (name, rows) in enumerate(zip(names, variation.parameter, strict=False), 1)
         for row in rows.T
     ]
-    lines = [*_now(variation, x), *_work(tool, top)]
     panel = Panel(
         x,
         Axis("λ", low=0.0, high=top),
         tuple(curves),
         tuple(_numbers(variation, x)),
-        lines=tuple(lines),
+        lines=tuple(_lines(variation, x, top)),
         right_axis=_turns_axis(scale_of(tool), top),
         height=225.0,
     )
@@ -132,12 +128,6 @@ def named(variation: Variation) -> str:
         owner = "ground"
     number = say(NUMBERS.get(last, last.replace("_", " ")))
     return say(PARTS[owner], number=number, station=short(variation.station))
-
-
-def _apart(variation: Variation) -> bool:
-    """Whether the planes differ."""
-    vertical, lateral = variation.parameter
-    return not np.allclose(vertical, lateral, rtol=1e-6, atol=1e-9)
 
 
 def _along(values: Array) -> tuple[Any, float, float]:
@@ -172,15 +162,12 @@ def _turns_axis(scale: float, top: float) -> Axis:
     return Axis(say("natural frequency"), Display("1/min", 1.0), ticks=ticks)
 
 
-def _now(variation: Variation, x: Axis) -> Iterator[Line]:
-    """The number as it is."""
-    now = number_of(variation.tool, variation.station, variation.key)
+def _lines(variation: Variation, x: Axis, top: float) -> Iterator[Line]:
+    """The number as it is, and the speed of the engine at work."""
+    tool = variation.tool
+    now = number_of(tool, variation.station, variation.key)
     if np.min(variation.values) <= now <= np.max(variation.values):
         yield Line(now, "now", say("now {value}", value=x.quantity(now)))
-
-
-def _work(tool: Tool, top: float) -> Iterator[Line]:
-    """The speed of the engine at work."""
     if tool.operation is not None:
         at = float(np.sqrt(tool.operation.speed / scale_of(tool)))
         if at <= top:
@@ -190,10 +177,8 @@ def _work(tool: Tool, top: float) -> Iterator[Line]:
 
 def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
     """Numbers of the modes on their lines."""
-    assert x.low is not None and x.high is not None
-    at = x.low + 0.06 * (x.high - x.low)
-    if x.scale == "log":
-        at = x.low * (x.high / x.low) ** 0.06
+    low, high = ends(x)
+    at = low * (high / low) ** 0.06 if x.scale == "log" else low + 0.06 * (high - low)
     order = np.argsort(variation.values)
     for number, row in enumerate(variation.parameter[0].T, 1):
         y = float(np.interp(at, variation.values[order], row[order]))
@@ -203,17 +188,21 @@ def _numbers(variation: Variation, x: Axis) -> Iterator[Mark]:
 # -- a design --------------------------------------------------------------------------------------
 
 
-def design_charts(found: ToolDesign) -> dict[str, Chart]:
-    """``design``."""
-    return {"design": design(found)}
-
-
 def design(found: ToolDesign) -> Chart:
     """What the hand that gets most gets over the band, before and after.
 
     The worst hand over the band is made better; at some speeds another one may be worse.
     """
-    before, after = (_felt(tool, found) for tool in (found.tool, found.better))
+    plan = found.tool.design
+    hands = plan.hands if plan is not None else ()
+    before, after = (
+        [
+            Named(name, grip.a_hv)
+            for name, grip in grips(respond_tool(tool, found.speed)).items()
+            if not hands or name in hands
+        ]
+        for tool in (found.tool, found.better)
+    )
     x = engine_axis(found.speed)
     low, high = log_ends([*before, *after], 1.8, 2.2)
     y = Axis("a_hv", RATE, "log", low, high)
@@ -222,20 +211,11 @@ def design(found: ToolDesign) -> Chart:
     marks = (*hand_peaks(found.better, found.speed, after, y), *work_mark(work, y, above=False))
     curves = (*old, *curves_of(found.speed, after))
     panel = Panel(x, y, curves, marks, lines=work, height=209.0)
-    plan = found.tool.design
     one = found.figures[MEASURES.index("rms" if plan is None else plan.measure)]
     what = f"{figure_named(one)}: {shown(one.before)} → {shown(one.after)} m/s²"
     keys = (("dashed ink", say("before")), ("ink", say("after")))
     words = tuple(changes_told(found))
     return Chart("design", found.tool.title, what, (panel,), keys=keys, words=words)
-
-
-def _felt(tool: Tool, found: ToolDesign) -> list[Named]:
-    """a_hv of the hands that count; of all tools in the order of the tool before."""
-    plan = found.tool.design
-    hands = plan.hands if plan is not None and plan.hands else ()
-    felt = grips(respond_tool(tool, found.speed))
-    return [Named(name, grip.a_hv) for name, grip in felt.items() if not hands or name in hands]
 
 
 def changes_told(found: ToolDesign) -> list[str]:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from textwrap import wrap
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.figures.shared import by_name, continued, groups
 from equipoise.figures.style import short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
@@ -42,11 +43,6 @@ SIGNS = {
     "station": to_say("station"),
 }
 """What holds a station, in words; the last holds nothing."""
-
-
-def numbered(charts: Iterable[Chart]) -> dict[str, Chart]:
-    """Charts by their names."""
-    return {chart.name: chart for chart in charts}
 
 
 # -- along the shaft -------------------------------------------------------------------------------
@@ -99,13 +95,13 @@ def mode_charts(modes: ToolModes) -> dict[str, Chart]:
 
     Many modes go on in ``modes-2`` and so on.
     """
-    drawn = numbered(shapes(modes, 0))
-    return drawn if modes.alike else drawn | numbered(shapes(modes, 1))
+    planes = (0,) if modes.alike else (0, 1)
+    return by_name(chart for plane in planes for chart in shapes(modes, plane))
 
 
 def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
     """Shapes without damping in one plane, some in each picture: Fig. 5 of Nagamine and Irie."""
-    count = len(modes.planes[plane].frequency)
+    every = range(len(modes.planes[plane].frequency))
     name = "modes-lateral" if plane else "modes"
     told = f"{say('Shapes of free vibration without damping')}, {plane_named(plane, modes.alike)}"
     kinds = {kind_of(station) for station in modes.tool.stations}
@@ -115,18 +111,11 @@ def shapes(modes: ToolModes, plane: int) -> Iterator[Chart]:
         ("node", say("node, mm")),
         *((kind, say(text)) for kind, text in SIGNS.items() if kind in kinds),
     )
-    for number, first in enumerate(range(0, count, MOST_SHAPES), 1):
-        last = min(first + MOST_SHAPES, count)
-        panels = [_shape(modes, modes.planes[plane], k) for k in range(first, last)]
+    for suffix, numbers in groups(every, MOST_SHAPES):
+        panels = [_shape(modes, modes.planes[plane], k) for k in numbers]
         panels[0] = replace(panels[0], flags=station_flags(modes.tool))
-        part = {"first": first + 1, "last": last, "count": count}
-        what = (
-            told
-            if count <= MOST_SHAPES
-            else f"{told} " + say("({first} to {last} of {count})", **part)
-        )
-        own = f"{name}-{number}" if number > 1 else name
-        yield Chart(own, modes.tool.title, what, tuple(panels), keys=keys)
+        what = told + continued(numbers, every)
+        yield Chart(name + suffix, modes.tool.title, what, tuple(panels), keys=keys)
 
 
 def _shape(modes: ToolModes, found: PlaneModes, number: int) -> Panel:
@@ -173,7 +162,7 @@ def response_charts(response: ToolResponse, speed: float | None = None) -> dict[
 
     speed : rad/s; that of work if None, or else the one at which the hands get most.
     """
-    return {"moment": moment(response, speed)}
+    return by_name([moment(response, speed)])
 
 
 def moment(response: ToolResponse, speed: float | None) -> Chart:
@@ -181,9 +170,12 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     tool = response.tool
     speed = speed_shown(response) if speed is None else speed
     one = respond_tool(tool, speed)
-    places = _places(tool)
+    at = np.array([station.position for station in tool.stations])  # and both sides of each
+    places = np.concatenate([np.linspace(0.0, tool.shaft.length, POINTS), at, at - BEFORE])
+    places = np.unique(np.clip(places, 0.0, tool.shaft.length))
     line = one.line(places)
-    loudest = _loudest(line)
+    size = np.max(np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1), axis=0)
+    loudest = [int(k) for k in np.argsort(-size, kind="stable")[:MOST_ORDERS]]
     drawn = _displaced(line, loudest)
     keys = [("strong", say("all orders, root of squares"))]
     for role, k in zip(ORDER_ROLES, loudest, strict=False):
@@ -191,11 +183,8 @@ def moment(response: ToolResponse, speed: float | None) -> Chart:
     if {plane for _, plane in drawn} == {0, 1}:
         keys.append(("other end", say("lateral plane")))
     what = say("RMS of the bending moment, and shape of each order when it is largest")
-    panels = (
-        replace(_moments(tool, places, line, loudest), flags=station_flags(tool)),
-        _shapes_of_orders(tool, places, drawn),
-    )
     told = f"{what}; {turns_told(speed)} rpm"
+    panels = _moments(tool, places, line, loudest), _shapes_of_orders(tool, places, drawn)
     return Chart("moment", tool.title, told, panels, keys=tuple(keys))
 
 
@@ -214,19 +203,6 @@ def speed_shown(response: ToolResponse) -> float:
     return float(speeds[np.argmax(felt)])
 
 
-def _places(tool: Tool) -> Array:
-    """Places along the shaft, and both sides of each station."""
-    at = np.array([station.position for station in tool.stations])
-    every = np.concatenate([np.linspace(0.0, tool.shaft.length, POINTS), at, at - BEFORE])
-    return np.unique(np.clip(every, 0.0, tool.shaft.length))
-
-
-def _loudest(line: ShaftLine) -> list[int]:
-    """Numbers of the orders whose moment is largest, the largest first."""
-    size = np.max(np.sum(np.abs(line.moment[..., 0]) ** 2, axis=1), axis=0)
-    return [int(k) for k in np.argsort(-size, kind="stable")[:MOST_ORDERS]]
-
-
 def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Array]:
     """(Place among the loudest, plane) -> displacement, m, at the instant when it is largest.
 
@@ -236,11 +212,11 @@ def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Arr
     least = MATTERS * float(np.max(np.abs(moved)))
     found: dict[tuple[int, int], Array] = {}
     for number, k in enumerate(loudest):
-        both = [_largest(moved[:, plane, k]) for plane in range(2)]
-        for plane, shape in enumerate(both):
-            same = plane == 1 and np.allclose(shape, both[0], atol=least)
-            if np.max(np.abs(shape)) > least and not same:
-                found[number, plane] = shape
+        vertical, lateral = (_largest(moved[:, plane, k]) for plane in range(2))
+        if np.max(np.abs(vertical)) > least:
+            found[number, 0] = vertical
+        if np.max(np.abs(lateral)) > least and not np.allclose(lateral, vertical, atol=least):
+            found[number, 1] = lateral
     return found
 
 
@@ -264,8 +240,15 @@ def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> 
     at, top = float(places[k]), float(total[k])
     text = say("{value} at {place} mm", value=y.quantity(top), place=f"{MM * at:.0f}")
     mark = Mark(at, top, text, "ink", 60.0, sign=False)
-    lines = shaft_lines(tool)
-    return Panel(shaft_axis(tool), y, tuple(curves), (mark,), lines=lines, height=150.0)
+    return Panel(
+        shaft_axis(tool),
+        y,
+        tuple(curves),
+        (mark,),
+        lines=shaft_lines(tool),
+        flags=station_flags(tool),
+        height=150.0,
+    )
 
 
 def _shapes_of_orders(tool: Tool, places: Array, found: Mapping[tuple[int, int], Array]) -> Panel:

@@ -11,9 +11,9 @@ import numpy as np
 
 from equipoise.exposure.daily import ACTION, EIGHT_HOURS, LIMIT
 from equipoise.exposure.weighting import factor
-from equipoise.figures.shared import Named, curves_of, log_ends, ordered
+from equipoise.figures.shared import Named, by_name, curves_of, ends, log_ends, ordered
 from equipoise.figures.style import KINDS, short
-from equipoise.figures.tool_shaft import MOST_MODES, numbered, plane_named, turns_told
+from equipoise.figures.tool_shaft import MOST_MODES, plane_named, turns_told
 from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
@@ -60,38 +60,26 @@ def engine_axis(speed: Array) -> Axis:
 
 def work_line(tool: Tool, axis: Axis) -> tuple[Line, ...]:
     """A line at the speed of work, where it is in sight."""
-    assert axis.low is not None and axis.high is not None
+    low, high = ends(axis)
     at = None if tool.operation is None else tool.operation.speed
-    return (Line(at, "work"),) if at is not None and axis.low <= at <= axis.high else ()
+    return (Line(at, "work"),) if at is not None and low <= at <= high else ()
 
 
 def work_mark(lines: Sequence[Line], y: Axis, above: bool = True) -> tuple[Mark, ...]:
     """The name of that line inside, near the upper or the lower end of a log axis."""
-    assert y.low is not None and y.high is not None
-    place = y.low * (y.high / y.low) ** (0.95 if above else 0.05)
-    text = say("work, {speed} rpm")
+    low, high = ends(y)
+    place = low * (high / low) ** (0.95 if above else 0.05)
+    names = {line.at: say("work, {speed} rpm", speed=turns_told(line.at)) for line in lines}
     return tuple(
-        Mark(
-            line.at,
-            place,
-            text.format(speed=turns_told(line.at)),
-            "work",
-            0.0,
-            sign=False,
-            near=3.0,
-        )
-        for line in lines
+        Mark(at, place, name, "work", 0.0, sign=False, near=3.0) for at, name in names.items()
     )
 
 
 def mode_lines(frequency: Array, axis: Axis) -> tuple[tuple[Line, ...], tuple[Flag, ...]]:
     """Light lines where an engine's turns meet natural frequencies, rad/s, and their numbers."""
-    assert axis.low is not None and axis.high is not None
-    inside = [
-        (number, float(one))
-        for number, one in enumerate(frequency, 1)
-        if axis.low <= float(one) <= axis.high
-    ][:MOST_MODES]
+    low, high = ends(axis)
+    every = enumerate(frequency.tolist(), 1)
+    inside = [(number, one) for number, one in every if low <= one <= high][:MOST_MODES]
     flags = tuple(Flag(at, (str(number),), 1 / number) for number, at in inside)
     return tuple(Line(at, "natural") for _, at in inside), flags
 
@@ -104,7 +92,7 @@ def transmission_charts(
     modes : of the tool, whose natural frequencies are drawn as light lines.
     """
     planes = (0,) if transmissions.tool.alike else (0, 1)
-    return numbered(transmission(transmissions, plane, modes) for plane in planes)
+    return by_name(transmission(transmissions, plane, modes) for plane in planes)
 
 
 def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> Chart:
@@ -115,12 +103,11 @@ def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> C
     low, high = log_ends(curves, 3.0, 2.0)
     y = Axis(say("force ratio"), scale="log", low=low, high=high)
     work = work_line(found.tool, x)
-    marks = [*_quiet(found, curves, plane, low), *work_mark(work, y)]
     size = Panel(
         x,
         y,
         curves_of(found.speed, curves),
-        tuple(marks),
+        (*_quiet(found, curves, plane, low), *work_mark(work, y)),
         lines=(*lines, *work),
         flags=flags,
         flag_words=(say("mode"),) if flags else (),
@@ -129,11 +116,11 @@ def transmission(found: Transmissions, plane: int, modes: ToolModes | None) -> C
     keys = [("quiet speed", say("quiet speed, rpm"))]
     if flags:
         keys.append(("natural", say("natural frequency")))
-    phase = Axis(say("phase"), DEGREES, low=-195 / DEGREES.factor, high=195 / DEGREES.factor)
     ticks = tuple((float(np.radians(at)), shown(at)) for at in range(-180, 181, 90))
+    reach = 195 / DEGREES.factor
     phases = Panel(
         x,
-        replace(phase, ticks=ticks),
+        Axis(say("phase"), DEGREES, low=-reach, high=reach, ticks=ticks),
         tuple(_phase(found, one.name, number, plane) for number, one in enumerate(curves)),
         lines=(*lines, *work),
         height=97.0,
@@ -163,7 +150,7 @@ def _phase(found: Transmissions, name: str, number: int, plane: int) -> Curve:
 
 def exposure_charts(exposure: ToolExposure) -> dict[str, Chart]:
     """``acceleration`` and ``exposure`` of the hands against speed, with what is allowed."""
-    return {"acceleration": acceleration(exposure), "exposure": weighted(exposure)}
+    return by_name([acceleration(exposure), weighted(exposure)])
 
 
 def acceleration(exposure: ToolExposure) -> Chart:

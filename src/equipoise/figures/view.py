@@ -108,17 +108,12 @@ def ticks_of(scale: Scale, upright: bool = False) -> Ticks:
     """Places in the unit of the axis, and numbers there: at least three where there is room."""
     axis = scale.axis
     if axis.ticks is not None:
+        slack = 1e-6 * abs(scale.high - scale.low)
+        low, high = sorted((scale.low, scale.high))
         pairs = [(place * axis.unit.factor, text) for place, text in axis.ticks]
-        inside = [pair for pair in pairs if _between(pair[0], scale.low, scale.high)]
+        inside = [pair for pair in pairs if low - slack <= pair[0] <= high + slack]
         return inside if upright else _apart(scale, inside)
-    if axis.scale == "log":
-        return _log_ticks(scale, upright)
-    return _round_ticks(scale, upright)
-
-
-def _between(value: float, low: float, high: float) -> bool:
-    slack = 1e-6 * abs(high - low)
-    return min(low, high) - slack <= value <= max(low, high) + slack
+    return (_log_ticks if axis.scale == "log" else _round_ticks)(scale, upright)
 
 
 def _apart(scale: Scale, ticks: Ticks) -> Ticks:
@@ -192,17 +187,15 @@ def _log_ticks(scale: Scale, upright: bool) -> Ticks:
         if found and len(found) >= FEWEST and not _log_fits(scale, ticks, upright):
             return found
         found = ticks
-    if len(found) >= FEWEST:
-        return found
-    return _round_ticks(scale, upright)
+    return found if len(found) >= FEWEST else _round_ticks(scale, upright)
 
 
 def _log_fits(scale: Scale, ticks: Ticks, upright: bool) -> bool:
-    places = [float(scale.of(place)) for place, _ in ticks]
-    gaps = np.abs(np.diff(places))
-    if upright:
-        return bool(np.all(gaps >= 0.7 * UP))
-    return bool(np.all(gaps >= max(width_of(text, SMALL) for _, text in ticks) + BESIDE / 2))
+    gaps = np.abs(np.diff([float(scale.of(place)) for place, _ in ticks]))
+    least = 0.7 * UP
+    if not upright:
+        least = max(width_of(text, SMALL) for _, text in ticks) + BESIDE / 2
+    return bool(np.all(gaps >= least))
 
 
 @dataclass(frozen=True, eq=False)
@@ -235,14 +228,14 @@ class View:
 
     def line(self, places: Array, look: Look, order: float | None = None) -> None:
         """A line (N, 2) on the sheet, not clipped."""
-        dashes = tuple(max(look.width, 0.8) * dash for dash in look.dashes)
-        stroke = Stroke((places,), look.color, look.width, dashes)
+        stroke = Stroke((places,), look.color, look.width, look.lengths)
         self.sheet.add(stroke, look.order if order is None else order)
 
-    def area(self, places: Array, look: Look, order: float | None = None) -> None:
-        """A filled area (N, 2), cut at the axes."""
-        stroke = Stroke((places,), fill=look.fill, opacity=look.opacity, closed=True, clip=self.box)
-        self.sheet.add(stroke, look.order if order is None else order)
+    def area(self, look: Look, *places: Array) -> None:
+        """Filled areas, each (N, 2), cut at the axes."""
+        color = look.inside
+        stroke = Stroke(places, fill=color, opacity=look.opacity, closed=True, clip=self.box)
+        self.sheet.add(stroke, look.order)
 
     def write(self, x: float, y: float, text: str, anchor: Anchor = "start", **rest: Any) -> None:
         """A text that stands where it must; y is the middle of its height."""

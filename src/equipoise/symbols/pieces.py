@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.support import Direction, Mount, unit_vector
+from equipoise.mechanism.support import Mount, unit_vector
 from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
@@ -106,15 +106,19 @@ def pieces(scene: Scene, traced: Collection[str] = (), field: bool = True) -> li
     traced : points that have a sign of their own because their path is drawn.
     field : whether soil and tray are among it.
     """
-    found = [*_field(scene)] if field else []
+    found = [*_soil(scene)] if field else []
     found += [*_carrier(scene), *_wheels(scene), *_stands(scene)]
     found += _links(scene)
     found += [*_springs(scene), Piece("pivots", tuple(_pivots(scene)))]
-    found += [Piece("blocks", tuple(block()), _on(guide)) for guide in scene.guides]
+    found += [
+        Piece("blocks", tuple(block()), Hold(guide.point, guide=guide.name))
+        for guide in scene.guides
+    ]
     found += [
         Piece("joints", tuple(_marks(scene, body, traced)), _with(body)) for body in scene.bodies
     ]
-    found += [*_tray(scene)] if field else []
+    if field and scene.field is not None and scene.field.tray:
+        found.append(Piece("tray", (line("tray", *scene.field.tray),)))
     found += _sense(scene)
     return [piece for piece in found if piece.shapes]
 
@@ -123,14 +127,10 @@ def _with(body: Body) -> Hold:
     return Hold(body.points[0], link=body.name)
 
 
-def _on(guide: Guide) -> Hold:
-    return Hold(guide.point, guide=guide.name)
-
-
 # -- the field and the support ---------------------------------------------------------------------
 
 
-def _field(scene: Scene) -> Iterator[Piece]:
+def _soil(scene: Scene) -> Iterator[Piece]:
     if scene.field is None:
         return
     low, high = scene.linkage_box
@@ -138,11 +138,6 @@ def _field(scene: Scene) -> Iterator[Piece]:
     surface, depth = scene.field.surface, scene.field.depth
     ends = low.real - over, high.real + over
     yield Piece("field", tuple(soil(*ends, surface, surface - depth - over, scene.unit)))
-
-
-def _tray(scene: Scene) -> Iterator[Piece]:
-    if scene.field is not None and scene.field.tray:
-        yield Piece("tray", (line("tray", *scene.field.tray),))
 
 
 def _carrier(scene: Scene) -> Iterator[Piece]:
@@ -167,7 +162,7 @@ def _held(carrier: Carrier) -> Iterator[Shape]:
                 yield from turning(carrier.reference, ring, kind is None)
                 ring += 1
             continue
-        place, way = complex(*item.point[:2]), _seen(item.direction)
+        place, way = (complex(*z[:2]) for z in (item.point, unit_vector(item.direction)))
         if (key := (kind, round(abs(place), 9), place, way)) in seen:
             continue
         seen.add(key)
@@ -175,11 +170,6 @@ def _held(carrier: Carrier) -> Iterator[Shape]:
             yield from mount(place, way, carrier.center, bool(item.stiffness), item.one_sided)
         else:
             yield from gauge(place, way)
-
-
-def _seen(direction: Direction) -> complex:
-    """The view of a direction from the side."""
-    return complex(*unit_vector(direction)[:2])
 
 
 # -- the linkage -----------------------------------------------------------------------------------
@@ -204,16 +194,13 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
 def _stands(scene: Scene) -> Iterator[Piece]:
     """What the frame holds links with; on a support it is that, and no ground."""
     grounded = scene.carrier is None
-    stands = (pivot(_first(scene, name), grounded) for name in scene.standing)
+    places = (complex(scene.places[name][0]) for name in scene.standing)
+    stands = (pivot(place, grounded) for place in places)
     yield Piece("stands", tuple(shape for stand in stands for shape in stand))
     for guide in scene.guides:
         if guide.on == FRAME:
             low, high = (complex(end[0]) for end in _ends(scene, guide))
             yield Piece("guides", tuple(rails(low, high, scene.unit, grounded)))
-
-
-def _first(scene: Scene, name: str) -> complex:
-    return complex(scene.places[name][0])
 
 
 def _ends(scene: Scene, guide: Guide) -> tuple[Array, Array]:
@@ -262,11 +249,8 @@ def _springs(scene: Scene) -> Iterator[Piece]:
 
 def _pivots(scene: Scene) -> Iterator[Shape]:
     for name in scene.frame:
-        place = _first(scene, name)
-        if name in scene.standing:
-            yield circle("pin", place, grown=PIN)
-        else:
-            yield circle("dot", place, grown=2.0)
+        role, grown = ("pin", PIN) if name in scene.standing else ("dot", 2.0)
+        yield circle(role, complex(scene.places[name][0]), grown=grown)
 
 
 def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]:
@@ -277,13 +261,10 @@ def _marks(scene: Scene, body: Body, traced: Collection[str]) -> Iterator[Shape]
     for point in body.points:
         if point in drawn:
             continue
-        place = scene.local(body, scene.places[point])
+        role, grown = ("pin", PIN) if point in scene.pins or point in hung else ("dot", 2.0)
         if point in traced:
-            yield circle("tip", place, grown=4.6)
-        elif point in scene.pins or point in hung:
-            yield circle("pin", place, grown=PIN)
-        else:
-            yield circle("dot", place, grown=2.0)
+            role, grown = "tip", 4.6
+        yield circle(role, scene.local(body, scene.places[point]), grown=grown)
     center = scene.mass_centers.get(body.name)
     if center is not None:
         place = scene.local(body, center)
@@ -314,16 +295,15 @@ GROUND = ("field", "support")
 
 def placed(scene: Scene, every: list[Piece], k: int) -> list[Shape]:
     """The shapes of pieces where they are at the k-th crank angle, in the axes of the frame."""
-    return [shape for piece in every for shape in _placed(scene, piece, k)]
-
-
-def _placed(scene: Scene, piece: Piece, k: int) -> Iterator[Shape]:
-    track = piece.track(scene)
-    if track is None:
-        yield from piece.shapes
-        return
-    turn = np.exp(1j * track.angle[k])
-    for shape in piece.shapes:
-        stretched = shape.places.real * track.stretch[k] + 1j * shape.places.imag
-        places = track.place[k] + stretched * turn
-        yield replace(shape, places=places, offsets=shape.offsets * turn)
+    found: list[Shape] = []
+    for piece in every:
+        track = piece.track(scene)
+        if track is None:
+            found += piece.shapes
+            continue
+        turn = np.exp(1j * track.angle[k])
+        for shape in piece.shapes:
+            stretched = shape.places.real * track.stretch[k] + 1j * shape.places.imag
+            places = track.place[k] + stretched * turn
+            found.append(replace(shape, places=places, offsets=shape.offsets * turn))
+    return found

@@ -144,6 +144,7 @@ class Scene:
         """Everything of a motion that can be seen."""
         machine, joints = motion.machine, motion.linkage.joints
         places = {name: point.place for name, point in motion.points.items()}
+        planned = machine.balance.springs if machine.balance is not None else ()
         return cls(
             motion.crank_angle,
             tuple(machine.frame),
@@ -156,7 +157,7 @@ class Scene:
             springs := tuple((spring.point, spring.to) for spring in machine.springs),
             {name: link.angle for name, link in motion.links.items()},
             Drive(machine.drive.link, motion.linkage.pivot, int(np.sign(motion.speed))),
-            tuple(ends for ends in _planned(machine) if ends not in springs),
+            tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
             _carrier(machine),
         )
@@ -238,12 +239,6 @@ class Scene:
 def _box(places: Array) -> tuple[complex, complex]:
     x, y = places.real, places.imag
     return complex(x.min(), y.min()), complex(x.max(), y.max())
-
-
-def _planned(machine: Machine) -> Iterator[tuple[str, str]]:
-    """Springs that balancing may set."""
-    for spring in machine.balance.springs if machine.balance is not None else ():
-        yield spring.point, spring.to
 
 
 def _field(motion: Motion) -> Field | None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.figures import equivalent_speeds, figures_of, planting_kept, signal_columns
+from equipoise.balancing.balanced import Balanced, figures_of
 from equipoise.mechanism.balance import AddedMass, Balance, Limit, Objective, Weight
 
 MACHINE = eq.load("yamashita-1")
@@ -25,6 +25,13 @@ PLAN = Balance(
     added_mass=0.9,
 )
 FOUND = eq.balance(MACHINE, PLAN)
+
+
+def with_figures(found: Balanced, before: dict[str, float], after: dict[str, float]) -> Balanced:
+    """The result as if it had these figures."""
+    found = replace(found)
+    found.__dict__.update(before=before, after=after)
+    return found
 
 
 def test_figures_are_those_of_the_analysis() -> None:
@@ -164,7 +171,8 @@ def test_a_gap_of_nothing_proved() -> None:
 def test_equivalent_speed_of_what_is_gone() -> None:
     before = {"shaking_force.rms": 4.0, "shaking_moment.rms": 1.0, "drive_torque.rms": 2.0}
     after = {"shaking_force.rms": 1.0, "shaking_moment.rms": 1e-17, "drive_torque.rms": 1.0}
-    assert equivalent_speeds(before, after, 10.0) == {"shaking_force.rms": 20.0}
+    slow = replace(FOUND, original=MACHINE.with_drive(speed=10.0))
+    assert with_figures(slow, before, after).equivalent_speeds == {"shaking_force.rms": 20.0}
 
 
 def test_columns_cover_the_longer_cycle() -> None:
@@ -177,7 +185,7 @@ def test_columns_cover_the_longer_cycle() -> None:
         links={**MACHINE.links, "wheel": wheel},
         gears=(gear,),
     )
-    columns = signal_columns(MACHINE, geared)
+    columns = replace(FOUND, machine=geared).columns()
     assert all(len(values) == 1440 for _, _, values in columns)
     before = {name: values for name, _, values in columns}["shaking_force.x.before"]
     assert before[:720] == pytest.approx(before[720:], abs=1e-9)
@@ -195,9 +203,9 @@ def test_planting_stays_as_it_is() -> None:
     assert found.planting_kept is True
     assert any(name.startswith("planting.") for name in found.before)
     off = {name: value * (1 + 1e-6) for name, value in found.after.items()}
-    assert planting_kept(found.before, off) is False
-    assert planting_kept(found.before, {}) is False
-    assert planting_kept({"mass": 1.0}, {"mass": 2.0}) is None
+    assert with_figures(found, found.before, off).planting_kept is False
+    assert with_figures(found, found.before, {}).planting_kept is False
+    assert with_figures(found, {"mass": 1.0}, {"mass": 2.0}).planting_kept is None
 
 
 def test_figures_of_gauges_and_rows() -> None:

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.condition_blocks import conditions_blocks
 from equipoise.balancing.least_norm import least_moments
-from equipoise.balancing.linear_conditions import conditions
+from equipoise.balancing.linear_conditions import conditions, conditions_blocks
 from equipoise.balancing.physical_consistency import feasibility
 from equipoise.balancing.sensitivity import known_outputs, sensitivities
 from support.printing import words
@@ -17,7 +16,9 @@ from support.printing import words
 def test_conditions() -> None:
     given = eq.load("yamashita-1")
     found = conditions(given), conditions(given, "sine")
-    text = words(conditions_blocks(*found, verdict=feasibility(given)))
+    text = words(
+        conditions_blocks(*found, verdict=[one.reason for one in feasibility(given).answers])
+    )
     assert "Conditions for shaking force to be zero" in text
     assert "Conditions for shaking force to be a pure sine of the crank angle" in text
     assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0 -0.3768 kg" in text

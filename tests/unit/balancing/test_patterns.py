@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.blocks import pattern_blocks
 from equipoise.balancing.multi_row import Rows
 from equipoise.balancing.patterns import (
     PATTERNS,
     Pattern,
     arranged,
-    halving,
+    halved,
+    pattern_blocks,
     pattern_named,
     patterns_for,
 )
@@ -52,7 +52,7 @@ def test_figures_against_sums_of_phasors(name: str) -> None:
 
 @pytest.mark.parametrize("count", [2, 4, 8, 16, 32])
 def test_halving_leaves_multiples_of_the_number_of_rows(count: int) -> None:
-    phases = np.array(halving(count))
+    phases = np.array(halved(count).phases)
     left = [abs(np.sum(np.exp(1j * order * phases))) for order in range(1, 2 * count + 1)]
     expected = [count if order % count == 0 else 0.0 for order in range(1, 2 * count + 1)]
     assert left == pytest.approx(expected, abs=1e-10)
@@ -99,8 +99,8 @@ def test_lever_times_force_is_the_roll_moment(name: str) -> None:
 @pytest.mark.parametrize(
     ("call", "sentence"),
     [
-        (lambda: halving(6), "got 6 rows; halving needs 2, 4, 8 or another power of two"),
-        (lambda: halving(1), "got 1 rows; halving needs"),
+        (lambda: halved(6).phases, "got 6 rows; halving needs 2, 4, 8 or another power of two"),
+        (lambda: halved(1).phases, "got 1 rows; halving needs"),
         (lambda: patterns_for(1), "got 1 rows; give two at least"),
         (lambda: pattern_named("4 mirror"), "did you mean '4 mirrored'"),
         (lambda: pattern_named("mirrored"), "no pattern is called 'mirrored'"),

@@ -116,8 +116,9 @@ def test_rows_together() -> None:
     """Against the sum that balancing takes by orders, with offsets and phases."""
     machine = staggered()
     analysis = eq.analyze(machine, 360)
-    mine, phases = view.together(analysis), np.array([row.phase for row in machine.rows])
-    force = mine["shaking_force"]
+    names = ("shaking_force", "shaking_moment", "drive_torque")
+    mine = {name: view.each(analysis, name)["all"] for name in names}
+    phases, force = np.array([row.phase for row in machine.rows]), mine["shaking_force"]
     for output, values in (
         ("shaking_force.x", force.real),
         ("shaking_force.y", force.imag),
@@ -128,7 +129,7 @@ def test_rows_together() -> None:
         expected = Periodic(read.total(phases)[0, 0], read.turns).samples(360)
         np.testing.assert_allclose(values, expected, atol=1e-9 * np.max(np.abs(expected)))
     found = places(forces.polar(analysis).panels[0])
-    assert has(found, force) and has(found, view.outputs(analysis)["shaking_force"])
+    assert has(found, force) and has(found, view.each(analysis, "shaking_force")["one"])
     assert "all 3 rows" in words(forces.spectrum(analysis))
 
 
@@ -137,7 +138,7 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     assert "zero at every crank angle" in words(charts["moment"])
     assert "zero at every order" in words(charts["spectrum"])
     opposed = replace(staggered(), rows=(Row(0.0), Row(np.pi)), planting=None)
-    force = view.together(eq.analyze(opposed, 360))["shaking_force"]
+    force = view.each(eq.analyze(opposed, 360), "shaking_force")["all"]
     orders = np.abs(np.fft.fft(force))
     assert np.max(orders[1::2]) < 1e-9 * np.max(orders) > 0
     couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
