@@ -16,7 +16,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Self
+from importlib import import_module
+from typing import Any, Self
 
 
 @dataclass(frozen=True)
@@ -111,3 +112,26 @@ class ResponseError(EquipoiseError):
 
 class UsageError(EquipoiseError):
     """An argument cannot be used."""
+
+
+EXTRAS = {"distributed": "cluster", "av": "video"}
+"""Libraries that come with another extra than ``studies``."""
+
+
+def needed(module: str, purpose: str) -> Any:
+    """A module of a library that not every user has, loaded when it is wanted.
+
+    Raises
+    ------
+    UsageError : it is not installed; the sentence tells the command that installs it.
+    """
+    library = module.partition(".")[0]
+    try:
+        return import_module(module)
+    except ModuleNotFoundError as error:
+        if error.name is None or error.name.partition(".")[0] != library:
+            raise
+        raise UsageError(
+            f"{purpose} needs {library}, which is not installed; install it with: "
+            f'pip install "equipoise[{EXTRAS.get(library, "studies")}]"'
+        ) from error

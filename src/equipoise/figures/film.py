@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.figures.animation import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
 from equipoise.figures.stage import RATES, Arrow, check_seconds, check_width, in_a_turn
@@ -101,15 +101,7 @@ def mp4(
     ------
     UsageError : as in `gif`, or the extra is missing.
     """
-    try:
-        import av
-    except ModuleNotFoundError as error:
-        if error.name != "av":
-            raise
-        raise UsageError(
-            "a film as MP4 needs av, which is not installed; install it with: "
-            'pip install "equipoise[video]"'
-        ) from error
+    av = needed("av", "a film as MP4")
     width += width % 2  # both sides are even, as hues are stored for two by two pixels
     drawn = _prepared(scene, traced, seconds, "mp4", width, arrow)
     whole = _in_a_cycle(drawn)

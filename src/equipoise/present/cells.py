@@ -84,11 +84,11 @@ def grid(table: Table, units: Units | None = None) -> Grid:
     units : that are chosen, by dimension; those that suit the sizes otherwise.
     """
     shown = _displays(table, units or {})
-    pairs = list(zip(table.columns, zip(*table.rows, strict=True), strict=False))
-    heads = tuple(_head(column, cells, shown) for column, cells in pairs)
-    heads = heads or tuple(Head(column.label) for column in table.columns)
     rows = tuple(tuple(_row(table, row, shown)) for row in table.rows)
-    return Grid(table.title, heads, rows)
+    if not rows:
+        return Grid(table.title, tuple(Head(column.label) for column in table.columns), ())
+    columns = zip(table.columns, zip(*table.rows, strict=True), strict=True)
+    return Grid(table.title, tuple(_head(*pair, shown) for pair in columns), rows)
 
 
 def _row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Iterator[Text]:
@@ -168,9 +168,9 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
         return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
     if isinstance(cell, Many):
         told = [_text(value, column, shown) for value in cell.values]
-        words = [f"{one.text} ({one.at})" if one.at else one.text for one in told]
         more = [say("and {count} more", count=cell.more)] if cell.more else []
-        return Text(say(", ").join([*words, *more]), strong=any(one.strong for one in told))
+        words = say(", ").join([*(one.told for one in told), *more])
+        return Text(words, strong=any(one.strong for one in told))
     if isinstance(cell, Span):
         unit = shown[column.dimension, column.unit]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
@@ -180,7 +180,10 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     dimension = cell.dimension if cell.dimension is not None else column.dimension
     text = _number(cell, shown[_kind(cell, column)], dimension)
-    at = "" if cell.at is None else _place(cell.at, column.at[0], shown[column.at])
+    at = ""
+    if cell.at is not None:
+        place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
+        at = _number(place, shown[column.at], column.at[0])
     return Text(text, at, number=True, strong=cell.broken or cell.worse)
 
 
@@ -193,11 +196,6 @@ def _number(cell: Value, unit: Display, dimension: Dimension | None) -> str:
     if dimension == "angle":
         after += MORE_DIGITS.get(unit.unit, 0)
     return f"{round(unit.factor * cell.value, after) + 0.0:.{after}f}"
-
-
-def _place(value: float, dimension: Dimension, unit: Display) -> str:
-    after = 1 if dimension == "angle" else None
-    return _number(Value(value, after=after), unit, dimension)
 
 
 # -- print -----------------------------------------------------------------------------------------
@@ -234,25 +232,15 @@ def noted(note: Note | str) -> str:
     return say("Note, in its original wording: {note}", note=note)
 
 
-_PLAIN = {
-    "²": "^2",
-    "³": "^3",
-    "°": " deg",
-    "→": "->",
-    "…": "...",
-    "µ": "u",
-    "λ": "lambda",
-    "±": "+-",
-    "−": "-",
-    "\xa0": " ",
-}
+_PLAIN = str.maketrans(
+    {"²": "^2", "³": "^3", "°": " deg", "→": "->", "…": "...", "µ": "u", "λ": "lambda"}
+    | {"±": "+-", "−": "-", "\xa0": " "}
+)
 
 
 def plain(text: str) -> str:
     """A text in signs that any terminal has."""
-    for sign, letters in _PLAIN.items():
-        text = text.replace(sign, letters)
-    return text
+    return text.translate(_PLAIN)
 
 
 PRINTED: tuple[Dimension, ...] = (

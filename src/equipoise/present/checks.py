@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,7 +15,8 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, number
-from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text
+from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
+from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Outcome
@@ -32,8 +33,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.support import Gauge, Mount
     from equipoise.studies.study import Study
 
-Array = np.ndarray[Any, Any]
-
 
 # -- linkages --------------------------------------------------------------------------------------
 
@@ -46,12 +45,10 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
         f"{len(machine.links)} moving links, one free motion; driven: {drive.link} at "
         f"{number(drive.speed / PER_RPM)} rpm about {linkage.pivot}"
     )
-    for row in _build_up(linkage):
-        yield Text(f"  {row}")
+    yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     yield Text(f"the crank turns fully; the motion repeats after {turns}")
-    for row in [*_springs(machine), *_drive_train(machine), *_support(machine)]:
-        yield Text(row)
+    yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
     if notes := (*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)):
         yield Notes(notes)
     yield Text("ready to be analysed")
@@ -67,21 +64,18 @@ def _uncarried(machine: Machine) -> Iterator[str]:
         yield f"{error}; respond and modes need that"
 
 
-HOW = {
-    "dyad": "dyad",
-    "geared": "geared",
-    "loops": "by Newton's method on the loop equations",
-}
+HOW = {"loops": "by Newton's method on the loop equations"}
+"""How a group of links is solved, where that is not its kind."""
 
 
 def _build_up(linkage: Linkage) -> Iterable[str]:
     for group in linkage.groups:
         links = " and ".join(group.links)
         joints = ", ".join(
-            f"{r.name} ({r.kind} on {r.by})" if r.kind != "slider" else f"{r.name} (slider)"
+            f"{r.name} (slider)" if r.kind == "slider" else f"{r.name} ({r.kind} on {r.by})"
             for r in group.reactions
         )
-        yield f"{links}: {HOW[group.kind]}; joints {joints}"
+        yield f"  {links}: {HOW.get(group.kind, group.kind)}; joints {joints}"
 
 
 MOST_SHOWN = 12
@@ -101,8 +95,7 @@ def _drive_train(machine: Machine) -> Iterator[str]:
     drive = machine.drive
     if drive.flywheel:
         yield f"flywheel: {number(drive.flywheel)} kg m^2"
-    if drive.motor is not None:
-        motor = drive.motor
+    if (motor := drive.motor) is not None:
         rotor = f", rotor {number(motor.inertia)} kg m^2" if motor.inertia else ""
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
         yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
@@ -115,15 +108,16 @@ def _drive_train(machine: Machine) -> Iterator[str]:
 
 def _curve(motor: Motor) -> str:
     if motor.table is not None:
-        first, *_, last = motor.table.speed
-        span = f"{number(first / PER_RPM)} to {number(last / PER_RPM)} rpm"
-        return f"{len(motor.table.speed)} rows from {span}"
+        speeds = motor.table.speed
+        return f"{len(speeds)} rows from {_rpm(speeds[0])} to {_rpm(speeds[-1])} rpm"
     assert motor.no_load_speed is not None
     assert motor.stall_torque is not None
-    return (
-        f"{number(motor.no_load_speed / PER_RPM)} rpm without load, {number(motor.stall_torque)} "
-        "N m at standstill"
-    )
+    torque = number(motor.stall_torque)
+    return f"{_rpm(motor.no_load_speed)} rpm without load, {torque} N m at standstill"
+
+
+def _rpm(speed: float) -> str:
+    return number(speed / PER_RPM)
 
 
 def _support(machine: Machine) -> Iterator[str]:
@@ -141,15 +135,18 @@ def _support(machine: Machine) -> Iterator[str]:
         yield "  no mounts"
 
 
+MOUNT_RATES = {
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "torsional_stiffness": "N m/rad",
+    "torsional_damping": "N m s/rad",
+}
+
+
 def _mount(mount: Mount) -> Iterator[str]:
     yield _reading(mount) if mount.point is None else f"pushes {_reading(mount)}"
-    for value, unit in (
-        (mount.stiffness, "N/m"),
-        (mount.damping, "N s/m"),
-        (mount.torsional_stiffness, "N m/rad"),
-        (mount.torsional_damping, "N m s/rad"),
-    ):
-        if value:
+    for key, unit in MOUNT_RATES.items():
+        if value := getattr(mount, key):
             yield f"{number(value)} {unit}"
     if mount.preload is not None:
         yield f"{number(mount.preload)} {'N' if mount.axis is None else 'N m'} as drawn"
@@ -178,13 +175,13 @@ def _listed(words: Sequence[str]) -> str:
 
 # -- tools ----------------------------------------------------------------------------------------
 
-RATES = (
-    ("inertia", "kg m^2"),
-    ("stiffness", "N/m"),
-    ("damping", "N s/m"),
-    ("rotational_stiffness", "N m/rad"),
-    ("rotational_damping", "N m s/rad"),
-)
+RATES = {
+    "inertia": "kg m^2",
+    "stiffness": "N/m",
+    "damping": "N s/m",
+    "rotational_stiffness": "N m/rad",
+    "rotational_damping": "N m s/rad",
+}
 
 
 def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
@@ -238,15 +235,12 @@ def _station(station: Station) -> Iterator[str]:
 
 
 def _rates(item: object) -> Iterator[str]:
-    for key, unit in RATES:
+    for key, unit in RATES.items():
         pair: Both = getattr(item, key, (0.0, 0.0))
+        vertical, lateral = map(number, pair)
+        both = f"{vertical} (vertical) and {lateral} (lateral)"
         if any(pair):
-            yield f"{_both(pair)} {unit}"
-
-
-def _both(pair: Both) -> str:
-    vertical, lateral = map(number, pair)
-    return vertical if pair[0] == pair[1] else f"{vertical} (vertical) and {lateral} (lateral)"
+            yield f"{vertical if pair[0] == pair[1] else both} {unit}"
 
 
 def _hand(hand: Hand) -> str:
@@ -273,18 +267,18 @@ def _excitation(excitation: Excitation) -> Iterator[str]:
 
 
 def _operation(operation: Operation) -> Iterator[str]:
-    yield f"{number(operation.speed / PER_RPM)} rpm at work"
+    yield f"{_rpm(operation.speed)} rpm at work"
     if operation.speeds:
-        low, high = (number(speed / PER_RPM) for speed in operation.speeds)
+        low, high = map(_rpm, operation.speeds)
         yield f"from {low} to {high} rpm"
     if operation.idling is not None:
-        yield f"idling at {number(operation.idling / PER_RPM)} rpm"
+        yield f"idling at {_rpm(operation.idling)} rpm"
     if operation.racing is not None:
-        yield f"racing at {number(operation.racing / PER_RPM)} rpm"
+        yield f"racing at {_rpm(operation.racing)} rpm"
 
 
 def _design(design: DesignPlan) -> str:
-    low, high = (number(speed / PER_RPM) for speed in design.speeds)
+    low, high = map(_rpm, design.speeds)
     changes = ", ".join(variable.name for variable in design.variables)
     kept = ", ".join(f"{limit.station or ''} {limit.output}".strip() for limit in design.limits)
     limits = f"; limits {kept}" if kept else ""
@@ -305,13 +299,12 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
     seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
     yield Text(f"model: {study.model.base().title}")
     yield Text(f"{study.size} designs, {sampling.method}{seed}")
-    varied = tuple(map(Column, ("", "model", "in the study")))
-    yield Table("What varies", varied, tuple(_varied(study, units, own)))
+    varied = _varied(study, units, own)
+    yield Table.of("What varies", ("", "model", "in the study"), varied)
     for one in study.correlations:
         yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
-    computed = tuple(map(Column, ("", "of", "model", "at least", "at most", "make")))
-    rows = tuple(_computed(study, units, outcome))
-    yield Table("What is computed", computed, rows)
+    heads = ("", "of", "model", "at least", "at most", "make")
+    yield Table.of("What is computed", heads, _computed(study, units, outcome))
     yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
     if outcome.reason[0] != COMPUTED:
         reason = REASONS[int(outcome.reason[0])]

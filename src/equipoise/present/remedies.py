@@ -96,7 +96,7 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
 
 
 def _worse(found: Findings, balanced: Balanced) -> list[str]:
-    """Peaks of outputs that grow by more than a tenth, the most first."""
+    """Peaks of outputs that grow by more than a tenth, the most first, and those from nothing."""
     grown = {
         name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
         for name, old in balanced.before.items()
@@ -104,25 +104,19 @@ def _worse(found: Findings, balanced: Balanced) -> list[str]:
     }
     worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
     rows = len(found.machine.rows)
-    return [
-        *(
-            say("{what} by {share} %", what=output_named(name, rows), share=percent(grown[name]))
-            for name in worst[:MOST_WORSE]
-        ),
-        *_from_nothing(balanced),
+    told = [
+        say("{what} by {share} %", what=output_named(name, rows), share=percent(grown[name]))
+        for name in worst[:MOST_WORSE]
     ]
-
-
-def _from_nothing(balanced: Balanced) -> Iterator[str]:
-    """Peaks of all rows together that were nothing before, as moments of rows in phase are."""
+    # of all rows together, those that were nothing before, as moments of rows in phase are
     for name, after in balanced.after.items():
         output = name.removesuffix(".peak")
-        if output == name or not name.startswith("rows."):
-            continue
-        if balanced.before.get(name, after) < NOTHING * after:
-            unit = unit_of_measure(output, "peak")
-            what = output_named(output)
-            yield say("{what} from 0 to {size} {unit}", what=what, size=brief(after), unit=unit)
+        of_rows = name.startswith("rows.") and output != name
+        if of_rows and balanced.before.get(name, after) < NOTHING * after:
+            unit, what = unit_of_measure(output, "peak"), output_named(output)
+            size = brief(after)
+            told.append(say("{what} from 0 to {size} {unit}", what=what, size=size, unit=unit))
+    return told
 
 
 def capital(text: str) -> str:

@@ -111,9 +111,8 @@ class _Printer:
         self.begun = True
         sign = SIGN if style == STRONG and not self.coloured else ""
         start = len(text) - len(text.lstrip(" ")) + indent
-        for place, line in enumerate(
-            wrapped(plain(text.strip()) + sign, self.console.width - start)
-        ):
+        lines = wrapped(plain(text.strip()) + sign, self.console.width - start)
+        for place, line in enumerate(lines):
             blank = " " * (start + (2 if place and indent else 0))
             self.console.print(RichText(blank + line, style=style), soft_wrap=True)
 

@@ -14,7 +14,7 @@ from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
 from equipoise.handheld.hand_blocks import varied_named
 from equipoise.handheld.response import respond_tool
-from equipoise.i18n import say, spoken
+from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.remedies import capital
@@ -68,8 +68,7 @@ def tool_answers(found: ToolFindings) -> Iterator[Answer]:
 
 def _worst_at_work(exposure: ToolExposure) -> tuple[str, float]:
     at_work = {name: float(grip.a_hv[0]) for name, grip in exposure.named[WORKING].items()}
-    name = max(at_work, key=lambda name: at_work[name])
-    return name, at_work[name]
+    return max(at_work.items(), key=lambda item: item[1])
 
 
 def _felt(exposure: ToolExposure) -> Iterator[str]:
@@ -92,25 +91,18 @@ def _felt(exposure: ToolExposure) -> Iterator[str]:
     )
     action, limit = day.times.to_action, day.times.to_limit
     if limit < DAY:
-        yield say(
+        template = to_say(
             "The action value is reached after {action} of such work a day, the limit value "
-            "after {limit}.",
-            action=_time(action),
-            limit=_time(limit),
+            "after {limit}."
         )
     elif action < DAY:
-        yield say(
+        template = to_say(
             "The action value is reached after {action} of such work a day, the limit value "
-            "not in a day.",
-            action=_time(action),
+            "not in a day."
         )
     else:
-        yield say("A whole day of such work does not reach the action value.")
-
-
-def _begun(words: str) -> str:
-    """Words that begin a sentence; in other languages a name of the file does, as it is."""
-    return capital(words) if spoken() == "en" else words
+        template = to_say("A whole day of such work does not reach the action value.")
+    yield say(template, action=_time(action), limit=_time(limit))
 
 
 def _time(seconds: float) -> str:
@@ -125,8 +117,8 @@ def _why(tool: Tool) -> Iterator[str]:
     if tool.operation is None or len(tool.excitations) < 2:
         return
     speed = tool.operation.speed
-    whole = {name: float(one.a_hv[0]) for name, one in grips(respond_tool(tool, speed)).items()}
-    hand = max(whole, key=lambda name: whole[name])
+    whole = grips(respond_tool(tool, speed))
+    hand = max(whole, key=lambda name: float(whole[name].a_hv[0]))
     parts = []
     for one in tool.excitations:
         alone = grips(respond_tool(replace(tool, excitations=(one,)), speed))[hand]
@@ -182,9 +174,11 @@ def _helps(design: ToolDesign) -> Iterator[str]:
         unit = in_unit(UNITS.get(kind, SI[kind]))
         before, after = unit.text(one.before), unit.text(one.after)
         if before != after:
+            name = varied_named(one.name)
             yield say(
                 "{name}: {before} → {after} {unit}.",
-                name=_begun(varied_named(one.name)),
+                # in other languages a name of the file begins the sentence, as it is
+                name=capital(name) if spoken() == "en" else name,
                 before=before,
                 after=after,
                 unit=unit.name,

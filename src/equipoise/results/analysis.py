@@ -19,13 +19,12 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
-from equipoise.signals import Figures, Periodic, figures_of_each
+from equipoise.signals import Array, Figures, Periodic, figures_of_each
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 
 LATERAL = ("roll_moment", "yaw_moment")
@@ -139,7 +138,45 @@ class Analysis(Result):
 
         split : whether to add every force by cause and by link.
         """
-        return to_dict(self, split)
+        result: Values = {
+            **self._heading,
+            "crank_angle": self.crank_angle,
+            "links": {},
+            "points": {},
+        }
+        found = self.solved
+        if found is None:
+            result["missing"] = massless(self.machine)
+        else:
+            for family, joints in (("joints", found.joints), ("gears", found.gears)):
+                ends = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
+                result[family] = ends
+            result["about"] = {"x": found.about.real, "y": found.about.imag}
+        for one in self.outputs.arrays:
+            *keys, last = one.path
+            values = result
+            for key in keys:
+                values = values.setdefault(key, {})
+            values[last] = one.values
+        if found is not None and split:
+            result.update(_split(found))
+        summary: Values = {
+            name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
+            for name, figure in self.summary.items()
+        }
+        if self.four_bar is not None:
+            summary["four_bar"] = dict(vars(self.four_bar))
+        return result | {"summary": summary}
+
+    @property
+    def _heading(self) -> Values:
+        motion = self.motion
+        heading: Values = {
+            "title": self.machine.title,
+            "speed": motion.speed,
+            "acceleration": motion.acceleration,
+        }
+        return heading | ({"turns": motion.turns} if motion.whole_cycle else {})
 
     def to_dataset(self) -> xarray.Dataset:
         """Every array as an `xarray.Dataset` over crank angle (rad); loads xarray."""
@@ -150,7 +187,7 @@ class Analysis(Result):
             one.name: ("crank_angle", one.values, {"units": one.unit, "long_name": one.label()})
             for one in self.outputs.arrays
         }
-        return xarray.Dataset(arrays, coordinate, attrs=_heading(self))
+        return xarray.Dataset(arrays, coordinate, attrs=self._heading)
 
     def to_frame(self) -> pandas.DataFrame:
         """Every array as a column of a `pandas.DataFrame` over crank angle; loads pandas."""
@@ -158,30 +195,6 @@ class Analysis(Result):
 
         index = pandas.Index(self.crank_angle, name="crank_angle")
         return pandas.DataFrame({one.name: one.values for one in self.outputs.arrays}, index=index)
-
-
-def to_dict(analysis: Analysis, split: bool = False) -> Values:
-    """Nested values in SI units; arrays are (N,)."""
-    result = _heading(analysis)
-    result["crank_angle"] = analysis.crank_angle
-    result |= {"links": {}, "points": {}}
-    found = analysis.solved
-    if found is None:
-        result["missing"] = massless(analysis.machine)
-    else:
-        for family, joints in (("joints", found.joints), ("gears", found.gears)):
-            result[family] = {name: {"on": one.on, "by": one.by} for name, one in joints.items()}
-        result["about"] = {"x": found.about.real, "y": found.about.imag}
-    for one in analysis.outputs.arrays:
-        *keys, last = one.path
-        values = result
-        for key in keys:
-            values = values.setdefault(key, {})
-        values[last] = one.values
-    if found is not None and split:
-        result.update(_split(found))
-    result["summary"] = _summary(analysis)
-    return result
 
 
 def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
@@ -201,18 +214,6 @@ def order_values(analysis: Analysis, orders: int, zero: float) -> Values:
             "phases": signal.phases[kept],
         }
     return found
-
-
-def _heading(analysis: Analysis) -> Values:
-    motion = analysis.motion
-    heading: Values = {
-        "title": analysis.machine.title,
-        "speed": motion.speed,
-        "acceleration": motion.acceleration,
-    }
-    if motion.whole_cycle:
-        heading["turns"] = motion.turns
-    return heading
 
 
 def _split(found: Forces) -> Values:
@@ -235,16 +236,6 @@ def _split(found: Forces) -> Values:
 
 def _parts(values: Array) -> Any:
     return {"x": values.real, "y": values.imag} if np.iscomplexobj(values) else values
-
-
-def _summary(analysis: Analysis) -> Values:
-    summary: Values = {
-        name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
-        for name, figure in analysis.summary.items()
-    }
-    if analysis.four_bar is not None:
-        summary["four_bar"] = dict(vars(analysis.four_bar))
-    return summary
 
 
 def analyze(

@@ -7,19 +7,17 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import groupby
 from math import pi
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import Dimension
-from equipoise.signals import Figures, Periodic, figures
+from equipoise.signals import Array, Figures, Periodic, figures
 
-Array = np.ndarray[Any, Any]
+if TYPE_CHECKING:
+    from equipoise.mechanism.balance import Objective
 
 
 @dataclass(frozen=True, eq=False)

@@ -45,8 +45,9 @@ class Range:
         _check_finite((self.low, self.high))
         if not self.low < self.high:
             raise UsageError("the first limit must be below the second")
-        if self.whole:
-            _check_whole((self.low, self.high))
+        for end in (self.low, self.high) if self.whole else ():
+            if not float(end).is_integer():
+                raise UsageError(f"got {end:g}; give whole numbers")
         if self.steps is not None and not 2 <= self.steps <= MOST_STEPS:
             raise UsageError(f"got {self.steps} steps; give 2 to {MOST_STEPS}")
 
@@ -176,12 +177,6 @@ def _check_finite(values: Iterable[float]) -> None:
     for value in values:
         if isinstance(value, bool) or not isinstance(value, Real) or not isfinite(value):
             raise UsageError(f"got {value!r}; give finite numbers")
-
-
-def _check_whole(values: Iterable[float]) -> None:
-    for value in values:
-        if not float(value).is_integer():
-            raise UsageError(f"got {value:g}; give whole numbers")
 
 
 Method = Literal["grid", "sobol", "latin-hypercube", "monte-carlo"]

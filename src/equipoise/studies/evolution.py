@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.errors import needed
 from equipoise.studies.design_space import Choices
-from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Evaluator, Outcome, far_apart, non_dominated, signs_of
 from equipoise.studies.sampling import values_at
 from equipoise.studies.study import Study
@@ -28,17 +28,13 @@ def canonical(study: Study, places: Array) -> Array:
     """The same designs, each value of a list in one place only, so that equal ones are seen."""
     settled = np.clip(places, 0.0, 1.0)
     for k, one in enumerate(study.vary):
-        count = _levels(one.spread)
-        if count:
+        spread: Any = one.spread
+        if isinstance(spread, Choices) or spread.whole:
+            listed = isinstance(spread, Choices)
+            count = len(spread.values) if listed else int(spread.high - spread.low) + 1
             step = np.minimum(np.floor(settled[:, k] * count), count - 1)
             settled[:, k] = (step + 0.5) / count
     return settled
-
-
-def _levels(spread: Any) -> int:
-    if isinstance(spread, Choices):
-        return len(spread.values)
-    return int(spread.high - spread.low) + 1 if spread.whole else 0
 
 
 def evolution(study: Study, population: int, seed: int, known: Known) -> Any:
@@ -59,22 +55,15 @@ def evolution(study: Study, population: int, seed: int, known: Known) -> Any:
     makes = len(study.objectives)
     limits = sum((o.at_least is not None) + (o.at_most is not None) for o in study.outputs)
     width = len(study.vary)
-    first = _first(study, population, seed)
+    first, new = _first(study, population, seed), _only_new(study, known)
     if makes == 1:
         algorithm = DE(pop_size=population, sampling=first, variant="DE/rand/1/bin", CR=0.9)
     elif makes < MANY:
-        algorithm = NSGA2(
-            pop_size=population, sampling=first, eliminate_duplicates=_only_new(study, known)
-        )
+        algorithm = NSGA2(pop_size=population, sampling=first, eliminate_duplicates=new)
     else:
         fine = max(p for p in range(1, population) if comb(p + makes - 1, p) <= population)
         directions = get_reference_directions("das-dennis", makes, n_partitions=fine)
-        algorithm = NSGA3(
-            directions,
-            pop_size=population,
-            sampling=first,
-            eliminate_duplicates=_only_new(study, known),
-        )
+        algorithm = NSGA3(directions, pop_size=population, sampling=first, eliminate_duplicates=new)
     problem = Problem(n_var=width, n_obj=makes, n_ieq_constr=1 + limits, xl=0.0, xu=1.0)
     return algorithm.setup(problem, termination=NoTermination(), seed=seed, verbose=False)
 
@@ -91,10 +80,8 @@ def _only_new(study: Study, known: Known) -> Any:
                 struck[:] = True
                 struck[first] = known(values[first])
             elif len(other):
-                there = {
-                    row.tobytes() for row in values_at(study, canonical(study, other.get("X")))
-                }
-                struck |= [row.tobytes() in there for row in values]
+                there = {*_keys(values_at(study, canonical(study, other.get("X"))))}
+                struck |= [key in there for key in _keys(values)]
             return struck
 
     return OnlyNew()
@@ -130,8 +117,10 @@ PATIENCE, STILL, MARGIN = 20, 1e-4, 0.1
 which reaches by a margin beyond the worst of the front."""
 FAILED = 1e6
 """Violation of a design that cannot be computed; those that can be stand at most at some tens."""
-GRADES = {NO_MACHINE: 4.0, NO_ASSEMBLY: 3.0, NO_FULL_TURN: 2.0}
-"""How far away from a machine that works; any other reason counts 1."""
+VIOLATIONS = np.full(256, FAILED)
+VIOLATIONS[COMPUTED] = -1.0
+VIOLATIONS[[NO_MACHINE, NO_ASSEMBLY, NO_FULL_TURN]] *= (4.0, 3.0, 2.0)
+"""By reason: a design that fails is the further away from a machine that works."""
 
 
 class Archive:
@@ -192,10 +181,9 @@ class Archive:
         self.outcome = Outcome.joined([self.outcome, found])
         costs = np.where(found.computed[:, None], found.figures[:, self.makes] * self.signs, 0.0)
         self.costs = np.concatenate([self.costs, costs])
-        violations = np.column_stack([_graded(found.reason), *self.beyond(found)])
-        self.violations = np.concatenate(
-            [self.violations.reshape(-1, violations.shape[1]), violations]
-        )
+        violations = np.column_stack([VIOLATIONS[found.reason], *self.beyond(found)])
+        before = self.violations.reshape(-1, violations.shape[1])
+        self.violations = np.concatenate([before, violations])
         fine = begin + np.flatnonzero(np.all(violations <= 0, axis=1))
         known = np.concatenate([self.front, fine])
         self.front = known[non_dominated(self.costs[known])]
@@ -223,13 +211,6 @@ class Archive:
 
 def _keys(values: Array) -> list[bytes]:
     return [row.tobytes() for row in np.ascontiguousarray(values)]
-
-
-def _graded(reason: Array) -> Array:
-    grades = np.ones(256)
-    for number, grade in GRADES.items():
-        grades[number] = grade
-    return np.where(reason == COMPUTED, -1.0, FAILED * grades[reason])
 
 
 class Hypervolumes:

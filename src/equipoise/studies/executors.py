@@ -35,8 +35,7 @@ from time import monotonic, sleep
 from types import ModuleType
 from typing import Any
 
-from equipoise.errors import UsageError
-from equipoise.studies.extras import needed
+from equipoise.errors import UsageError, needed
 from equipoise.studies.outcomes import Block
 from equipoise.studies.store import brief, versions
 

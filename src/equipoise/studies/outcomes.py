@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.studies.extras import needed
+from equipoise.errors import needed
 
 if TYPE_CHECKING:
     from equipoise.studies.design_space import Make, Output

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.quantities import SI
 from equipoise.studies.design_space import Choices
 from equipoise.studies.evaluate import evaluator
@@ -30,7 +30,6 @@ from equipoise.studies.executors import (
     Threads,
     computed,
 )
-from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Block, Evaluator, Progress, Tally
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import (

@@ -61,8 +61,9 @@ def unit_samples(study: Study, start: int, count: int) -> Array:
     if method == "grid":
         places = zip(_grid(study, start, count), study.shape, strict=True)
         return np.column_stack([(place + 0.5) / levels for place, levels in places])
-    drawn = {"sobol": _sobol, "latin-hypercube": _latin_hypercube, "monte-carlo": _monte_carlo}
-    return drawn[method](len(study.vary), study, start, count)
+    if method == "monte-carlo":
+        return _uniform(study, DRAWS, start, count)
+    return (_sobol if method == "sobol" else _latin_hypercube)(study, start, count)
 
 
 def values_at(study: Study, unit: Array) -> Array:
@@ -71,14 +72,6 @@ def values_at(study: Study, unit: Array) -> Array:
     Correlations are those of a Gaussian copula: normal variables behind the places are mixed, which
     leaves the spread of each number as it is.
     """
-    values = np.empty(np.shape(unit))
-    for column, places in enumerate(_correlated(study, unit)):
-        values[:, column] = study.vary[column].spread.at(places)
-    return values
-
-
-def _correlated(study: Study, unit: Array) -> list[Array]:
-    """Columns (n,) of places, mixed where numbers are correlated."""
     places = list(np.asarray(unit).T)
     if study.correlations:
         from scipy.special import ndtr, ndtri
@@ -88,7 +81,10 @@ def _correlated(study: Study, unit: Array) -> list[Array]:
         mixed = np.clip(ndtr(np.linalg.cholesky(matrix) @ behind), LEAST, MOST)
         for column, place in zip(columns, mixed, strict=True):
             places[column] = place
-    return places
+    values = np.empty(np.shape(unit))
+    for column, (one, place) in enumerate(zip(study.vary, places, strict=True)):
+        values[:, column] = one.spread.at(place)
+    return values
 
 
 # -- each method -----------------------------------------------------------------------------------
@@ -99,20 +95,16 @@ def _grid(study: Study, start: int, count: int) -> tuple[Array, ...]:
     return np.unravel_index(np.arange(start, start + count), study.shape)
 
 
-def _monte_carlo(width: int, study: Study, start: int, count: int) -> Array:
-    return _uniform(study.sampling.seed, DRAWS, width, start, count)
-
-
-def _latin_hypercube(width: int, study: Study, start: int, count: int) -> Array:
-    seed, size = study.sampling.seed, study.size
-    places = _uniform(seed, JITTER, width, start, count)
-    for column in range(width):
-        places[:, column] += _shuffled(seed, column, size, start, count)
-    places /= size
+def _latin_hypercube(study: Study, start: int, count: int) -> Array:
+    places = _uniform(study, JITTER, start, count)
+    for column in range(len(study.vary)):
+        places[:, column] += _shuffled(study.sampling.seed, column, study.size, start, count)
+    places /= study.size
     return np.clip(places, LEAST, MOST, out=places)
 
 
-def _sobol(width: int, study: Study, start: int, count: int) -> Array:
+def _sobol(study: Study, start: int, count: int) -> Array:
+    width = len(study.vary)
     if count == 0:
         return np.empty((0, width))
     key = (study.sampling.seed, width)
@@ -135,9 +127,9 @@ def random_numbers(seed: int, *use: int) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(sequence))
 
 
-def _uniform(seed: int, use: int, width: int, start: int, count: int) -> Array:
-    """Rows of one endless table of random numbers, (count, width), above 0 and below 1."""
-    source = random_numbers(seed, use)
+def _uniform(study: Study, use: int, start: int, count: int) -> Array:
+    """Rows of one endless table of random numbers, (count, d), above 0 and below 1."""
+    source, width = random_numbers(study.sampling.seed, use), len(study.vary)
     source.bit_generator.advance(start * width)  # type: ignore[attr-defined]  # one step a number
     drawn = source.random((count, width))
     return np.maximum(drawn, LEAST, out=drawn)

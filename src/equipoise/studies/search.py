@@ -115,7 +115,11 @@ def search_designs(
     UsageError : population or generations cannot be used, or no design keeps the limits.
     """
     _check(study)
-    _check_size(population, generations)
+    if not LEAST_POPULATION <= population <= MOST_POPULATION:
+        limits = f"{LEAST_POPULATION} to {MOST_POPULATION}"
+        raise UsageError(f"got a population of {population}; give {limits}")
+    if not 1 <= generations <= MOST_GENERATIONS:
+        raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
     seed = study.sampling.seed if seed is None else seed
     seen = Archive(study, compute or evaluator(study))
     breeding = evolution(study, population, seed, seen.known)
@@ -156,15 +160,6 @@ def _check(study: Study) -> None:
         raise ModelError(
             "outputs", 'none is to become small or large; give one of them make = "smallest"'
         )
-
-
-def _check_size(population: int, generations: int) -> None:
-    if not LEAST_POPULATION <= population <= MOST_POPULATION:
-        raise UsageError(
-            f"got a population of {population}; give {LEAST_POPULATION} to {MOST_POPULATION}"
-        )
-    if not 1 <= generations <= MOST_GENERATIONS:
-        raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
 
 
 def _result(

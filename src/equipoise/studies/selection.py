@@ -18,11 +18,10 @@ from typing import Any, BinaryIO, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, REASONS
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
-from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import (
     Block,
     designs_told,

@@ -25,9 +25,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import equipoise
-from equipoise.errors import UsageError
+from equipoise.errors import UsageError, needed
 from equipoise.results.result import Result
-from equipoise.studies.extras import needed
 from equipoise.studies.outcomes import Block, Outcome
 
 if TYPE_CHECKING:

@@ -1,4 +1,45 @@
-"""Model files for the tests of reading and writing."""
+"""Model files for the tests of reading and writing, and what each of them has to keep."""
+
+import tomllib
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass, replace
+from typing import Any
+
+from jsonschema import Draft202012Validator
+
+from equipoise.mechanism.model import Machine
+from equipoise.schema import dumps, json_schema, loads
+
+VALIDATOR = Draft202012Validator(json_schema())
+
+
+def survives(machine: Machine) -> str:
+    """The text of a machine, which the schema accepts and which is read as the same machine."""
+    text = dumps(machine)
+    VALIDATOR.validate(tomllib.loads(text))
+    assert loads(text) == machine
+    return text
+
+
+def changed(value: Any, draw: Callable[[str, float], float], name: str = "") -> Any:
+    """The same structure with other numbers, drawn by the name of their field and the old one."""
+    if isinstance(value, float):
+        return draw(name, value)
+    if isinstance(value, Mapping):
+        return {key: changed(item, draw, name) for key, item in value.items()}
+    if isinstance(value, tuple):
+        return tuple(changed(item, draw, name) for item in value)
+    if is_dataclass(value) and not isinstance(value, type | Machine):
+        new = {f.name: changed(getattr(value, f.name), draw, f.name) for f in fields(value)}
+        return replace(value, **new)
+    return value
+
+
+def changed_machine(machine: Machine, draw: Callable[[str, float], float]) -> Machine:
+    """A machine with other numbers; those inside of a tool are left by `changed`."""
+    new = {f.name: changed(getattr(machine, f.name), draw, f.name) for f in fields(machine)}
+    return replace(machine, **new)
+
 
 FOUR_BAR = """\
 schema = 1

@@ -46,62 +46,22 @@ def test_right_angles_are_exact() -> None:
     assert loads(text).frame["D"] == (0.0, -0.088)
 
 
-GEAR = '[[gears]]\nbetween = ["crank", "rocker"]\n'
-
-
 @pytest.mark.parametrize(
     ("old", "new", "said"),
     [
-        ('mass = "199 g"', 'mas = "199 g"', "links.crank.mas: no key is called 'mas'; did you"),
-        ('mass = "199 g"', "mass = 199", "links.crank.mass: got the bare number 199; give"),
-        ('mass = "199 g"', 'mass = "1 mm"', "links.crank.mass: got '1 mm'; mm is the unit"),
-        ('mass = "199 g"', 'mass = "-1 g"', "links.crank.mass: got -0.001 kg"),
-        ('mass = "199 g"\n', "", "links.crank: mass missing"),
-        ('["33.5 mm", "0 mm"]', '["1 mm"]', "links.crank.points.B: got a list of 1; give"),
-        ('["33.5 mm", "0 mm"]', '["1 mm", "x"]', "links.crank.points.B[2]: got 'x'; write"),
-        ('["33.5 mm", "0 mm"]', '"1 mm"', "links.crank.points.B: got '1 mm'; give [\"33.5 mm"),
-        ('["33.5 mm", "0 mm"]', "{ distance = 3 }", "points.B.direction: missing; add direction"),
-        (
-            '["33.5 mm", "0 mm"]',
-            '{ distance = 3, direction = "1 m" }',
-            "points.B.distance: got the bare number 3; give number and unit in quotes, such as "
-            '"33.5 mm" (and 1 more)',
-        ),
-        ('link = "crank"', 'link = "crnk"', "drive.link: no link is called 'crnk'; did you"),
-        ('"193 rpm"', '"50 Hz"', "drive.speed: got '50 Hz'; Hz does not tell"),
-        ('"left"', '"lft"', "assembly.C: got 'lft'; give 'left', 'right'"),
-        ('title = "Four-bar"', "title = 1", "title: got the number 1; give text in quotes"),
-        ('title = "Four-bar"', "", "title: missing; add title ="),
-        ('title = "Four-bar"', 'titel = "x"', "titel: no key is called 'titel'; did you mean"),
-        ("schema = 1", "", "schema: missing"),
-        ("schema = 1", "schema = 2", "got the number 2; this program reads schema = 1"),
-        ("schema = 1", "schema = true", "got true; this program reads schema = 1"),
-        ("[assembly]", "[sliders]\n[assembly]", "sliders: got a table; write each as a table"),
-        ("[assembly]", "[[sliders]]\n[assembly]", "sliders[1].link: missing; add link"),
-        ("[assembly]", f"{GEAR}\n[assembly]", "gears[1]: give either ratio or teeth"),
-        (
-            "[assembly]",
-            f'{GEAR}ratio = 2\nmesh = "external"\n[assembly]',
-            "gears[1].mesh: got 'external' without teeth",
-        ),
-        ("[assembly]", f"{GEAR}ratio = nan\n[assembly]", "gears[1].ratio: got the number nan"),
-        ("[assembly]", f'{GEAR}ratio = "2"\n[assembly]', "gears[1].ratio: got '2'; give a plain"),
-        ("[assembly]", f"{GEAR}teeth = [0, 2]\n[assembly]", "gears[1].teeth[1]: got the number 0"),
-        ("[assembly]", f"{GEAR}teeth = [1, 0x{'f' * 5000}]\n[assembly]", "thousands of digits"),
-        (
-            "[assembly]",
-            '[[loads]]\nlink = "crank"\ntable = "x.csv"\n[assembly]',
-            "loads[1].table: got 'x.csv'; a table can only",
-        ),
         ('mass = "199 g"', 'mass = "1 g"\nmass = "2 g"', "line 16, column 13: cannot overwrite"),
         ("[assembly]", "[assembly", "line 27, column 10: expected ']'"),
         ("[assembly]", "x = " + "[" * 10**5, "nested too deeply"),
         ("[assembly]", "x = " + "9" * 5000, "thousands of digits"),
+        (
+            "[assembly]",
+            f'[[gears]]\nbetween = ["crank", "rocker"]\nteeth = [1, 0x{"f" * 5000}]\n[assembly]',
+            "gears[1].teeth[2]: got the number of thousands of digits",
+        ),
         ("[assembly]", "a." * 40_000 + "a = 1", "line 27: a key has more than 50 parts"),
-        ("[links.rocker]", '["li\\nks"]\n[links.rocker]', '"li\\nks": no key is called'),
     ],
 )
-def test_one_sentence_names_the_place(old: str, new: str, said: str) -> None:
+def test_what_is_no_toml_is_told_with_its_line(old: str, new: str, said: str) -> None:
     with pytest.raises(ModelError) as caught:
         loads(FOUR_BAR.replace(old, new, 1), "model.toml")
     assert said in str(caught.value)

@@ -1,4 +1,4 @@
-"""Recorded decays as CSV files."""
+"""Recorded decays, accelerations and tasks as CSV files."""
 
 from __future__ import annotations
 
@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.schema.records import parse_record, read_record
+from equipoise.errors import ModelError
+from equipoise.exposure.daily import Task
+from equipoise.schema.records import (
+    Accelerations,
+    parse_accelerations,
+    parse_record,
+    read_accelerations,
+    read_record,
+)
 
 ROWS = 20
 
@@ -107,3 +115,123 @@ def test_records_may_be_larger_than_model_files(tmp_path: Path) -> None:
     path.write_text(f"time [s],displacement [mm]\n{rows}", encoding="utf-8")
     assert path.stat().st_size > 2_000_000
     assert len(read_record(path).time) == 100_000
+
+
+# -- accelerations and tasks -----------------------------------------------------------------------
+
+SIGNAL = "time [s],x [m/s^2],y [m/s^2],z [m/s^2]"
+SPECTRUM = "frequency [Hz],x [m/s^2],y [m/s^2],z [m/s^2]"
+TASKS = "task,acceleration [m/s^2],duration [h]"
+
+
+def signal(header: str = "time [s],x [m/s^2],z [m/s^2]", **cells: str) -> str:
+    """A signal of twenty rows; ``r3="0.3,x,1"`` puts another row in place of the third."""
+    rows = [cells.get(f"r{k}", f"{k / 10:g},{k % 4},-{k % 3}") for k in range(ROWS)]
+    return "\n".join([header, *rows]) + "\n"
+
+
+def measured(text: str) -> Accelerations:
+    found = parse_accelerations(text)
+    assert isinstance(found, Accelerations)
+    return found
+
+
+def test_axes_in_si_units() -> None:
+    found = measured(signal("time [ms],x [gn],y [ft/s^2]"))
+    assert (found.kind, found.axes) == ("time", ("x", "y"))
+    np.testing.assert_allclose(found.at, 1e-4 * np.arange(ROWS), rtol=1e-15)
+    np.testing.assert_allclose(found.values[0], 9.80665 * (np.arange(ROWS) % 4), rtol=1e-15)
+    np.testing.assert_allclose(found.values[1], -0.3048 * (np.arange(ROWS) % 3), rtol=1e-15)
+
+
+def test_axes_and_columns_in_any_order() -> None:
+    found = measured("z [m/s^2],frequency [kHz],x [m/s^2]\n1,0.1,2\n3,0.2,4\n")
+    assert (found.kind, found.axes) == ("frequency", ("x", "z"))
+    np.testing.assert_array_equal(found.values, [[2, 4], [1, 3]])
+    np.testing.assert_array_equal(found.at, [100, 200])
+
+
+def test_axes_as_a_whole_and_cell_by_cell_agree() -> None:
+    plain = signal()
+    slow = measured(plain.replace("0.1,1", "0.1\N{NO-BREAK SPACE},1"))
+    np.testing.assert_array_equal(measured(plain).values, slow.values)
+
+
+def test_tasks() -> None:
+    text = 'duration [min],task,acceleration [m/s^2]\n120,"mowing, edges",4.6\n\n60,,6\n'
+    assert parse_accelerations(text) == (
+        Task("mowing, edges", 4.6, 7200.0),
+        Task("task 2", 6.0, 3600.0),
+    )
+
+
+def test_a_byte_order_mark(tmp_path: Path) -> None:
+    path = tmp_path / "tasks.csv"
+    path.write_text(f"\ufeff{TASKS}\nMähen 草刈り,4,2\n", encoding="utf-8")
+    assert read_accelerations(path) == (Task("Mähen 草刈り", 4.0, 7200.0),)
+
+
+OF_TASKS = f"is {TASKS}"
+WHOLE = f"the header is {SIGNAL} or {SPECTRUM} or {TASKS}"
+UNREAD = {
+    "empty": ("", f"line 1: got no column; {WHOLE}"),
+    "other": ("crank_angle [deg]\n0\n", f"line 1: got the column 'crank_angle [deg]'; {WHOLE}"),
+    "misspelt": (signal("time [s],xx [m/s^2]"), f"'xx [m/s^2]'; the header is {SIGNAL}"),
+    "acceleration": (signal("time [s],acceleration [m/s^2]"), "got the column 'acceleration [m/"),
+    "no axis": ("time [s]\n1\n", f"line 1: got time; the header is {SIGNAL}"),
+    "no unit": (signal("time [s],x"), "line 1, column x: the unit is missing; x [m/s^2]"),
+    "wrong unit": (signal("time [s],x [mm]"), "line 1, column x: got '0 mm'; mm is the uni"),
+    "twice": (signal("time [s],x [gn],x [gn]"), "line 1, column x: given twice"),
+    "nan": (signal(r4="0.4,nan,1"), "line 6, column x: got 'nan'; give a finite number"),
+    "text": (signal(r4="0.4,high,1"), "line 6, column x: got 'high'; give a finite number"),
+    "huge": (signal(r4="0.4,1e40,1"), "line 6, column x: got '1e40 m/s^2', which no machine"),
+    "few cells": (signal(r4="0.4,1"), "line 6: got 2 values; the header has 3 columns"),
+    "no rows": (SIGNAL, "line 1: there are no rows below the header"),
+    "falling": (signal(r4="0.2,1,1"), "line 6, column time: the times must rise from row to row"),
+    "gap": (signal(r9="0.97,1,1"), "line 11, column time: 0.97 s is not where equal steps"),
+    "negative": (f"{SPECTRUM}\n8,1,1,1\n\n10,1,-2,1\n", "line 4, column y: got -2; give RMS"),
+    "below zero": (f"{SPECTRUM}\n-8,1,1,1\n10,1,2,1\n", "line 2, column frequency: got -8; give"),
+    "down": (f"{SPECTRUM}\n8,1,1,1\n6,1,1,1\n", "line 3, column frequency: the frequencies must"),
+    "task: no task": ("duration [h]\n1\n", f"got 0 columns task; the header {OF_TASKS}"),
+    "task: two": ("task,task,duration [h]\na,b,1\n", "got 2 columns task; the header is"),
+    "task: missing": ("task,duration [h]\na,1\n", f"line 1: got duration; the header is {TASKS}"),
+    "task: unit": ("task,acceleration,duration [h]\na,1,1\n", "column acceleration: the unit is"),
+    "task: wrong unit": (f"{TASKS[:-3]}[m]\na,1,1\n", "column duration: got '0 m'; m is the"),
+    "task: cells": (f"{TASKS}\na,1\n", "line 2: got 2 values; the header has 3 columns"),
+    "task: nan": (f"{TASKS}\na,1,1\nb,nan,1\n", "line 3, column acceleration: got 'nan'; give"),
+    "task: no time": (f"{TASKS}\na,1,\n", "line 2, column duration: got ''; give a finite number"),
+    "task: negative": (f"{TASKS}\na,-1,1\n", "line 2, column acceleration: got -1 m/s^2; give a"),
+    "task: no hours": (f"{TASKS}\na,1,0\n", "line 2, column duration: got 0 h; give more than 0"),
+    "task: long": (f"{TASKS}\na,1,25\n", "line 2, column duration: got 25 h; give more"),
+    "task: none": (TASKS, "line 1: there are no rows below the header; give at least one"),
+    "quotes": ('task,"acceleration\n', "line 1: this is no table of comma-separated values"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("text", "said"), UNREAD.values(), ids=UNREAD)
+def test_accelerations_are_refused(text: str, said: str) -> None:
+    with pytest.raises(ModelError) as caught:
+        parse_accelerations(text)
+    assert said in str(caught.value)
+    assert str(caught.value).startswith("line ")
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("none.csv", "none.csv: there is no such file"),
+        ("", "'': there is no such file"),
+        (".", ".: this is a directory; give a file"),
+        ("bad.csv", "bad.csv, line 2, column x: got '?'; give a finite number"),
+        ("latin.csv", "latin.csv: line 2 is not text in UTF-8"),
+    ],
+)
+def test_files_of_accelerations(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("bad.csv").write_text("time [s],x [gn]\n0,?\n", encoding="utf-8")
+    Path("latin.csv").write_bytes(f"{TASKS}\nMähen,1,1\n".encode("latin-1"))
+    with pytest.raises(ModelError) as caught:
+        read_accelerations(name)
+    assert str(caught.value).startswith(said)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterator, Mapping
 
 import pytest
-from jsonschema import Draft202012Validator
 
 from equipoise.errors import ModelError
-from equipoise.schema import json_schema, loads
+from equipoise.schema import loads
 from unit.schema.samples import (
     BALANCE,
     FOUR_BAR,
@@ -20,11 +20,69 @@ from unit.schema.samples import (
     ROWS,
     SUPPORT,
     SUPPORTED,
+    VALIDATOR,
 )
 
-VALIDATOR = Draft202012Validator(json_schema())
 Refusals = Mapping[str, tuple[str, str, str, str]]
 """What is replaced, by what, the place in front of which the table's name stands, what is said."""
+
+# -- the linkage ----------------------------------------------------------------------------------
+
+MASS, END = 'mass = "199 g"', "[assembly]"
+TITLE, HERE = 'title = "Four-bar"', '["33.5 mm", "0 mm"]'
+GEAR = '[[gears]]\nbetween = ["crank", "rocker"]\n'
+LOAD = '[[loads]]\nlink = "crank"\n'
+CRANK, PIN = "links.crank.mass", "links.crank.points.B"
+OF_LINKAGES: Refusals = {
+    "unknown key": (MASS, 'mas = "199 g"', "links.crank.mas", "no key is called 'mas'; did you"),
+    "bare number": (MASS, "mass = 199", CRANK, "got the bare number 199; give"),
+    "wrong unit": (MASS, 'mass = "1 mm"', CRANK, "got '1 mm'; mm is the unit"),
+    "no space": (MASS, 'mass = "199g"', CRANK, 'put a space between number and unit: "199 g"'),
+    "comma": (MASS, 'mass = "1,5 g"', CRANK, 'the decimal sign is a point, not a comma: "1.5 g"'),
+    "no mass": (f"{MASS}\n", "", "links.crank", "mass missing"),
+    "point of one": (HERE, '["1 mm"]', PIN, "got a list of 1; give"),
+    "point of three": (HERE, '["1 mm", "0 mm", "0 mm"]', PIN, "got a list of 3; give"),
+    "point in words": (HERE, '["1 mm", "x"]', f"{PIN}[2]", "got 'x'; write"),
+    "point as text": (HERE, '"1 mm"', PIN, "got '1 mm'; give [\"33.5 mm"),
+    "half a point": (HERE, "{ distance = 3 }", f"{PIN}.direction", "missing; add direction"),
+    "unit of a direction": (HERE, '{ distance = "1 mm", direction = "1 mm" }', f"{PIN}.direction",
+                            "got '1 mm'; mm is the unit of a length; an angle is wanted"),
+    "two problems of a point": (
+        HERE, '{ distance = 3, direction = "1 m" }', f"{PIN}.distance",
+        'got the bare number 3; give number and unit in quotes, such as "33.5 mm" (and 1 more)'),
+    "speed in hertz": ('"193 rpm"', '"50 Hz"', "drive.speed", "got '50 Hz'; Hz does not tell"),
+    "side": ('"left"', '"lft"', "assembly.C", "got 'lft'; give 'left', 'right'"),
+    "title as a number": (TITLE, "title = 1", "title", "got the number 1; give text in quotes"),
+    "no title": (TITLE, "", "title", "missing; add title ="),
+    "misspelt title": (TITLE, 'titel = "x"', "titel", "no key is called 'titel'; did you mean"),
+    "unknown table": ("[links.rocker]", '["li\\nks"]\n[links.rocker]', '"li\\nks"',
+                      "no key is called"),
+    "key of the frame": ("[frame]", "[frame]\nx = 1", "frame.x", "no key is called 'x'; there are"),
+    "no version": ("schema = 1", "", "schema", "missing"),
+    "other version": ("schema = 1", "schema = 2", "schema",
+                      "got the number 2; this program reads schema = 1"),
+    "true version": ("schema = 1", "schema = true", "schema", "got true; this program reads"),
+    "sliders as a table": (END, "[sliders]\n[assembly]", "sliders", "got a table; write each as a"),
+    "empty slider": (END, "[[sliders]]\n[assembly]", "sliders[1].link", "missing; add link"),
+    "empty planting": (END, "[planting]\n[assembly]", "planting.tip", "missing; add tip"),
+    "gear alone": (END, f"{GEAR}[assembly]", "gears[1]", "give either ratio or teeth"),
+    "mesh without teeth": (END, f'{GEAR}ratio = 2\nmesh = "external"\n[assembly]', "gears[1].mesh",
+                           "got 'external' without teeth"),
+    "ratio as text": (END, f'{GEAR}ratio = "2"\n[assembly]', "gears[1].ratio",
+                      "got '2'; give a plain"),
+    "no teeth": (END, f"{GEAR}teeth = [0, 2]\n[assembly]", "gears[1].teeth[1]", "got the number 0"),
+    "load of nothing": (END, f"{LOAD}[assembly]", "loads[1]", "give exactly one of force, torque"),
+    "half a window": (END, f'{LOAD}torque = "1 N m"\nto = "1 deg"\n[assembly]', "loads[1]",
+                      "give both from and to, or neither"),
+}  # fmt: skip
+LINKAGES_BEYOND: Refusals = {
+    "negative mass": (MASS, 'mass = "-1 g"', CRANK, "got -0.001 kg"),
+    "unknown link": ('link = "crank"', 'link = "crnk"', "drive.link",
+                     "no link is called 'crnk'; did you"),
+    "no ratio": (END, f"{GEAR}ratio = nan\n[assembly]", "gears[1].ratio", "got the number nan"),
+    "table without a folder": (END, f'{LOAD}table = "x.csv"\n[assembly]', "loads[1].table",
+                               "got 'x.csv'; a table can only"),
+}  # fmt: skip
 
 # -- [planting] -----------------------------------------------------------------------------------
 
@@ -390,6 +448,7 @@ BALANCES_BEYOND: Refusals = {
 
 TABLES = (
     # text before the table, the table, the name in front of the places, of both, of the reader
+    ("", FOUR_BAR, "", OF_LINKAGES, LINKAGES_BEYOND),
     (FOUR_BAR, PLANTING, "planting", OF_PLANTING, PLANTING_BEYOND),
     (FOUR_BAR, MOTOR, "drive.motor", OF_MOTORS, MOTORS_BEYOND),
     (FOUR_BAR, SUPPORTED, "", OF_SUPPORTS, SUPPORTS_BEYOND),
@@ -404,7 +463,8 @@ def cases() -> Iterator[object]:
             for case, (old, new, place, said) in refusals.items():
                 assert old in table
                 text = before + table.replace(old, new, 1)
-                where = f"{name or table.split(']')[0].strip('[ ' + chr(10))}: {case}"
+                first = re.search(r"\[(.+)\]", table)
+                where = f"{name or (first and first[1])}: {case}"
                 yield pytest.param(text, name + place, said, schema_too, id=where)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import tomllib
 from dataclasses import replace
 from math import radians
 from pathlib import Path
@@ -11,11 +12,13 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from jsonschema import Draft202012Validator
 
 import equipoise as eq
 from equipoise.errors import ModelError, UsageError
 from equipoise.quantities import parse
 from equipoise.schema.files import printable
+from equipoise.schema.schemas import json_schema
 from equipoise.schema.studies import load_study, restore
 from equipoise.schema.template import Template
 from equipoise.studies.design_space import (
@@ -33,6 +36,7 @@ from equipoise.studies.sampling import samples
 from equipoise.studies.study import Study
 from unit.schema.samples import FOUR_BAR
 
+SCHEMA = Draft202012Validator(json_schema("study"))
 WHOLE = """
 schema = 1
 title = "Lengths of type I"
@@ -100,6 +104,7 @@ def read(tmp_path: Path, text: str) -> Study:
 
 def test_everything(tmp_path: Path) -> None:
     study = read(tmp_path, WHOLE)
+    SCHEMA.validate(tomllib.loads(WHOLE))
     assert study.title == "Lengths of type I"
     assert study.paths == (
         "links.coupler.points.C.x",
@@ -205,187 +210,134 @@ def test_the_files_of_the_documentation(tmp_path: Path) -> None:
 # -- what is refused -------------------------------------------------------------------------------
 
 GRID = REST.replace('"sobol"\ndesigns = 8', '"grid"')
+NO_TOML = "no TOML"
 REFUSED = {
     # text, what is said behind the file's name
     "empty": ("", "schema: missing; begin the file with schema = 1"),
     "version": ("schema = 2\n", "schema: got the number 2; this program reads schema = 1"),
-    "no TOML": (f"{HEAD}vary = [\n", "end of document: invalid value; give valid TOML"),
+    NO_TOML: (f"{HEAD}vary = [\n", "end of document: invalid value; give valid TOML"),
     "a model": (FOUR_BAR, "this is a model file; give a study file, which names it by a key model"),
     "no model": (f"schema = 1\n{RANGE}{REST}", 'model: missing; add model = "yamashita-1"'),
     "no vary": (f"{HEAD}{REST}", "vary: missing; add at least one table [[vary]]"),
     "empty vary": (f"{HEAD}vary = []\n{REST}", "vary: there is none; give at least one [[vary]]"),
-    "no outputs": (
-        f"{HEAD}{RANGE}{REST.partition('[[out')[0]}",
-        "outputs: missing; add at least one table [[outputs]]",
-    ),
-    "no sampling": (
-        f'{HEAD}{RANGE}[[outputs]]\nvalue = "a"\n',
-        'sampling: missing; add sampling.method = "sobol"',
-    ),
+    "no outputs": (f"{HEAD}{RANGE}{REST.partition('[[out')[0]}",
+        "outputs: missing; add at least one table [[outputs]]"),
+    "no sampling": (f'{HEAD}{RANGE}[[outputs]]\nvalue = "a"\n',
+        'sampling: missing; add sampling.method = "sobol"'),
     "key": (f"{HEAD}titel = 'a'\n{RANGE}{REST}", "titel: no key is called 'titel'; did you mean"),
-    "key below": (
-        f"{HEAD}{RANGE}step = 3\n{REST}",
-        "vary[1].step: no key is called 'step'; did you mean 'steps'?",
-    ),
-    "model file": (
-        f'schema = 1\nmodel = "yamasita-1"\n{RANGE}{REST}',
-        "there is no such file; did you mean 'yamashita-1'? or give a path, or the name of an",
-    ),
+    "key below": (f"{HEAD}{RANGE}step = 3\n{REST}",
+        "vary[1].step: no key is called 'step'; did you mean 'steps'?"),
+    "model file": (f'schema = 1\nmodel = "yamasita-1"\n{RANGE}{REST}',
+        "there is no such file; did you mean 'yamashita-1'? or give a path, or the name of an"),
     "model of no text": (f"schema = 1\nmodel = 3\n{RANGE}{REST}", "model: got the number 3; give"),
     "no path": (f"{HEAD}[[vary]]\nlist = [1]\n{REST}", 'vary[1].path: missing; add path = "links.'),
-    "wrong path": (
-        f"{HEAD}{RANGE.replace('mass', 'mas')}{REST}",
+    "wrong path": (f"{HEAD}{RANGE.replace('mass', 'mas')}{REST}",
         "vary[1].path: no number of the model is called 'links.crank.mas'; did you mean "
-        "'links.crank.mass'?",
-    ),
-    "path twice": (
-        f"{HEAD}{RANGE}{RANGE}{REST}",
-        "vary[2].path: links.crank.mass varies in vary[1] already; leave one of them out",
-    ),
-    "no spread": (
-        f"{HEAD}{VARY}{REST}", "vary[1]: got none; give one of range, list, normal and uniform"
-    ),
-    "two spreads": (
-        f'{HEAD}{RANGE}list = ["1 g"]\n{REST}',
-        "vary[1]: got range and list; give one of range, list, normal and uniform",
-    ),
-    "one limit": (
-        f'{HEAD}{VARY}range = ["1 g"]\n{REST}',
-        'vary[1].range: got a list of 1; give two limits, such as ["60 mm", "80 mm"]',
-    ),
+        "'links.crank.mass'?"),
+    "path twice": (f"{HEAD}{RANGE}{RANGE}{REST}",
+        "vary[2].path: links.crank.mass varies in vary[1] already; leave one of them out"),
+    "no spread": (f"{HEAD}{VARY}{REST}",
+        "vary[1]: got none; give one of range, list, normal and uniform"),
+    "two spreads": (f'{HEAD}{RANGE}list = ["1 g"]\n{REST}',
+        "vary[1]: got range and list; give one of range, list, normal and uniform"),
+    "one limit": (f'{HEAD}{VARY}range = ["1 g"]\n{REST}',
+        'vary[1].range: got a list of 1; give two limits, such as ["60 mm", "80 mm"]'),
     "no list": (f'{HEAD}{VARY}list = "1 g"\n{REST}', "vary[1].list: got '1 g'; give a list such"),
-    "other dimension": (
-        f'{HEAD}{VARY}range = ["1 g", "2 mm"]\n{REST}',
-        "vary[1].range[2]: got '2 mm'; mm is the unit of a length; a mass is wanted: kg, g",
-    ),
-    "bare": (
-        f'{HEAD}{VARY}list = [100, "2 g"]\n{REST}',
-        "vary[1].list[1]: got the bare number 100; give number and unit in quotes",
-    ),
-    "order": (
-        f'{HEAD}{VARY}range = ["2 g", "1 g"]\n{REST}',
-        "vary[1].range: the first limit must be below the second",
-    ),
-    "steps with a list": (
-        f'{HEAD}{VARY}list = ["1 g"]\nsteps = 3\n{GRID}',
-        "vary[1].steps: has no place beside list; leave it out",
-    ),
-    "steps without grid": (
-        f"{HEAD}{RANGE}steps = 3\n{REST}",
-        "vary[1].steps: goes with a grid, not with sobol; leave it out",
-    ),
+    "other dimension": (f'{HEAD}{VARY}range = ["1 g", "2 mm"]\n{REST}',
+        "vary[1].range[2]: got '2 mm'; mm is the unit of a length; a mass is wanted: kg, g"),
+    "bare": (f'{HEAD}{VARY}list = [100, "2 g"]\n{REST}',
+        "vary[1].list[1]: got the bare number 100; give number and unit in quotes"),
+    "no space": (f'{HEAD}{VARY}range = ["1g", "2 g"]\n{REST}',
+        "vary[1].range[1]: got '1g'; put a space between number and unit"),
+    "order": (f'{HEAD}{VARY}range = ["2 g", "1 g"]\n{REST}',
+        "vary[1].range: the first limit must be below the second"),
+    "steps with a list": (f'{HEAD}{VARY}list = ["1 g"]\nsteps = 3\n{GRID}',
+        "vary[1].steps: has no place beside list; leave it out"),
+    "steps without grid": (f"{HEAD}{RANGE}steps = 3\n{REST}",
+        "vary[1].steps: goes with a grid, not with sobol; leave it out"),
     "parts of steps": (f"{HEAD}{RANGE}steps = 2.5\n{GRID}", "vary[1].steps: got the number 2.5; g"),
-    "grid without steps": (
-        f"{HEAD}{RANGE}{GRID}", "vary[1].steps: missing; a grid needs the number of values"
-    ),
-    "grid of a tolerance": (
-        f'{HEAD}{VARY}normal.deviation = "1 g"\n{GRID}',
-        "vary[1].normal: a normal spread has no grid; give a range or a list",
-    ),
-    "no deviation": (
-        f'{HEAD}{VARY}normal = {{ mean = "1 g" }}\n{REST}',
-        'vary[1].normal.deviation: missing; add deviation = "2 g"',
-    ),
-    "deviation 0": (
-        f'{HEAD}{VARY}normal = {{ deviation = "0 g" }}\n{REST}',
-        "vary[1].normal: got a deviation of 0; give more than 0",
-    ),
-    "deviation of another kind": (
-        f'{HEAD}{VARY}normal = {{ deviation = "1 %" }}\n{REST}',
-        "vary[1].normal.deviation: got '1 %'; there is no unit '%' here; a mass is wanted",
-    ),
-    "half width": (
-        f"{HEAD}{VARY}uniform = {{ half_width = true }}\n{REST}",
-        "vary[1].uniform.half_width: got true; give number and unit in quotes",
-    ),
-    "unit of a plain number": (
-        HEAD.replace("yamashita-1", "geared-counterweight")
+    "grid without steps": (f"{HEAD}{RANGE}{GRID}",
+        "vary[1].steps: missing; a grid needs the number of values"),
+    "grid of a tolerance": (f'{HEAD}{VARY}normal.deviation = "1 g"\n{GRID}',
+        "vary[1].normal: a normal spread has no grid; give a range or a list"),
+    "no deviation": (f'{HEAD}{VARY}normal = {{ mean = "1 g" }}\n{REST}',
+        'vary[1].normal.deviation: missing; add deviation = "2 g"'),
+    "deviation 0": (f'{HEAD}{VARY}normal = {{ deviation = "0 g" }}\n{REST}',
+        "vary[1].normal: got a deviation of 0; give more than 0"),
+    "deviation of another kind": (f'{HEAD}{VARY}normal = {{ deviation = "1 %" }}\n{REST}',
+        "vary[1].normal.deviation: got '1 %'; there is no unit '%' here; a mass is wanted"),
+    "half width": (f"{HEAD}{VARY}uniform = {{ half_width = true }}\n{REST}",
+        "vary[1].uniform.half_width: got true; give number and unit in quotes"),
+    "unit of a plain number": (HEAD.replace("yamashita-1", "geared-counterweight")
         + f'[[vary]]\npath = "gears[1].ratio"\nlist = ["2 mm"]\n{REST}',
-        "vary[1].list[1]: got '2 mm'; give a plain number, such as 2",
-    ),
-    "method": (
-        f"{HEAD}{RANGE}{REST.replace('sobol', 'random')}",
-        "sampling.method: no method is called 'random'; there are 'grid', 'sobol',",
-    ),
-    "no designs": (
-        f"{HEAD}{RANGE}{REST.replace('designs = 8', '')}",
-        "sampling.designs: missing; give how many, such as 65536",
-    ),
-    "many designs": (
-        f"{HEAD}{RANGE}{REST.replace('designs = 8', 'designs = 2_000_000_000')}",
-        "sampling.designs: got 2000000000; give 1 to 1000000000",
-    ),
-    "designs of a grid": (
-        f"{HEAD}{RANGE}steps = 3\n{REST.replace('sobol', 'grid')}",
-        "sampling.designs: a grid has as many as its steps make, here 3; leave it out",
-    ),
+        "vary[1].list[1]: got '2 mm'; give a plain number, such as 2"),
+    "method": (f"{HEAD}{RANGE}{REST.replace('sobol', 'random')}",
+        "sampling.method: no method is called 'random'; there are 'grid', 'sobol',"),
+    "no designs": (f"{HEAD}{RANGE}{REST.replace('designs = 8', '')}",
+        "sampling.designs: missing; give how many, such as 65536"),
+    "many designs": (f"{HEAD}{RANGE}{REST.replace('designs = 8', 'designs = 2_000_000_000')}",
+        "sampling.designs: got 2000000000; give 1 to 1000000000"),
+    "designs of a grid": (f"{HEAD}{RANGE}steps = 3\n{REST.replace('sobol', 'grid')}",
+        "sampling.designs: a grid has as many as its steps make, here 3; leave it out"),
     "seed of a grid": (
         f"{HEAD}{RANGE}steps = 3\n{GRID.replace('[[out', 'seed = 2' + chr(10) + '[[out')}",
-        "sampling.seed: a grid has no random numbers; leave it out",
-    ),
+        "sampling.seed: a grid has no random numbers; leave it out"),
     "correlated with one": (
         f'{HEAD}{RANGE}{REST}[[correlations]]\nbetween = ["links.crank.mass"]\ncoefficient = 0.5\n',
-        "correlations[1].between: got a list of 1; give a list of two paths",
-    ),
-    "no coefficient": (
-        f'{HEAD}{RANGE}{REST}[[correlations]]\nbetween = ["a", "b"]\n',
-        "correlations[1].coefficient: missing; add coefficient = 0.9",
-    ),
+        "correlations[1].between: got a list of 1; give a list of two paths"),
+    "no coefficient": (f'{HEAD}{RANGE}{REST}[[correlations]]\nbetween = ["a", "b"]\n',
+        "correlations[1].coefficient: missing; add coefficient = 0.9"),
     "correlated with what stays": (
         f'{HEAD}{RANGE}{REST}[[correlations]]\nbetween = ["links.crank.mass", "b"]\n'
         "coefficient = 0.5\n",
-        "correlations[1].between[2]: no [[vary]] is called 'b'; there are 'links.crank.mass'",
-    ),
-    "limit of another kind": (
-        f'{HEAD}{RANGE}{REST}at_most = "3 N"\n',
-        "outputs[1].at_most: got '3 N'; N is the unit of a force; a torque is wanted",
-    ),
-    "bare limit": (
-        f"{HEAD}{RANGE}{REST}at_most = 3\n",
-        "outputs[1].at_most: got the bare number 3; give number and unit in quotes",
-    ),
+        "correlations[1].between[2]: no [[vary]] is called 'b'; there are 'links.crank.mass'"),
+    "limit of another kind": (f'{HEAD}{RANGE}{REST}at_most = "3 N"\n',
+        "outputs[1].at_most: got '3 N'; N is the unit of a force; a torque is wanted"),
+    "bare limit": (f"{HEAD}{RANGE}{REST}at_most = 3\n",
+        "outputs[1].at_most: got the bare number 3; give number and unit in quotes"),
+    "limit without a unit": (f'{HEAD}{RANGE}{REST}at_most = "3"\n',
+        "outputs[1].at_most: got '3'; the unit is missing"),
     "limit of no kind": (
         f'{HEAD}{RANGE}{REST}[[outputs]]\nof = "balance"\nvalue = "cost"\nat_most = "much"\n',
-        "outputs[2].at_most: got 'much'; give a number in SI units, or one with its unit",
-    ),
-    "make": (
-        f'{HEAD}{RANGE}{REST}make = "small"\n',
-        "outputs[1].make: got 'small'; give 'smallest' or 'largest'",
-    ),
-    "command": (
-        f'{HEAD}{RANGE}{REST}of = "plan"\n', "outputs[1].of: no command is called 'plan'; did you"
-    ),
-    "no value": (
-        f"{HEAD}{RANGE}{REST}[[outputs]]\nname = 'a'\n",
-        'outputs[2].value: missing; add value = "shaking_force.y.rms"',
-    ),
-    "outputs twice": (
-        f'{HEAD}{RANGE}{REST}[[outputs]]\nvalue = "drive_torque.rms"\n',
-        "outputs[2].name: got 'drive_torque.rms', which is the name of outputs[1]; give another",
-    ),
-    "output like a path": (
-        f'{HEAD}{RANGE}{REST}name = "links.crank.mass"\n',
-        "outputs[1].name: got 'links.crank.mass', which is the path of vary[1]; give another",
-    ),
-    "both accuracies": (
-        f"{HEAD}{RANGE}{REST}[accuracy]\nangles = 360\ntolerance = 1e-3\n",
-        "accuracy: got angles and tolerance; give one of both",
-    ),
-    "accuracy": (
-        f"{HEAD}{RANGE}{REST}[accuracy]\ntolerance = 2\n",
-        "accuracy.tolerance: got 2; give 1e-12 to 0.1",
-    ),
+        "outputs[2].at_most: got 'much'; give a number in SI units, or one with its unit"),
+    "make": (f'{HEAD}{RANGE}{REST}make = "small"\n',
+        "outputs[1].make: got 'small'; give 'smallest' or 'largest'"),
+    "command": (f'{HEAD}{RANGE}{REST}of = "plan"\n',
+        "outputs[1].of: no command is called 'plan'; did you"),
+    "no value": (f"{HEAD}{RANGE}{REST}[[outputs]]\nname = 'a'\n",
+        'outputs[2].value: missing; add value = "shaking_force.y.rms"'),
+    "outputs twice": (f'{HEAD}{RANGE}{REST}[[outputs]]\nvalue = "drive_torque.rms"\n',
+        "outputs[2].name: got 'drive_torque.rms', which is the name of outputs[1]; give another"),
+    "output like a path": (f'{HEAD}{RANGE}{REST}name = "links.crank.mass"\n',
+        "outputs[1].name: got 'links.crank.mass', which is the path of vary[1]; give another"),
+    "both accuracies": (f"{HEAD}{RANGE}{REST}[accuracy]\nangles = 360\ntolerance = 1e-3\n",
+        "accuracy: got angles and tolerance; give one of both"),
+    "accuracy": (f"{HEAD}{RANGE}{REST}[accuracy]\ntolerance = 2\n",
+        "accuracy.tolerance: got 2; give 1e-12 to 0.1"),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize(("text", "said"), REFUSED.values(), ids=REFUSED)
-def test_wrong_files(tmp_path: Path, text: str, said: str) -> None:
+BEYOND_THE_SCHEMA = {
+    "empty vary", "model file", "wrong path", "path twice", "other dimension", "bare", "order",
+    "steps without grid", "grid without steps", "grid of a tolerance", "deviation 0",
+    "deviation of another kind", "unit of a plain number", "no designs", "many designs",
+    "designs of a grid", "seed of a grid", "correlated with what stays", "limit of another kind",
+    "bare limit", "outputs twice", "output like a path", "accuracy",
+}  # fmt: skip
+"""What the reader alone refuses, not the JSON Schema."""
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_wrong_files(tmp_path: Path, case: str) -> None:
+    text, said = REFUSED[case]
     with pytest.raises(ModelError) as caught:
         read(tmp_path, text)
     message = str(caught.value)
     assert message.startswith(f"{printable(tmp_path / 's.toml')}: ")
     assert said in message
     assert "\n" not in message
+    if case != NO_TOML:
+        assert SCHEMA.is_valid(tomllib.loads(text)) is (case in BEYOND_THE_SCHEMA)
 
 
 def test_no_file(tmp_path: Path) -> None:
