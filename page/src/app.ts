@@ -1,7 +1,7 @@
 /** The page as a whole: what it shows, and who tells whom. */
 
 import { Charts } from "./charts";
-import { Conversation } from "./conversation";
+import { Conversation, type Events, type Memory } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
 import { follow } from "./format";
@@ -64,8 +64,9 @@ export class App {
   constructor(
     wire: Wire,
     private readonly el: HTMLElement,
+    memory: Memory | null = null,
   ) {
-    this.talk = new Conversation(wire, {
+    const events: Events = {
       hello: (message) => this.greet(message),
       state: (state) => this.take(state),
       response: (message, numbers) => {
@@ -78,7 +79,8 @@ export class App {
       busy: (what) => this.busy(what),
       file: save,
       line: (up) => this.line(up),
-    });
+    };
+    this.talk = new Conversation(wire, events, memory);
     el.append(this.root);
     this.theme = new Theme(this.root, () => this.charts.repaint());
     const page = {
@@ -180,7 +182,7 @@ export class App {
     follow(hello.numbers);
     this.toolbar.offer(hello.examples);
     if (this.state) this.toolbar.show(this.state);
-    else if (first && !hello.machine) {
+    else if (first && !this.talk.recall() && !hello.machine) {
       const names = hello.examples.map(({ name }) => name);
       const example = names.find((name) => name === FIRST) ?? names[0];
       if (example) this.open({ type: "open", example });

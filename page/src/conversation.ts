@@ -16,6 +16,11 @@ export interface Events {
   line(up: boolean): void;
 }
 
+export interface Memory {
+  read(): string | null;
+  write(text: string): void;
+}
+
 interface Question {
   seq: number;
   asked: Asked;
@@ -39,9 +44,11 @@ export class Conversation {
   private story: Asked[] = [];
   private repeating = false;
 
+  /** `memory` is where what was done outlives a reload. */
   constructor(
     private readonly wire: Wire,
     private readonly events: Events,
+    private readonly memory: Memory | null,
   ) {
     wire.on("msg:custom", this.hear);
   }
@@ -85,7 +92,8 @@ export class Conversation {
     const question = this.queue.shift() ?? this.waiting;
     if (!question) return;
     if (question === this.waiting) this.waiting = null;
-    if (SLOW.has(question.asked.type)) this.aside.set(question.seq, question);
+    // What follows a balance in a story was done to its result.
+    if (SLOW.has(question.asked.type) && !this.repeating) this.aside.set(question.seq, question);
     else this.flight = question;
     this.wire.send({ ...question.asked, seq: question.seq });
     this.next();
@@ -143,7 +151,22 @@ export class Conversation {
     if (asked.type === "open") this.story = [asked];
     else if (REMEMBERED.has(asked.type) && !(asked.type === "edit" && !asked.commit)) {
       this.story.push(asked);
-    }
+    } else return;
+    this.memory?.write(JSON.stringify(this.story));
+  }
+
+  /** Do again what was done before the page was loaded; tells whether there was anything. */
+  recall(): boolean {
+    const text = this.memory?.read();
+    this.story = text ? (JSON.parse(text) as Asked[]) : [];
+    if (this.story.length) this.repeat(this.story);
+    return this.story.length > 0;
+  }
+
+  private repeat(story: Asked[]): void {
+    this.repeating = true;
+    for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
+    this.next();
   }
 
   /** A new connection knows nothing: tell it all that was done. */
@@ -155,9 +178,7 @@ export class Conversation {
     if (this.aside.size) this.events.busy(null);
     this.aside.clear();
     if (!up) return;
-    this.repeating = this.story.length > 0;
-    const story = this.story.length ? this.story : [{ type: "ready" } as const];
-    for (const asked of story) this.queue.push({ seq: ++this.seq, asked });
-    this.next();
+    if (this.story.length) this.repeat(this.story);
+    else this.ask({ type: "ready" });
   }
 }

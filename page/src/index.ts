@@ -1,6 +1,7 @@
 /** The live page: anywidget's `render` for notebooks, `connect` for the served page. */
 
 import { App } from "./app";
+import type { Memory } from "./conversation";
 import type { Wire } from "./protocol";
 import { Socket } from "./socket";
 
@@ -18,9 +19,25 @@ export function connect(el: HTMLElement, address: string): Socket {
   return new Socket(url.href);
 }
 
+/** What is done in a tab is kept while the server runs that its address belongs to. */
+function memory(address: string): Memory {
+  const key = `equipoise ${address}`;
+  return {
+    read: () => sessionStorage.getItem(key),
+    write: (text) => {
+      try {
+        sessionStorage.setItem(key, text);
+      } catch {
+        sessionStorage.removeItem(key); // more than the browser keeps
+      }
+    },
+  };
+}
+
 const main = document.querySelector<HTMLElement>("#equipoise-live[data-live]");
 if (main?.dataset.live && !main.childElementCount) {
-  render({ model: connect(main, main.dataset.live), el: main });
+  const { live } = main.dataset;
+  new App(connect(main, live), main, memory(live));
 }
 
 export default { render };

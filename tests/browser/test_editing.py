@@ -172,3 +172,31 @@ def test_a_phase_of_a_row_changes_the_forces_of_all_rows(live: Live) -> None:
 def test_the_response_of_a_rig_is_shown(live: Live) -> None:
     live.page.get_by_role("combobox", name="Example").select_option("yamashita-rig")
     expect(live.page.get_by_role("combobox", name="Response of")).to_be_visible()
+
+
+def test_what_was_done_outlives_a_reload(live: Live) -> None:
+    """The machine is there after the page is loaded anew, with what can be undone and redone."""
+    live.type(live.field("drive speed"), "150 rpm")
+    live.type(live.field("crank mass"), "333 g")
+    expect(live.button("Undo")).to_be_enabled()
+    live.button("Undo").click()
+    expect(live.field("crank mass")).not_to_have_value("333 g")
+    live.page.reload()
+    expect(live.field("drive speed")).to_have_value("150 rpm")
+    live.button("Redo").click()
+    expect(live.field("crank mass")).to_have_value("333 g")
+    live.button("Undo").click()
+    live.button("Undo").click()
+    expect(live.field("drive speed")).to_have_value("193 rpm")
+    expect(live.button("Undo")).to_be_disabled()
+
+
+def test_a_balance_outlives_a_reload(live: Live) -> None:
+    live.button("Balance").click()
+    live.button("Keep").click()
+    live.type(live.field("drive speed"), "150 rpm")
+    expect(live.button("Undo")).to_be_enabled()
+    balanced = live.machine()
+    live.page.reload()
+    expect(live.field("drive speed")).to_have_value("150 rpm")
+    assert live.machine() == balanced

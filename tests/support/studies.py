@@ -11,7 +11,7 @@ import pickle
 import signal
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,7 @@ from equipoise.studies.design_space import Choices, Normal, Output, Range, Sampl
 from equipoise.studies.executors import Task
 from equipoise.studies.outcomes import Block, Outcome
 from equipoise.studies.sampling import samples
+from equipoise.studies.store import Store
 from equipoise.studies.study import Study, from_plain
 
 Array = np.ndarray[Any, Any]
@@ -98,6 +99,15 @@ class Formulas:
         reason = np.where(length < 0.062, NO_ASSEMBLY, np.where(speed > 22, NO_FULL_TURN, 0))
         figures[reason != 0] = np.nan
         return Outcome(figures, reason.astype(np.uint8))
+
+
+def filled(path: Path, study: Study, chunks: Iterable[int] = (0, 1, 2)) -> Store:
+    """A new store of a study, with designs in some of its chunks."""
+    store = run.create_store(path, study, study.chunk, "numba")
+    for designs in map(store.designs, chunks):
+        values = samples(study, designs.start, len(designs))
+        store.write(designs, Block(values, Formulas()(values)))
+    return store
 
 
 def contents(folder: Path) -> dict[str, bytes]:

@@ -10,7 +10,7 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
-from equipoise.mechanism.steps import Call, Group
+from equipoise.mechanism.steps import Call
 
 TYPES = {
     "frame": "double-crank (drag link)",
@@ -61,42 +61,35 @@ class FourBar:
 def four_bar(machine: Machine) -> FourBar | None:
     """Describe the four-bar at the crank of a machine, or return None if there is none."""
     linkage = assemble(machine)
+    drive, pivot = machine.drive.link, linkage.pivot
     for group in linkage.groups:
-        names = _members(linkage, group)
-        if names is not None:
-            return _describe(linkage, *names)
+        if not any(isinstance(s, Call) and s.kernel is kernels.rrr for s in group.motion):
+            continue
+        first, second, inner = group.reactions
+        if first.by == FRAME:
+            first, second = second, first
+        if (first.by, second.by) == (drive, FRAME):
+            a = _distance(machine, FRAME, pivot, second.at)
+            b = _distance(machine, drive, pivot, first.at)
+            c = _distance(machine, first.on, first.at, inner.at)
+            d = _distance(machine, second.on, second.at, inner.at)
+            return _described((drive, first.on, second.on), a, b, c, d)
     return None
 
 
-def _members(linkage: Linkage, group: Group) -> tuple[str, str, str, str, str] | None:
-    """Coupler, rocker, crank pin, inner pin and rocker pivot of a dyad between drive and frame."""
-    if not any(isinstance(s, Call) and s.kernel is kernels.rrr for s in group.motion):
-        return None
-    first, second, inner = group.reactions
-    drive = linkage.machine.drive.link
-    if first.by == FRAME:
-        first, second = second, first
-    if (first.by, second.by) != (drive, FRAME):
-        return None
-    return first.on, second.on, first.at, inner.at, second.at
-
-
-def _describe(
-    linkage: Linkage, coupler: str, rocker: str, crank_pin: str, pin: str, pivot: str
-) -> FourBar:
-    machine, drive = linkage.machine, linkage.machine.drive.link
-    a = _distance(machine, FRAME, linkage.pivot, pivot)
-    b = _distance(machine, drive, linkage.pivot, crank_pin)
-    c = _distance(machine, coupler, crank_pin, pin)
-    d = _distance(machine, rocker, pivot, pin)
+def _described(links: tuple[str, str, str], a: float, b: float, c: float, d: float) -> FourBar:
     grashof, kind = _class(a, b, c, d)
     turns = _condition_5(a, b, c, d)
-    low, high = _transmission(a, b, c, d) if turns else (None, None)
-    swing, ratio = _swing(a, b, c, d) if turns and kind == "crank-rocker" else (None, None)
+    low = high = swing = ratio = None
+    if turns:  # the extremes lie where the crank is in line with the frame
+        low, high = (_opposite(c, d, s) for s in (abs(a - b), a + b))
+    if turns and kind == "crank-rocker":  # it turns back where crank and coupler are in line
+        stretched, folded = b + c, abs(c - b)
+        swing = abs(_opposite(a, d, stretched) - _opposite(a, d, folded))
+        lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
+        ratio = (pi + lag) / (pi - lag)
     apart = not (isclose(a + b, c + d) or isclose(b + c, a + d))
-    lengths = (a, b, c, d)
-    names = (drive, coupler, rocker)
-    return FourBar(*names, *lengths, grashof, kind, low, high, swing, ratio, turns, apart)
+    return FourBar(*links, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
 
 
 def _distance(machine: Machine, body: str, one: str, other: str) -> float:
@@ -130,20 +123,6 @@ def _condition_5(a: float, b: float, c: float, d: float) -> bool:
         if abs(e_c) > 2 * c * s * (1 + 1e-12) or abs(e_a) > 2 * d * s * (1 + 1e-12):
             return False
     return True
-
-
-def _transmission(a: float, b: float, c: float, d: float) -> tuple[float, float]:
-    """Extremes lie where the crank is in line with the frame."""
-    low, high = (_opposite(c, d, s) for s in (abs(a - b), a + b))
-    return low, high
-
-
-def _swing(a: float, b: float, c: float, d: float) -> tuple[float, float]:
-    """The rocker turns back where crank and coupler are in line, stretched or folded."""
-    stretched, folded = b + c, abs(c - b)
-    swing = _opposite(a, d, stretched) - _opposite(a, d, folded)
-    lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
-    return abs(swing), (pi + lag) / (pi - lag)
 
 
 def _opposite(one: float, other: float, opposite: float) -> float:
@@ -185,9 +164,8 @@ def remarks(linkage: Linkage) -> Iterator[str]:
         px, py = next(iter(link.points.values()))
         if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
             yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
-    lone = [point for point in machine.frame if point not in linkage.joints.pins]
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
-    used |= {spring.to for spring in machine.springs}
-    for point in lone:
+    used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
+    for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from itertools import pairwise
 from math import pi
-from typing import ClassVar, Literal, Protocol
+from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
 from equipoise.keys import (
@@ -200,32 +200,22 @@ def _wrong_loads(where: str, table: LoadTable) -> Iterator[ModelError]:
         yield ModelError(where, "the columns differ in length")
 
 
-class SpringEnds(Protocol):
-    """A spring, or one that may be set, by its ends."""
-
-    @property
-    def link(self) -> str: ...
-    @property
-    def point(self) -> str: ...
-    @property
-    def to(self) -> str: ...
-
-
-def wrong_ends(where: str, spring: SpringEnds, bodies: Bodies) -> Iterator[ModelError]:
+def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:
     """What is wrong with the two points of a spring, or of one that may be set."""
-    if problem := [*unknown_link(f"{where}.link", spring.link, bodies)]:
+    link, point, to = spring.link, spring.point, spring.to
+    if problem := [*unknown_link(f"{where}.link", link, bodies)]:
         yield from problem
         return
-    points, frame = bodies[spring.link], bodies[FRAME]
-    if spring.point not in points:
-        sentence = unknown(spring.point, points, f"point of {spring.link}")
+    points, frame = bodies[link], bodies[FRAME]
+    if point not in points:
+        sentence = unknown(point, points, f"point of {link}")
         yield ModelError(f"{where}.point", sentence)
-    elif spring.to not in frame:
-        yield ModelError(f"{where}.to", unknown(spring.to, frame, "point of the frame"))
-    elif spring.point in frame:
+    elif to not in frame:
+        yield ModelError(f"{where}.to", unknown(to, frame, "point of the frame"))
+    elif point in frame:
         yield ModelError(
             f"{where}.point",
-            f"{spring.point!r} is pinned to the frame, where a spring does nothing; give a point "
+            f"{point!r} is pinned to the frame, where a spring does nothing; give a point "
             "that moves",
         )
 

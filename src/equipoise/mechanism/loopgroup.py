@@ -14,7 +14,7 @@ from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
-from equipoise.mechanism.model import Gear, Position, Slider
+from equipoise.mechanism.model import FRAME, Gear, Position, Slider
 from equipoise.mechanism.newton import (
     End,
     GearLoop,
@@ -24,7 +24,6 @@ from equipoise.mechanism.newton import (
     Pose,
     Poses,
     SlideLoop,
-    StartAngle,
 )
 from equipoise.mechanism.steps import (
     Array,
@@ -35,6 +34,7 @@ from equipoise.mechanism.steps import (
     Step,
     initial_state,
     p,
+    pin_reaction,
     run,
     u,
 )
@@ -175,7 +175,11 @@ class _Maker:
         reachable = {*self.builder.rank, *self.links}
         loops: list[Loop] = []
         for point, bodies in self.joints.pins.items():
-            loops += self.pins(point, [body for body in bodies if body in reachable])
+            if free := [body for body in bodies if body in self.links]:
+                known = [body for body in bodies if body in self.builder.rank]
+                hub = self.builder.carrier_of(known) if known else free[0]
+                held = [self.end(link, point) for link in free if link != hub]
+                loops += [PinLoop(point, end, self.end(hub, point)) for end in held]
         for slider in self.joints.sliders:
             ends = {slider.link, slider.on}
             if ends <= reachable and ends & set(self.links):
@@ -188,18 +192,6 @@ class _Maker:
                     before += self.builder.running_angle(body)
                 loops.append(self.gear(gear))
         return tuple(before), tuple(loops)
-
-    def pins(self, point: str, bodies: list[str]) -> list[Loop]:
-        known = [body for body in bodies if body in self.builder.rank]
-        free = [body for body in bodies if body in self.links]
-        if not free:
-            return []
-        hub = self.builder.carrier_of(known) if known else free[0]
-        return [
-            PinLoop(point, self.end(link, point), self.end(hub, point))
-            for link in free
-            if link != hub
-        ]
 
     def slide(self, slider: Slider) -> SlideLoop:
         """The link `on` is always one of the group; the line is the same seen from either."""
@@ -224,7 +216,7 @@ class _Maker:
         on, by = loop.on.body, loop.by.body
         force = f"R({loop.name}/{on})"
         if isinstance(loop, PinLoop):
-            return Reaction(loop.name, "pin", on, by, loop.name, force)
+            return pin_reaction(loop.name, on, by)
         if isinstance(loop, SlideLoop):
             couple = f"C({loop.name}/{on})"
             return Reaction(loop.name, "slider", on, by, loop.on.point, force, couple)
@@ -250,10 +242,13 @@ def _solve_start(
             f"got {degrees(position.crank_angle):g} deg; give the position at 0 deg, where the "
             "start angle of the gears holds",
         )
+    # Its gears stand still at the angle at which they start.
     stand_in = replace(
         group,
         equations=tuple(
-            StartAngle(loop, gears[loop.name].start) if isinstance(loop, GearLoop) else loop
+            replace(loop, carrier=FRAME, ratio=0.0, offset=gears[loop.name].start)
+            if isinstance(loop, GearLoop)
+            else loop
             for loop in loops
         ),
     )

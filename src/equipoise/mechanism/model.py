@@ -6,7 +6,7 @@ with; what it cannot do (turn fully, close) is found by `mechanism.linkage`.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any, ClassVar
 
@@ -226,29 +226,29 @@ class Machine(Frozen):
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""
-        planting = (
-            Planting(**changes) if self.planting is None else replace(self.planting, **changes)
-        )
-        return self._same_motion(replace(self, planting=planting), True)
+        old = self.planting
+        new = Planting(**changes) if old is None else replace(old, **changes)
+        return self._same_motion(replace(self, planting=new))
 
     def with_support(self, **changes: Any) -> Machine:
         """Return the machine with values of its support changed, or given for the first time."""
-        support = Support(**changes) if self.support is None else replace(self.support, **changes)
-        return self._same_motion(replace(self, support=support), True)
+        old = self.support
+        new = Support(**changes) if old is None else replace(old, **changes)
+        return self._same_motion(replace(self, support=new))
 
     def with_rows(self, rows: Iterable[Row]) -> Machine:
         """Return the machine with other rows of linkages."""
-        return self._same_motion(replace(self, rows=tuple(rows)), True)
+        return self._same_motion(replace(self, rows=tuple(rows)))
 
     def with_springs(self, springs: Iterable[Spring]) -> Machine:
         """Return the machine with other springs."""
-        return self._same_motion(replace(self, springs=tuple(springs)), True)
+        return self._same_motion(replace(self, springs=tuple(springs)))
 
     def with_balance(self, balance: Balance | None) -> Machine:
         """Return the machine with another plan of what may be changed, or with none."""
-        return self._same_motion(replace(self, balance=balance), True)
+        return self._same_motion(replace(self, balance=balance))
 
-    def _same_motion(self, changed: Machine, same: bool) -> Machine:
+    def _same_motion(self, changed: Machine, same: bool = True) -> Machine:
         """Hand on how the linkage is solved, where neither lengths nor joints have changed."""
         if same and "_linkage" in self.__dict__:
             changed.__dict__["_linkage"] = self.__dict__["_linkage"].of(changed)
@@ -262,6 +262,15 @@ class Machine(Frozen):
 # -- checks ----------------------------------------------------------------------------------------
 
 
+LISTS: Mapping[str, Callable[[str, Any, Bodies], Iterator[ModelError]]] = {
+    "sliders": wrong_slider,
+    "gears": wrong_gear,
+    "loads": wrong_load,
+    "springs": wrong_ends,
+}
+"""What is wrong with each of the lists."""
+
+
 def _problems(machine: Machine) -> Iterator[ModelError]:
     """Everything that is wrong with the values of a machine, the first things first."""
     bodies, motor = machine.bodies, machine.drive.motor
@@ -273,17 +282,16 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
     for name, link in machine.links.items():
         yield from wrong_link(f"links.{name}", name, link)
     yield from unknown_link("drive.link", machine.drive.link, bodies)
-    for where, slider in numbered("sliders", machine.sliders):
-        yield from wrong_slider(where, slider, bodies)
-    for where, gear in numbered("gears", machine.gears):
-        yield from wrong_gear(where, gear, bodies)
-    for where, load in numbered("loads", machine.loads):
-        yield from wrong_load(where, load, bodies)
+    for name, wrong in LISTS.items():
+        for where, item in numbered(name, getattr(machine, name)):
+            yield from wrong(where, item, bodies)
     if machine.position is not None:
-        yield from _wrong_position(machine.position, bodies)
-    yield from too_many("springs", machine.springs, MOST["springs"])
-    for where, spring in numbered("springs", machine.springs):
-        yield from wrong_ends(where, spring, bodies)
+        known = dict.fromkeys(point for link in machine.links.values() for point in link.points)
+        for point in machine.position.points:
+            if point not in known:
+                yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
+        for name in machine.position.angles:
+            yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
     if motor is not None:
         yield from wrong_motor("drive.motor", motor)
@@ -296,19 +304,10 @@ def _too_much(machine: Machine) -> Iterator[ModelError]:
     points = [(body, point) for body, points in machine.bodies.items() for point in points]
     yield from too_many("links", machine.links, MOST["links"])
     yield from too_many("points", points, MOST["points"])
-    for what in ("sliders", "gears", "loads"):
+    for what in LISTS:
         yield from too_many(what, getattr(machine, what), MOST[what])
     yield from wrong_text("title", machine.title)
     for body, names in machine.bodies.items():
         yield from wrong_text("links", body)
         for point in names:
             yield from wrong_text(f"points of {body}", point)
-
-
-def _wrong_position(position: Position, bodies: Bodies) -> Iterator[ModelError]:
-    known = {point for body in bodies if body != FRAME for point in bodies[body]}
-    for point in position.points:
-        if point not in known:
-            yield ModelError(f"position.points.{point}", unknown(point, known, "point"))
-    for link in position.angles:
-        yield from unknown_link(f"position.angles.{link}", link, bodies)

@@ -12,6 +12,7 @@ angles first, then any crank angle from the nearest one followed.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
 from math import degrees
 from typing import Any, ClassVar
@@ -66,11 +67,8 @@ class PinLoop:
 
     def gaps(self, poses: Poses, level: int) -> list[Any]:
         """What vanishes (level 0), and its first and second derivative."""
-        gap = (
-            poses[self.on.body].point(self.on.arm)[level]
-            - poses[self.by.body].point(self.by.arm)[level]
-        )
-        return [gap.real, gap.imag]
+        here, there = (poses[end.body].point(end.arm)[level] for end in (self.on, self.by))
+        return [(here - there).real, (here - there).imag]
 
     def place(self, poses: Poses) -> Any:
         """Where its force acts."""
@@ -144,22 +142,7 @@ class GearLoop:
         return [(kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
 
 
-@dataclass(frozen=True)
-class StartAngle:
-    """Stands in for a gear while the start is sought: its driven link has a given angle."""
-
-    gear: GearLoop
-    angle: float
-    unknowns: ClassVar[int] = 1
-
-    def gaps(self, poses: Poses, level: int) -> list[Any]:
-        turn = poses[self.gear.on.body].turn[level]
-        return [turn - self.angle if level == 0 else turn]
-
-
 Loop = PinLoop | SlideLoop | GearLoop
-Equation = Loop | StartAngle
-
 
 ITERATIONS = 25
 SETTLED = 1e-11
@@ -183,7 +166,7 @@ class LoopGroup:
     links: tuple[str, ...]
     anchors: tuple[str, ...]
     known: tuple[tuple[str, str], ...]
-    equations: tuple[Equation, ...]
+    equations: tuple[Loop, ...]
     start: tuple[float, ...]
     size: float
 
@@ -235,11 +218,10 @@ class LoopGroup:
         The first derivative of the gaps is linear in that of the unknowns, and the known bodies'
         part drops out of the difference.
         """
-        n = q.shape[0]
         still = {
             body: Pose((pose.place[0], 0, 0), (pose.turn[0], 0, 0)) for body, pose in known.items()
         }
-        unit = np.eye(n)[:, :, None] * np.ones(q.shape[1])
+        unit = np.eye(len(q))[:, :, None] * np.ones(q.shape[1])
         gaps = self.gaps(self.poses(still, np.broadcast_to(q, unit.shape), unit), 1)
         return np.moveaxis(gaps, (0, 1, 2), (2, 1, 0))
 
@@ -251,17 +233,18 @@ class LoopGroup:
                 gap = self.gaps(self.poses(known, q), 0)
                 step = self.divide(self.matrix(q, known), gap)
                 q = q - step
-                if not np.all(np.isfinite(q)):
+                if not np.all(np.isfinite(q)) or np.max(self.sizes(step)) < 1e-14:  # rounding error
                     break
-                if np.max(np.abs(step) / self.scale()[:, None]) < 1e-14:  # rounding error
-                    break
-            bad = ~(np.max(np.abs(step) / self.scale()[:, None], axis=0) < SETTLED)
+            bad = ~(np.max(self.sizes(step), axis=0) < SETTLED)
         if np.any(bad):
             raise MotionError(self.failure(theta[int(np.argmax(bad))]))
         return q
 
-    def scale(self) -> Array:
-        return np.tile([self.size, self.size, 1.0], len(self.links))
+    def sizes(self, steps: Array) -> Array:
+        """Steps of the unknowns (3 n, N) without dimension."""
+        scale = np.tile([self.size, self.size, 1.0], len(self.links))
+        sizes: Array = np.abs(steps) / scale[:, None]
+        return sizes
 
     def divide(self, matrix: Array, right: Array) -> Array:
         """Solve the loops' matrix (N, 3 n, 3 n) for a right-hand side (3 n, N)."""
@@ -285,10 +268,8 @@ class LoopGroup:
         together, every angle from the one before.
         """
         if len(theta) > 2 * STRIDE:
-            try:
+            with suppress(MotionError):
                 return self.follow_wide(start, known, theta)
-            except MotionError:
-                pass
         return self.follow_each(start, known, theta)
 
     def follow_wide(self, start: Array, known: Poses, theta: Array) -> Array:
@@ -301,7 +282,7 @@ class LoopGroup:
         q = self.solve(guess, known, theta)
         q1, _ = self.derivatives(q, known)
         bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
-        if np.max(np.abs(bent) / self.scale()[:, None]) > JUMP:
+        if np.max(self.sizes(bent)) > JUMP:
             raise MotionError(self.failure(theta[0]))
         return q
 
@@ -313,7 +294,7 @@ class LoopGroup:
             guess = here
             here = self.solve(guess, now, theta[k : k + 1])
             columns[:, k] = here[:, 0]
-            if k and np.max(np.abs(here - guess)[:, 0] / self.scale()) > 10 * JUMP:
+            if k and np.max(self.sizes(here - guess)) > 10 * JUMP:
                 raise MotionError(self.failure(theta[k]))
             if k + 1 < len(theta):
                 q1, q2 = self.derivatives(here, now)

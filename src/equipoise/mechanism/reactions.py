@@ -124,17 +124,13 @@ class Pass:
     @property
     def gears(self) -> dict[str, MeshForce]:
         """Pairs of gears, by name; the force is on the driven gear."""
-        gears = (r for r in self._reactions if r.kind == "gear")
+        gears = (r for r in self.motion.linkage.reactions if r.kind == "gear")
         return Named("pair of gears", ((r.name, self._mesh(r)) for r in gears))
 
     @property
     def flanks(self) -> State:
         """Which flank of each pair of gears is in contact, by name in the state."""
         return {name: value for name, value in self.state.items() if name.startswith("flank(")}
-
-    @property
-    def _reactions(self) -> tuple[Reaction, ...]:
-        return self.motion.linkage.reactions
 
     def _joint(self, reaction: Reaction) -> JointForce:
         order = self.motion.linkage.joints.bodies.index
@@ -173,15 +169,14 @@ def reactions(motion: Motion, demands: Mapping[str, Demand], like: Pass | None =
     state[f"F({FRAME})"], state[f"M({FRAME})"] = 0j, 0.0
     known = {} if like is None else like.flanks
     state.update(known)
-    run([step for step in motion.linkage.forces if not _tells(step, known)], state)
+
+    def is_known(step: Step) -> bool:
+        return isinstance(step, Call) and set(step.outputs) <= known.keys()
+
+    run([step for step in motion.linkage.forces if not is_known(step)], state)
     drive = motion.machine.drive.link
     state[f"R({motion.linkage.pivot}/{drive})"] = state[f"F({drive})"]
     return Pass(motion, state)
-
-
-def _tells(step: Step, known: Mapping[str, Any]) -> bool:
-    """Whether a step does nothing but find values that are known already."""
-    return isinstance(step, Call) and set(step.outputs) <= known.keys()
 
 
 def full(motion: Motion, value: Any, kind: type) -> Array:

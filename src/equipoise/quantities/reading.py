@@ -23,17 +23,14 @@ POWERS = {"2": "\N{SUPERSCRIPT TWO}", "3": "\N{SUPERSCRIPT THREE}"}
 """Exponents in units, and the sign for each that is read too."""
 
 
+@cache
 def pattern(dimension: Dimension) -> str:
     """Regular expression of exactly the texts that `parse` reads, in ECMA 262 syntax."""
-    units = sorted(map(_unit_pattern, KINDS[dimension].units), key=len, reverse=True)
-    return f"^({NUMBER}) +({'|'.join(units)})$"
-
-
-def _unit_pattern(unit: str) -> str:
-    text = unit.replace(" ", _SEPARATOR)
+    units = [unit.replace(" ", _SEPARATOR) for unit in KINDS[dimension].units]
     for digit, raised in POWERS.items():
-        text = text.replace(f"^{digit}", f"(?:(?:\\^|\\*\\*){digit}|{raised})")
-    return text
+        power = f"(?:(?:\\^|\\*\\*){digit}|{raised})"
+        units = [unit.replace(f"^{digit}", power) for unit in units]
+    return f"^({NUMBER}) +({'|'.join(sorted(units, key=len, reverse=True))})$"
 
 
 def plain_unit(unit: str) -> str:
@@ -65,14 +62,6 @@ _NAMES = {
     "kp": "kgf",
 }
 """Other spellings, only to suggest the right one."""
-
-
-def not_text(given: object, dimension: Dimension) -> str:
-    """Complain of a value that is no text."""
-    right = f'give number and unit in quotes, such as "{KINDS[dimension].example}"'
-    if isinstance(given, int | float) and not isinstance(given, bool):
-        return f"got the bare number {_shown(_digits(given))}; {right}"
-    return f"got {described(given)}; {right}"
 
 
 def described(given: object) -> str:
@@ -152,9 +141,10 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         return 'Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"'
     if plain in kind.units:
         return f'write "{number} {plain}"'
-    meant = _meant(unit, kind)
-    if meant is not None:
-        return f'did you mean "{number} {meant}"?'
+    name, bare = _NAMES.get(unit.strip().lower()), _bare(unit)
+    alike = [known for known in kind.units if bare and _bare(known) == bare]
+    if meant := [name] if name in kind.units else alike:
+        return f'did you mean "{number} {meant[0]}"?'
     other = _known(plain)
     if other is not None:
         return f"{plain} is the unit of {other.noun}; {wanted}"
@@ -163,14 +153,6 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
 
 def _known(unit: str) -> Kind | None:
     return next((kind for kind in KINDS.values() if unit in kind.units), None)
-
-
-def _meant(unit: str, kind: Kind) -> str | None:
-    name = _NAMES.get(unit.strip().lower())
-    if name in kind.units:
-        return name
-    bare = _bare(unit)
-    return next((known for known in kind.units if bare and _bare(known) == bare), None)
 
 
 def _bare(unit: str) -> str:
@@ -202,13 +184,15 @@ def parse(text: object, dimension: Dimension) -> float:
         One sentence: what was given and what would be right.
     """
     if not isinstance(text, str):
-        raise UsageError(not_text(text, dimension))
-    match = _grammar(dimension).fullmatch(text)
+        got = described(text).replace("the number", "the bare number", 1)
+        right = f'give number and unit in quotes, such as "{KINDS[dimension].example}"'
+        raise UsageError(f"got {got}; {right}")
+    match = re.fullmatch(pattern(dimension), text)
     if match is None:
         raise UsageError(wrong_text(text, dimension))
     with localcontext() as context:
         context.prec = _DIGITS
-        value = float(Decimal(match[1]) * _factor(plain_unit(match[2])))
+        value = float(Decimal(match[1]) * Decimal(FACTORS[plain_unit(match[2])]))
     if not isfinite(value) or abs(value) > HUGE or 0 < abs(value) < TINY:
         raise UsageError(too_far(text))
     return value
@@ -232,11 +216,8 @@ def format_exact(value: float, dimension: Dimension) -> str:
     kind = KINDS[dimension]
     if value == 0:
         return f"0 {kind.printed[0]}"
-    numbers = [(number, unit) for unit in kind.printed if (number := _short(value, unit))]
-    if not numbers:
-        return f"{value!r} {kind.si}"
-    number, unit = min(numbers, key=lambda pair: len(pair[0]))
-    return f"{number} {unit}"
+    short = [text for unit in kind.printed if (text := _short(value, unit))]
+    return min(short, key=lambda text: len(text.split()[0]), default=f"{value!r} {kind.si}")
 
 
 def rounded(value: float, unit: str, digits: int) -> str:
@@ -244,30 +225,19 @@ def rounded(value: float, unit: str, digits: int) -> str:
     return f"{_digits_of(_rounded(value, unit, digits))} {unit}"
 
 
-@cache
-def _grammar(dimension: Dimension) -> re.Pattern[str]:
-    return re.compile(pattern(dimension))
-
-
-def _factor(unit: str) -> Decimal:
-    """SI units in one `unit`."""
-    return Decimal(FACTORS[unit])
-
-
 def _short(value: float, unit: str) -> str | None:
-    """Digits of `value` in `unit` if at most 15 of them give the same float back."""
+    """`value` in `unit` if at most 15 digits give the same float back."""
     number = _rounded(value, unit, 15)
     with localcontext() as context:
         context.prec = _DIGITS
-        exact = float(number * _factor(unit)) == value
-    return _digits_of(number) if exact else None
+        exact = float(number * Decimal(FACTORS[unit])) == value
+    return f"{_digits_of(number)} {unit}" if exact else None
 
 
 def _rounded(value: float, unit: str, digits: int) -> Decimal:
-    factor = _factor(unit)
     with localcontext() as context:
         context.prec = _DIGITS
-        exact = Decimal(value) / factor
+        exact = Decimal(value) / Decimal(FACTORS[unit])
         context.prec = digits
         return (+exact).normalize()
 

@@ -47,19 +47,24 @@ class Kind:
     ----------
     noun : with its article.
     units : all that are accepted, and SI units in each; the SI unit first.
-    printed : those that `format_exact` tries before the SI unit, the most usual first.
     example : a quantity for error messages and the JSON Schema.
+    usual : those that `format_exact` tries, the most usual first; the SI unit if there are none.
     """
 
     noun: str
     units: Mapping[str, str]
-    printed: tuple[str, ...]
     example: str
+    usual: tuple[str, ...] = ()
 
     @property
     def si(self) -> str:
         """The SI unit."""
         return next(iter(self.units))
+
+    @property
+    def printed(self) -> tuple[str, ...]:
+        """The units that `format_exact` tries."""
+        return self.usual or (self.si,)
 
 
 KINDS: dict[Dimension, Kind] = {
@@ -74,8 +79,8 @@ KINDS: dict[Dimension, Kind] = {
             "in": "0.0254",
             "ft": "0.3048",
         },
-        printed=("mm", "m"),
         example="33.5 mm",
+        usual=("mm", "m"),
     ),
     "angle": Kind(
         "an angle",
@@ -84,8 +89,8 @@ KINDS: dict[Dimension, Kind] = {
             "deg": "0.01745329251994329576923690768",
             "turn": "6.283185307179586476925286767",
         },
-        printed=("deg", "rad"),
         example="-83 deg",
+        usual=("deg", "rad"),
     ),
     "mass": Kind(
         "a mass",
@@ -97,8 +102,8 @@ KINDS: dict[Dimension, Kind] = {
             "lb": "0.45359237",
             "oz": "0.028349523125",
         },
-        printed=("g", "kg"),
         example="199 g",
+        usual=("g", "kg"),
     ),
     "inertia": Kind(
         "a moment of inertia",
@@ -115,8 +120,8 @@ KINDS: dict[Dimension, Kind] = {
             "kgf cm s^2": "0.0980665",
             "gf cm s^2": "0.0000980665",
         },
-        printed=("kg mm^2", "kg m^2"),
         example="30 kg mm^2",
+        usual=("kg mm^2", "kg m^2"),
     ),
     "angular speed": Kind(
         "an angular speed",
@@ -126,8 +131,8 @@ KINDS: dict[Dimension, Kind] = {
             "turn/s": "6.283185307179586476925286767",
             "rpm": "0.1047197551196597746154214461",
         },
-        printed=("rpm", "rad/s"),
         example="193 rpm",
+        usual=("rpm", "rad/s"),
     ),
     "angular acceleration": Kind(
         "an angular acceleration",
@@ -136,13 +141,12 @@ KINDS: dict[Dimension, Kind] = {
             "deg/s^2": "0.01745329251994329576923690768",
             "rpm/s": "0.1047197551196597746154214461",
         },
-        printed=("rad/s^2", "rpm/s"),
         example="0 rad/s^2",
+        usual=("rad/s^2", "rpm/s"),
     ),
     "acceleration": Kind(
         "an acceleration",
         {"m/s^2": "1", "mm/s^2": "0.001", "ft/s^2": "0.3048", "gn": "9.80665"},
-        printed=("m/s^2",),
         example="-9.80665 m/s^2",
     ),
     "force": Kind(
@@ -155,7 +159,6 @@ KINDS: dict[Dimension, Kind] = {
             "gf": "0.00980665",
             "lbf": "4.4482216152605",
         },
-        printed=("N",),
         example="12 N",
     ),
     "torque": Kind(
@@ -171,7 +174,6 @@ KINDS: dict[Dimension, Kind] = {
             "lbf ft": "1.3558179483314004",
             "lbf in": "0.1129848290276167",
         },
-        printed=("N m",),
         example="1.5 N m",
     ),
     "speed": Kind(
@@ -183,15 +185,15 @@ KINDS: dict[Dimension, Kind] = {
             "km/h": "0.2777777777777777777777777778",
             "ft/s": "0.3048",
         },
-        printed=("m/s", "km/h"),
         example="0.3 m/s",
+        usual=("m/s", "km/h"),
     ),
-    "frequency": Kind("a frequency", {"Hz": "1", "kHz": "1000"}, printed=("Hz",), example="50 Hz"),
+    "frequency": Kind("a frequency", {"Hz": "1", "kHz": "1000"}, example="50 Hz"),
     "time": Kind(
         "a time",
         {"s": "1", "ms": "0.001", "min": "60", "h": "3600"},
-        printed=("s", "h", "min"),
         example="2 s",
+        usual=("s", "h", "min"),
     ),
     "stiffness": Kind(
         "a stiffness",
@@ -204,19 +206,16 @@ KINDS: dict[Dimension, Kind] = {
             "kgf/mm": "9806.65",
             "lbf/in": "175.1268352464763779527559055",
         },
-        printed=("N/m",),
         example="20 kN/m",
     ),
     "damping": Kind(
         "a damping coefficient",
         {"N s/m": "1", "N s/mm": "1000", "kN s/m": "1000", "kgf s/m": "9.80665"},
-        printed=("N s/m",),
         example="300 N s/m",
     ),
     "damping per length": Kind(
         "a damping coefficient per length",
         {"N s/m^2": "1", "kN s/m^2": "1000"},
-        printed=("N s/m^2",),
         example="300 N s/m^2",
     ),
     "torsional stiffness": Kind(
@@ -227,18 +226,14 @@ KINDS: dict[Dimension, Kind] = {
             "N m/deg": "57.29577951308232087679815481",
             "kgf m/rad": "9.80665",
         },
-        printed=("N m/rad",),
         example="500 N m/rad",
     ),
     "torsional damping": Kind(
         "a torsional damping coefficient",
         {"N m s/rad": "1", "N m s/deg": "57.29577951308232087679815481", "kgf m s/rad": "9.80665"},
-        printed=("N m s/rad",),
         example="3 N m s/rad",
     ),
-    "power": Kind(
-        "a power", {"W": "1", "mW": "0.001", "kW": "1000"}, printed=("W",), example="40 W"
-    ),
+    "power": Kind("a power", {"W": "1", "mW": "0.001", "kW": "1000"}, example="40 W"),
     "density": Kind(
         "a density",
         {
@@ -247,12 +242,9 @@ KINDS: dict[Dimension, Kind] = {
             "kg/dm^3": "1000",
             "lb/in^3": "27679.90471020312119364396209",
         },
-        printed=("kg/m^3",),
         example="7850 kg/m^3",
     ),
-    "energy": Kind(
-        "an energy", {"J": "1", "mJ": "0.001", "kJ": "1000"}, printed=("J",), example="12 J"
-    ),
+    "energy": Kind("an energy", {"J": "1", "mJ": "0.001", "kJ": "1000"}, example="12 J"),
     "bending stiffness": Kind(
         "a bending stiffness",
         {
@@ -264,14 +256,13 @@ KINDS: dict[Dimension, Kind] = {
             "kgf mm^2": "0.00000980665",
             "lbf in^2": "0.00286981465730146418",
         },
-        printed=("N m^2",),
         example="980 N m^2",
     ),
     "mass per length": Kind(
         "a mass per length",
         {"kg/m": "1", "g/m": "0.001", "kg/mm": "1000", "lb/ft": "1.488163943569553805774278215"},
-        printed=("g/m", "kg/m"),
         example="2.3 kg/m",
+        usual=("g/m", "kg/m"),
     ),
     "modulus": Kind(
         "a modulus of elasticity",
@@ -284,8 +275,8 @@ KINDS: dict[Dimension, Kind] = {
             "kgf/mm^2": "9806650",
             "psi": "6894.757293168361336722673445",
         },
-        printed=("GPa", "MPa"),
         example="70 GPa",
+        usual=("GPa", "MPa"),
     ),
     "unbalance": Kind(
         "an unbalance",
@@ -297,8 +288,8 @@ KINDS: dict[Dimension, Kind] = {
             "g mm": "0.000001",
             "oz in": "0.000720077887375",
         },
-        printed=("g mm", "kg m"),
         example="300 g mm",
+        usual=("g mm", "kg m"),
     ),
 }
 

@@ -7,7 +7,6 @@ import builtins
 import inspect
 import keyword
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +21,9 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import FRAME, Machine
+from laws.transforms import renamed
 from support.batches import by_numpy, every_dyad, known_of, same_figures, signals_of
-from support.designs import drawn, numbers_of, paths_of
+from support.designs import design, drawn, numbers_of, paths_of
 from support.machines import KINDS, make
 from unit.mechanism.build import four_bar
 
@@ -63,10 +63,8 @@ def test_state_calls_kernels_on_what_it_knows(kind: str) -> None:
 
 def test_numbers_are_not_in_the_source() -> None:
     """Machines of one build share a loop, whatever their lengths, masses and speed."""
-    one, other = make("crank_rocker", 1).machine, make("crank_rocker", 1).machine
+    one = make("crank_rocker", 1).machine
     numbers = numbers_of(one, 0.02)
-    from support.designs import design
-
     other = design(one, numbers, drawn(numbers, 1, 3)[0])
     assert other != one
     assert source_of(one).text == source_of(other).text
@@ -134,42 +132,6 @@ STRANGE = {
 }
 
 
-def renamed(machine: Machine, rename: Callable[[int, str], str]) -> tuple[Machine, dict[str, str]]:
-    """A machine with other names of links and points, and what each name has become."""
-    points = dict.fromkeys([*machine.frame, *(p for b in machine.links.values() for p in b.points)])
-    new = {name: rename(k, name) for k, name in enumerate([*points, *machine.links])}
-    new[FRAME] = FRAME
-    links = {
-        new[name]: replace(link, points={new[p]: place for p, place in link.points.items()})
-        for name, link in machine.links.items()
-    }
-    changed = replace(
-        machine,
-        drive=replace(machine.drive, link=new[machine.drive.link]),
-        frame={new[name]: place for name, place in machine.frame.items()},
-        links=links,
-        assembly={new[name]: side for name, side in machine.assembly.items()},
-        sliders=tuple(
-            replace(s, link=new[s.link], point=new[s.point], on=new[s.on], through=new[s.through])
-            for s in machine.sliders
-        ),
-        gears=tuple(
-            replace(g, driver=new[g.driver], driven=new[g.driven], carrier=new[g.carrier])
-            for g in machine.gears
-        ),
-        loads=tuple(
-            replace(
-                load, link=new[load.link], point=None if load.point is None else new[load.point]
-            )
-            for load in machine.loads
-        ),
-        springs=tuple(
-            replace(s, link=new[s.link], point=new[s.point], to=new[s.to]) for s in machine.springs
-        ),
-    )
-    return changed, new
-
-
 @pytest.fixture
 def numpy_engine(tmp_path: Path) -> Iterator[None]:
     with by_numpy(tmp_path):
@@ -183,7 +145,9 @@ def same_under_other_names(
 
     signals : of the machine, each with the pattern of its name.
     """
-    other, new = renamed(base, rename)
+    points = dict.fromkeys([*base.frame, *(p for b in base.links.values() for p in b.points)])
+    new = {name: rename(k, name) for k, name in enumerate([*points, *base.links])} | {FRAME: FRAME}
+    other = renamed(base, new.__getitem__)
     numbers = numbers_of(other, 1e-3)
     values = drawn(numbers, 3, 1)
     values[0] = [number.value for number in numbers]

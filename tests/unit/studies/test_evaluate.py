@@ -335,22 +335,29 @@ def test_the_tip_never_reaches_the_soil() -> None:
     assert found.figures[2, 1] == 1  # what can be told is told
 
 
-def test_a_figure_that_some_machines_lack() -> None:
-    given = study("transplanter", "planting.tray[2].y", *asked("plant", "pick_up.velocity.size"))
-    own = given.model.number(given.paths[0])[0]
-    found = computed(given, own, own + 10.0)
-    assert [REASONS[k] for k in found.reason.tolist()] == ["computed", "no such figure"]
+TRAY, ROD = "planting.tray[2].y", "links.rod.mass"
+HIGH = template("transplanter").number(TRAY)[0]
 
 
-def test_figures_that_do_not_stand_still() -> None:
-    given = study("slider-crank-engine", "links.rod.mass", "frame_force.peak", tolerance=1e-9)
-    assert REASONS[int(computed(given).reason[0])] == "figures do not stand still"
-
-
-def test_what_cannot_be_computed() -> None:
-    given = study("yamashita-rig", "drive.speed", *asked("respond", "gauges.gauge.rms"))
-    found = computed(given, 20.0, 0.0)  # a crank that stands still shakes nothing
-    assert [REASONS[k] for k in found.reason.tolist()] == ["computed", "cannot be computed"]
+@pytest.mark.parametrize(
+    ("given", "values", "reasons"),
+    [
+        pytest.param(
+            study("transplanter", TRAY, *asked("plant", "pick_up.velocity.size")),
+            (HIGH, HIGH + 10.0), ["computed", "no such figure"], id="a tip that does not reach",
+        ),
+        pytest.param(
+            study("slider-crank-engine", ROD, "frame_force.peak", tolerance=1e-9),
+            (), ["figures do not stand still"], id="restless",
+        ),
+        pytest.param(
+            study("yamashita-rig", "drive.speed", *asked("respond", "gauges.gauge.rms")),
+            (20.0, 0.0), ["computed", "cannot be computed"], id="a crank that stands still",
+        ),
+    ],
+)  # fmt: skip
+def test_other_reasons(given: Study, values: tuple[float, ...], reasons: list[str]) -> None:
+    assert [REASONS[k] for k in computed(given, *values).reason.tolist()] == reasons
 
 
 # -- before anything is run ------------------------------------------------------------------------

@@ -18,24 +18,31 @@ COUPLER = "links.coupler.center_of_mass"
 WEIGHT = "counterweights.crank"
 
 
+TEMPLATE = eq.schema.Template.load
+
+
 def over_coupler(count: int = 13) -> Landscape:
     """Their Fig. 9."""
     over = {
         f"{COUPLER}.x": np.linspace(-0.06, 0.06, count),
         f"{COUPLER}.y": np.linspace(-0.04, 0.08, count),
     }
-    return landscape(eq.schema.Template.load("yamashita-2"), over, RIPPLE)
+    return landscape(TEMPLATE("yamashita-2"), over, RIPPLE)
 
 
-def over_counterweight(count: int = 13) -> Landscape:
+def over_counterweight(
+    count: int = 13,
+    radius: float = 0.07,
+    directions: tuple[float, float] = (0.0, 2 * pi),
+    mass: float | None = 1.145,
+) -> Landscape:
     """Their Fig. 12."""
     over = {
-        f"{WEIGHT}.radius": np.linspace(0.0, 0.07, count),
-        f"{WEIGHT}.direction": np.linspace(0.0, 2 * pi, count),
+        f"{WEIGHT}.radius": np.linspace(0.0, radius, count),
+        f"{WEIGHT}.direction": np.linspace(*directions, count),
     }
-    return landscape(
-        eq.schema.Template.load("yamashita-1"), over, RIPPLE, {f"{WEIGHT}.mass": 1.145}
-    )
+    given = {} if mass is None else {f"{WEIGHT}.mass": mass}
+    return landscape(TEMPLATE("yamashita-1"), over, RIPPLE, given)
 
 
 def lowest(found: Landscape) -> tuple[float, float]:
@@ -96,7 +103,7 @@ def test_each_point_is_what_an_analysis_of_that_machine_gives() -> None:
 def test_quick_and_slow_way_agree(name: str, objective: eq.balancing.Objective) -> None:
     from equipoise.balancing.problem import Problem
 
-    model = eq.schema.Template.load(name)
+    model = TEMPLATE(name)
     over = {"links.coupler.mass": [0.3, 0.5, 0.9], "links.rocker.inertia": [1e-5, 4e-4]}
     found = landscape(model, over, objective)
     for row, inertia in enumerate(found.y):
@@ -112,9 +119,7 @@ def test_what_cannot_turn_has_no_value() -> None:
         "links.crank.points.B.x": np.linspace(0.011, 0.081, 8),
         "links.coupler.points.C.x": np.linspace(0.041, 0.151, 8),
     }
-    found = landscape(
-        eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_force")
-    )
+    found = landscape(TEMPLATE("yamashita-1"), over, eq.balancing.Objective("shaking_force"))
     for row, coupler in enumerate(found.y):
         for column, crank in enumerate(found.x):
             bars = sorted([crank, coupler, 0.08, 0.088])
@@ -122,71 +127,40 @@ def test_what_cannot_turn_has_no_value() -> None:
             assert np.isnan(found.values[row, column]) != turns
 
 
-BAD: dict[str, tuple[dict[str, Any], str, dict[str, float]]] = {
-    "one number": ({"links.crank.mass": [1, 2]}, "give two paths", {}),
-    "unknown number": (
-        {"links.crank.mas": [1, 2], "links.rocker.mass": [1, 2]},
-        "did you mean 'links.crank.mass'",
-        {},
-    ),
-    "unknown link": (
-        {"counterweights.cran.mass": [1, 2], "links.rocker.mass": [1, 2]},
-        "did you mean 'crank'",
-        {},
-    ),
-    "falling": ({"links.crank.mass": [2, 1], "links.rocker.mass": [1, 2]}, "rising", {}),
-    "below nothing": (
-        {"counterweights.crank.mass": [-1, 2], "links.rocker.mass": [1, 2]},
-        "give 0 or more",
-        {},
-    ),
-    "set too": (
-        {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]},
-        "is set too",
-        {"links.crank.mass": 1.0},
-    ),
-    "never turns": (
-        {"links.crank.points.B.x": [1, 2], "links.rocker.mass": [1, 2]},
-        "no linkage turns",
-        {},
-    ),
+ROCKER = {"links.rocker.mass": [1, 2]}
+BAD: dict[str, tuple[dict[str, Any], str]] = {
+    "one number": ({"links.crank.mass": [1, 2]}, "give two paths"),
+    "unknown number": ({"links.crank.mas": [1, 2], **ROCKER}, "did you mean 'links.crank.mass'"),
+    "unknown link": ({"counterweights.cran.mass": [1, 2], **ROCKER}, "did you mean 'crank'"),
+    "falling": ({"links.crank.mass": [2, 1], **ROCKER}, "rising"),
+    "below nothing": ({"counterweights.crank.mass": [-1, 2], **ROCKER}, "give 0 or more"),
+    "set too": ({"links.coupler.mass": [1, 2], **ROCKER}, "is set too"),
+    "never turns": ({"links.crank.points.B.x": [1, 2], **ROCKER}, "no linkage turns"),
 }
 
 
 @pytest.mark.parametrize("name", BAD)
 def test_what_cannot_be_drawn_is_told(name: str) -> None:
-    over, words, given = BAD[name]
+    over, words = BAD[name]
     with pytest.raises(EquipoiseError, match=words):
-        landscape(eq.schema.Template.load("yamashita-1"), over, RIPPLE, given)
+        landscape(TEMPLATE("yamashita-1"), over, RIPPLE, {"links.coupler.mass": 1.0})
 
 
 def test_an_unknown_output_and_what_is_no_linkage_are_told() -> None:
     over: Any = {"links.crank.mass": [1, 2], "links.rocker.mass": [1, 2]}
     with pytest.raises(EquipoiseError, match="did you mean 'shaking_force'"):
-        landscape(
-            eq.schema.Template.load("yamashita-1"), over, eq.balancing.Objective("shaking_forc")
-        )
+        landscape(TEMPLATE("yamashita-1"), over, eq.balancing.Objective("shaking_forc"))
     with pytest.raises(EquipoiseError, match=r"Template\.of\(machine\)"):
         landscape(eq.load("yamashita-1"), over, RIPPLE)  # type: ignore[arg-type]
     with pytest.raises(EquipoiseError, match="this is a tool"):
-        landscape(eq.schema.Template.load("pole-saw"), over, RIPPLE)
+        landscape(TEMPLATE("pole-saw"), over, RIPPLE)
 
 
 def test_a_counterweight_without_mass_is_no_map() -> None:
-    over = {
-        f"{WEIGHT}.radius": np.linspace(0, 0.06, 5),
-        f"{WEIGHT}.direction": np.linspace(0, 6, 5),
-    }
     with pytest.raises(EquipoiseError, match=r"no mass; set counterweights\.crank\.mass"):
-        landscape(eq.schema.Template.load("yamashita-1"), over, RIPPLE)
+        over_counterweight(5, mass=None)
 
 
 def test_a_least_at_the_end_of_a_range_is_told() -> None:
     assert over_counterweight().at_edge == []
-    over = {
-        f"{WEIGHT}.radius": np.linspace(0, 0.03, 5),
-        f"{WEIGHT}.direction": np.linspace(3.0, 4.0, 5),
-    }
-    model = eq.schema.Template.load("yamashita-1")
-    found = landscape(model, over, RIPPLE, {f"{WEIGHT}.mass": 1.145})
-    assert found.at_edge == [f"{WEIGHT}.radius"]
+    assert over_counterweight(5, 0.03, (3.0, 4.0)).at_edge == [f"{WEIGHT}.radius"]

@@ -48,6 +48,12 @@ def formula(function: Any, failing: Any = None) -> Evaluator:
     return compute
 
 
+def searched(outputs: tuple[Output, ...], function: Any, failing: Any = None, **given: Any) -> Any:
+    """The search of a study of these outputs over the unit cube, or other spreads."""
+    some = of(*outputs, spreads=given.pop("spreads", UNIT))
+    return search_designs(some, compute=formula(function, failing), **given)
+
+
 def bowl(x: Array, y: Array, z: Array) -> list[Array]:
     return [(x - 0.3) ** 2 + (y - 0.6) ** 2 + (z - 0.9) ** 2]
 
@@ -62,7 +68,7 @@ def two_bowls(x: Array, y: Array, z: Array) -> list[Array]:
 
 
 def test_one_objective() -> None:
-    found = search_designs(of(*made("f")), compute=formula(bowl), population=30, generations=100)
+    found = searched(made("f"), bowl, population=30, generations=100)
     assert found.values[0] == pytest.approx([0.3, 0.6, 0.9], abs=2e-3)
     assert len(found.values) == found.front == 1
     assert np.all(np.diff(found.volumes) <= 0)
@@ -70,11 +76,8 @@ def test_one_objective() -> None:
 
 
 def test_the_largest() -> None:
-    found = search_designs(
-        of(*made("f", make="largest")),
-        compute=formula(lambda *at: [5 - one for one in bowl(*at)]),
-        population=30,
-    )
+    upside_down = lambda *at: [5 - one for one in bowl(*at)]  # noqa: E731
+    found = searched(made("f", make="largest"), upside_down, population=30)
     assert found.figures[0, 0] == pytest.approx(5, abs=1e-4)
     assert found.volumes[-1] == found.figures[0, 0]
     assert found.stood_still
@@ -84,11 +87,8 @@ def test_the_largest() -> None:
 def test_limits_and_failures() -> None:
     """The best lies in the corner of a limit and of a region where nothing can be computed."""
     outputs = (*made("f"), Output("x", value="a.c", at_least=0.5), Output("free", value="a.d"))
-    found = search_designs(
-        of(*outputs),
-        compute=formula(lambda x, y, z: [*bowl(x, y, z), x, z], lambda x, y, z: y > 0.5),
-        population=30,
-    )
+    figures, failing = lambda x, y, z: [*bowl(x, y, z), x, z], lambda x, y, z: y > 0.5
+    found = searched(outputs, figures, failing, population=30)
     assert found.values[0] == pytest.approx([0.5, 0.5, 0.9], abs=2e-3)
     assert found.values[0, 0] >= 0.5
     assert 0 < found.failures["does not assemble"] < found.computed
@@ -96,12 +96,8 @@ def test_limits_and_failures() -> None:
 
 def test_lists_and_whole_numbers() -> None:
     spreads = (Choices((0.9, 0.1, 0.35)), Range(-3, 12, whole=True), Range(0.0, 1.0))
-    found = search_designs(
-        of(*made("f"), spreads=spreads),
-        compute=formula(lambda x, y, z: bowl(x, y / 10, z)),
-        population=20,
-        generations=60,
-    )
+    given: dict[str, Any] = {"spreads": spreads, "population": 20, "generations": 60}
+    found = searched(made("f"), lambda x, y, z: bowl(x, y / 10, z), **given)
     assert found.values[0, :2].tolist() == [0.35, 6.0]
     assert found.values[0, 2] == pytest.approx(0.9, abs=0.01)
 
@@ -110,7 +106,7 @@ def test_lists_and_whole_numbers() -> None:
 
 
 def test_a_front_that_is_known() -> None:
-    found = search_designs(of(*made("f", "g")), compute=formula(two_bowls), population=60)
+    found = searched(made("f", "g"), two_bowls, population=60)
     x, y, z = found.values.T
     assert np.all((x > 0.19) & (x < 0.81))
     assert max(np.max(abs(y - 0.5)), np.max(abs(z - 0.5))) < 0.03
@@ -124,11 +120,8 @@ def test_a_front_that_is_known() -> None:
 def test_one_down_and_one_up() -> None:
     """Largest x for smallest x squared, where y only harms: the front is y = 0."""
     outputs = (*made("low"), *made("high", make="largest"))
-    found = search_designs(
-        of(*outputs),
-        compute=formula(lambda x, y, z: [x**2 + y, x - y - (z - 0.5) ** 2]),
-        population=40,
-    )
+    figures = lambda x, y, z: [x**2 + y, x - y - (z - 0.5) ** 2]  # noqa: E731
+    found = searched(outputs, figures, population=40)
     assert found.figures[:, 1] == pytest.approx(np.sqrt(found.figures[:, 0]), abs=0.02)
     assert np.ptp(found.figures[:, 1]) > 0.9
 
@@ -140,34 +133,28 @@ def test_many_objectives() -> None:
     def distances(x: Array, y: Array, z: Array) -> list[Array]:
         return [(x - a) ** 2 + (y - b) ** 2 + (z - c) ** 2 for a, b, c in corners]
 
-    found = search_designs(
-        of(*made("a", "b", "c", "d")), compute=formula(distances), population=84, generations=40
-    )
+    found = searched(made("a", "b", "c", "d"), distances, population=84, generations=40)
     assert np.mean(np.sum(found.values, axis=1) < 1.1) > 0.85
     assert len(found.values) == 84
     assert np.all(np.min(found.figures, axis=0) < 0.03)
 
 
 def test_the_volume_grows_until_it_stands_still() -> None:
-    found = search_designs(of(*made("f", "g")), compute=formula(two_bowls), population=40)
+    found = searched(made("f", "g"), two_bowls, population=40)
     assert np.all(np.diff(found.volumes) >= -1e-12)
     assert found.stood_still
     assert found.generations == len(found.volumes) < 200
-    few = search_designs(
-        of(*made("f", "g")), compute=formula(two_bowls), population=40, generations=3
-    )
+    few = searched(made("f", "g"), two_bowls, population=40, generations=3)
     assert (few.generations, few.stood_still) == (3, False)
 
 
 def test_the_same_seed_gives_the_same() -> None:
     told: list[tuple[int, ...]] = []
-    some = of(*made("f", "g"))
+    small = {"population": 20, "generations": 12}
 
     def run(seed: int | None = None, **given: Any) -> Array:
-        compute = formula(two_bowls)
-        return search_designs(
-            some, compute=compute, population=20, generations=12, seed=seed, **given
-        ).values
+        values: Array = searched(made("f", "g"), two_bowls, seed=seed, **small, **given).values
+        return values
 
     first = run(progress=lambda *at: told.append(at))
     assert np.array_equal(run(1), first)
@@ -218,18 +205,13 @@ def test_what_cannot_be_searched(some: Study, told: str) -> None:
 )
 def test_sizes(given: dict[str, int], told: str) -> None:
     with pytest.raises(UsageError, match=re.escape(told)):
-        search_designs(of(*made("f")), compute=formula(bowl), **given)
+        searched(made("f"), bowl, **given)
 
 
 def test_nothing_keeps_the_limits() -> None:
     outputs = (*made("f"), Output("x", value="a.c", at_least=2.0))
     with pytest.raises(UsageError, match=r"^none of \d+ designs keeps every limit; kept is 2 <= x"):
-        search_designs(
-            of(*outputs),
-            compute=formula(lambda x, y, z: [x, y]),
-            population=8,
-            generations=3,
-        )
+        searched(outputs, lambda x, y, z: [x, y], population=8, generations=3)
 
 
 def test_nothing_can_be_computed() -> None:

@@ -16,33 +16,17 @@ import zarr
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
-from equipoise.quantities import SI
-from equipoise.quantities.units import KINDS
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
-from equipoise.studies.outcomes import Block
 from equipoise.studies.run import create_store
 from equipoise.studies.sampling import samples
-from equipoise.studies.store import UNKNOWN, Store, open_store, versions
-from support.studies import LENGTH, MASS, SPEED, Formulas, contents, restore, short_study
+from equipoise.studies.store import UNKNOWN, open_store, versions
+from support.studies import LENGTH, MASS, SPEED, Formulas, contents, filled, restore, short_study
 
 STUDY = short_study(250)
 
 
-def block_of(store: Store, chunk: int) -> Block:
-    designs = store.designs(chunk)
-    values = samples(STUDY, designs.start, len(designs))
-    return Block(values, Formulas()(values))
-
-
-def filled(path: Path, *chunks: int) -> Store:
-    store = create_store(path, STUDY, STUDY.chunk, "compiled")
-    for chunk in chunks:
-        store.write(store.designs(chunk), block_of(store, chunk))
-    return store
-
-
 def test_what_is_stored_is_read_again_and_the_rest_is_known_to_be_missing(tmp_path: Path) -> None:
-    filled(tmp_path / "s", 2, 0)
+    filled(tmp_path / "s", STUDY, (2, 0))
     store = open_store(tmp_path / "s")
     assert store.missing() == [1]
     assert store.numbers == STUDY.paths
@@ -69,7 +53,7 @@ def test_many_designs_are_read_some_chunks_at_a_time(tmp_path: Path) -> None:
 
 
 def test_it_opens_in_xarray_and_says_what_is_in_it(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0, 1, 2)
+    store = filled(tmp_path / "s", STUDY)
     data = xarray.open_zarr(store.path)
     assert data[LENGTH].dims == ("design",)
     assert data[LENGTH].chunks == ((100, 100, 50),)
@@ -95,7 +79,7 @@ def test_it_opens_in_xarray_and_says_what_is_in_it(tmp_path: Path) -> None:
 
 def test_zarr_reads_each_array_as_it_is_described(tmp_path: Path) -> None:
     """Chunks are written without Zarr; what it would write itself is the same to every reader."""
-    store = filled(tmp_path / "s", 0, 1, 2)
+    store = filled(tmp_path / "s", STUDY)
     again = zarr.open_group(tmp_path / "again", mode="w")
     for name, array in store.arrays.items():
         again.create_array(name, data=array[:], chunks=array.chunks, compressors=array.compressors)
@@ -105,7 +89,7 @@ def test_zarr_reads_each_array_as_it_is_described(tmp_path: Path) -> None:
 
 
 def test_only_what_repeats_is_compressed(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0)
+    store = filled(tmp_path / "s", STUDY, (0,))
     sizes = {name: (store.path / name / "c" / "0").stat().st_size for name in store.arrays}
     assert sizes[LENGTH] == sizes["area"] == 800
     assert sizes[MASS] < 100
@@ -125,17 +109,13 @@ def test_names_of_outputs_may_have_any_signs(tmp_path: Path) -> None:
     assert set(names) < set(xarray.open_zarr(tmp_path / "s"))
 
 
-def test_each_dimension_has_the_si_unit_of_the_door() -> None:
-    assert {kind: known.si for kind, known in KINDS.items()} == SI
-
-
 # -- chunks that are not whole ---------------------------------------------------------------------
 
 
 def test_a_chunk_counts_once_all_its_files_are_there_and_have_something_in_them(
     tmp_path: Path,
 ) -> None:
-    store = filled(tmp_path / "s", 0, 1, 2)
+    store = filled(tmp_path / "s", STUDY)
     assert store.missing() == []
     (store.path / "momentum" / "c" / "1").unlink()
     (store.path / LENGTH / "c" / "2").write_bytes(b"")  # as a failure of the power leaves it
@@ -143,7 +123,7 @@ def test_a_chunk_counts_once_all_its_files_are_there_and_have_something_in_them(
 
 
 def test_what_a_killed_process_left_half_written_is_cleared_away(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0)
+    store = filled(tmp_path / "s", STUDY, (0,))
     before = contents(store.path)
     (store.path / MASS / "c" / "1.partial").write_bytes(b"half")
     assert store.missing() == [1, 2]
@@ -153,13 +133,6 @@ def test_what_a_killed_process_left_half_written_is_cleared_away(tmp_path: Path)
 
 
 # -- refused ---------------------------------------------------------------------------------------
-
-
-def test_nothing_is_overwritten(tmp_path: Path) -> None:
-    (tmp_path / "s").mkdir()
-    with pytest.raises(UsageError, match=r"is there already; .* equipoise resume "):
-        create_store(tmp_path / "s", STUDY, 100, "compiled")
-    assert contents(tmp_path) == {}
 
 
 def test_a_store_that_cannot_be_made_leaves_nothing(tmp_path: Path) -> None:
@@ -180,7 +153,7 @@ def newer(path: Path) -> None:
 
 
 def torn(path: Path) -> None:
-    filled(path)
+    filled(path, STUDY, ())
     (path / "zarr.json").write_text("{")
 
 
@@ -209,14 +182,14 @@ def test_what_is_no_store_is_told_in_a_sentence(tmp_path: Path, make, told: str)
 
 
 def test_a_damaged_chunk_is_told_in_a_sentence(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0, 1, 2)
+    store = filled(tmp_path / "s", STUDY)
     (store.path / "area" / "c" / "1").write_bytes(b"too short")
     with pytest.raises(UsageError, match="cannot be read"):
         list(store.in_blocks())
 
 
 def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0)
+    store = filled(tmp_path / "s", STUDY, (0,))
     (store.path / ".lock").mkdir()
     told = r"cannot be written \((is a directory|permission denied)\); make it writable"
     with pytest.raises(UsageError, match=told), store.writing():
@@ -236,7 +209,7 @@ with locked(Path(sys.argv[1])):
 
 
 def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path) -> None:
-    store = filled(tmp_path / "s", 0)
+    store = filled(tmp_path / "s", STUDY, (0,))
     command = [sys.executable, "-c", HOLD, str(store.path)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as holder:
         assert holder.stdout is not None
