@@ -211,7 +211,7 @@ class Balanced(Result):
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
     """The result, with what was asked read off the new machine."""
-    problem, new, best = found.problem, found.machine, found.best
+    problem, old, new, best = found.problem, found.problem.before, found.machine, found.best
     each = (part.changes(own) for part, own in problem.with_numbers(found.numbers))
     return Balanced(
         machine=new,
@@ -219,8 +219,7 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         plan=plan,
         changes=(*found.meshes, *chain.from_iterable(each)),
         objectives={
-            one.name: (problem.before[one.name], problem.value_of(new, one))
-            for one in plan.objectives
+            one.name: (old[one.name], problem.value_of(new, one)) for one in plan.objectives
         },
         cost=problem.cost_of(new),
         bound=best.bound,
@@ -332,7 +331,6 @@ def _of_rows(machine: Machine) -> dict[str, float]:
 
 
 def _of_support(machine: Machine) -> dict[str, float]:
-    """Figures of gauges, by the model that is usual for the support."""
     figures: dict[str, float] = {}
     if machine.support is not None:
         for name, gauge in respond(machine, model=usual_step(machine)).gauges.items():
