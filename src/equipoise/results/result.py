@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
 
 import numpy as np
 
+from equipoise.signals import Array
+
 if TYPE_CHECKING:
     import pandas
     import xarray
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from equipoise.results.blocks import Block
 
 Values = dict[str, Any]
-Array = np.ndarray[Any, Any]
 PLAIN = (str, int, float, np.ndarray)
 
 
