@@ -123,8 +123,8 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     for name in names:
         if name not in found.analysis.outputs:
             raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
-    draw = partial(outputs_chart, found.analysis, names)
-    return [Picture("outputs", "motion", ", ".join(names), draw)]
+    caption = ", ".join(found.analysis.outputs[name].label() for name in names)
+    return [Picture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))]
 
 
 def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Picture]:
