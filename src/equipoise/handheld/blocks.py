@@ -21,15 +21,13 @@ from equipoise.results.blocks import (
     Text,
     Value,
 )
-from equipoise.signals import highest_at
+from equipoise.signals import Array, highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse
     from equipoise.handheld.sweep import ToolSweep, Transmission, Transmissions
-
-Array = np.ndarray[Any, Any]
 
 SILENT = 1e3
 """Times 1e-10 of the largest transmission, below which it is none."""
