@@ -60,16 +60,11 @@ ANGLES = 72
 PHASES = np.exp(1j * np.linspace(0, 2 * np.pi, 73))
 
 
-UNDAMPED = 1e-9
-"""Damping ratio that is rounding."""
-NOTHING = 1e-4
-"""Part of a shape, over its largest, that counts as none."""
-MOST_NAMES = 16
-"""Mounts and gauges that are named in a view."""
-SMALLER = 0.8
-"""Size of signs in one of three views."""
-TOGETHER = 0.02
-"""Over the size of the support: what is nearer to each other shares a name."""
+UNDAMPED, NOTHING = 1e-9, 1e-4
+"""Damping ratio that is rounding; part of a shape, over its largest, that counts as none."""
+MOST_NAMES, SMALLER, TOGETHER = 16, 0.8, 0.02
+"""Mounts and gauges that are named in a view; size of signs in one of three views; over the size of
+the support: what is nearer to each other shares a name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,14 +181,10 @@ def described(mode: Mode) -> str:
     if frequency == 0:
         return say("free, without a spring")
     if mode.swings:
-        hertz = shown(frequency / (2 * pi))
         damping = mode.damping_ratio if abs(mode.damping_ratio) > UNDAMPED else 0.0
-        return say(
-            "{hertz} Hz, {frequency} rad/s, damping ratio {damping}",
-            hertz=hertz,
-            frequency=shown(frequency),
-            damping=shown(damping),
-        )
+        told = {"hertz": frequency / (2 * pi), "frequency": frequency, "damping": damping}
+        values = {name: shown(value) for name, value in told.items()}
+        return say("{hertz} Hz, {frequency} rad/s, damping ratio {damping}", **values)
     time = shown(1 / abs(decay))
     if decay > 0:
         return say("does not swing: overdamped, dies out by a factor of e in {time} s", time=time)
@@ -204,16 +195,13 @@ def parts_of(free: FreeVibration, mode: Mode) -> list[str]:
     """Each part of the shape in words; its phase where it does not move in step."""
     words = []
     for name, part in zip(free.coordinates, mode.shape.tolist(), strict=True):
-        unit = "rad" if name in AXES else "m"
-        size = abs(part)
+        unit, size = "rad" if name in AXES else "m", abs(part)
         phase = round(float(np.degrees(np.angle(part))))
-        if size < NOTHING:
-            words.append(f"{name} 0")
-        elif phase % 180:
-            words.append(f"{name} {size:.3g} {unit} at {phase}°")
-        else:
-            words.append(f"{name} {size if phase == 0 else -size:.3g} {unit}")
-    return [typeset(text) for text in words]
+        told = f"{size if phase == 0 else -size:.3g} {unit}"
+        if phase % 180:
+            told = f"{size:.3g} {unit} at {phase}°"
+        words.append(typeset(f"{name} {told if size >= NOTHING else 0}"))
+    return words
 
 
 def _panel(shape: ModeShape, view: View, views: list[View]) -> Panel:

@@ -137,15 +137,11 @@ def hodograph(analysis: Analysis, points: Sequence[str] | None = None) -> Chart:
     """
     names = traced(analysis.motion)[:MOST_VECTORS] if points is None else [*points]
     every = [analysis.motion.points[name] for name in names]
+    rates = [one.velocity for one in every]
+    changes = [one.acceleration_vector for one in every]
     panels = (
-        _ends(analysis, names, say("velocity"), "speed", [one.velocity for one in every]),
-        _ends(
-            analysis,
-            names,
-            say("acceleration"),
-            "acceleration",
-            [one.acceleration_vector for one in every],
-        ),
+        _ends(analysis, names, say("velocity"), "speed", rates),
+        _ends(analysis, names, say("acceleration"), "acceleration", changes),
     )
     shown_here = say("Hodographs of velocity and acceleration")
     what = title(analysis, shown_here, say("numbers: crank angle, deg"), of_one=True)

@@ -83,7 +83,6 @@ LOOKS: dict[str, Look] = {
     "unchanged": Look(LINES, 1.3),
     "bar before": Look(LINES, fill=FAINT),
     "bar after": Look(MAIN, fill=MAIN),
-    "pale bar": Look(LINES, fill=PALE),
     # several signals of one quantity
     "several 1": Look(MAIN),
     "several 2": Look(STRESS, dashes=(5, 1.6)),
@@ -167,10 +166,13 @@ LOOKS: dict[str, Look] = {
 }
 """Role -> look."""
 LOOKS |= {
-    f"kind {number}": Look(color, 1.5, sign=sign, size=4.5, hollow=True, spaced=True, order=order)
-    for number, ((color, sign), order) in enumerate(
-        zip(KINDS, (3.9, 3.8, 3.7, 3.6, 3.5, 3.4), strict=True)
-    )
+    f"quiet speed {number}": replace(LOOKS["quiet speed"], color=color)
+    for number, (color, _) in enumerate(KINDS)
+}
+KIND = Look(width=1.5, size=4.5, hollow=True, spaced=True)
+LOOKS |= {
+    f"kind {number}": replace(KIND, color=color, sign=sign, order=round(3.9 - 0.1 * number, 1))
+    for number, (color, sign) in enumerate(KINDS)
 }
 LOOKS |= {
     f"instant {name}": Look(INK, 1.1, sign=sign, size=5, hollow=True, order=4)
@@ -179,10 +181,6 @@ LOOKS |= {
     )
 }
 LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
-LOOKS |= {
-    f"quiet speed {number}": replace(LOOKS["quiet speed"], color=color)
-    for number, (color, _) in enumerate(KINDS)
-}
 
 
 def look_of(role: str, dashed: bool = False) -> Look:

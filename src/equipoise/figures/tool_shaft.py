@@ -30,10 +30,9 @@ MOST_MODES, MOST_SHAPES, MOST_NAMES, LONGEST = 24, 6, 24, 20
 BESIDE, BEFORE = 0.02, 1e-9
 """Share of the shaft that the axis goes on beyond its ends; m before a station, where the moment is
 that at its left."""
-REACH = 1.42
-"""Upper end of the axis of a shape, over its largest displacement."""
-LETTERS = 18
-"""In a line of what a free motion is called."""
+REACH, LETTERS = 1.42, 18
+"""Upper end of the axis of a shape, over its largest displacement; letters in a line of what a free
+motion is called."""
 POINTS, MOST_ORDERS, MATTERS = 401, 3, 1e-3
 """Places along the shaft; orders whose moment and shape are drawn; share of the largest
 displacement from which a plane's shape is drawn."""

@@ -39,10 +39,9 @@ if TYPE_CHECKING:
 
 
 RATE = Display("m/s^2", 1.0)
-ALONE = 0.1
-"""Share by which the axis goes beyond a speed that stands alone."""
-BREAK = 180.0
-"""deg: a phase that leaps by more goes on at the other end."""
+ALONE, BREAK = 0.1, 180.0
+"""Share by which the axis goes beyond a speed that stands alone; deg: a phase that leaps by more
+goes on at the other end."""
 LEVELS = (
     ("action", ACTION, to_say("action: A(8) of {value} m/s²")),
     ("limit", LIMIT, to_say("limit: A(8) of {value} m/s²")),
