@@ -69,6 +69,12 @@ EXTREMES = {
     "min_acceleration": to_say("smallest acceleration of the tip"),
 }
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
+DRIVEN = (
+    to_say(
+        "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at {forward} m/s"
+    ),
+    to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s"),
+)
 UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "mm"}
 """Units in which these are told."""
 
@@ -137,23 +143,13 @@ def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Blo
 def _heading(page: Page) -> Iterator[str]:
     figures = page.figures
     drive, speed = figures.machine.drive, figures["speed"]
-    told = {
-        "link": drive.link,
-        "speed": number(abs(speed) / PER_RPM),
-        "travel": figures.planting.travel,
-        "forward": number(abs(figures["forward_speed"])),
-    }
-    if speed > 0:
-        yield say(
-            "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at "
-            "{forward} m/s",
-            **told,
-        )
-    else:
-        yield say(
-            "{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s",
-            **told,
-        )
+    yield say(
+        DRIVEN[0] if speed > 0 else DRIVEN[1],
+        link=drive.link,
+        speed=number(abs(speed) / PER_RPM),
+        travel=figures.planting.travel,
+        forward=number(abs(figures["forward_speed"])),
+    )
     base = finger_base(figures.curve)
     tip = say("tip {tip} on {link}", tip=figures.planting.tip, link=figures.curve.link)
     finger = [] if base is None else [say("finger from {base}", base=base)]
@@ -186,15 +182,10 @@ def _instants(page: Page) -> Table:
 
 def _in_time(page: Page, names: list[str]) -> list[str]:
     """Instants in the order of time, from the first of `INSTANTS` on."""
-    figures = page.figures
-    sense = 1 if figures["speed"] > 0 else -1
-    start = figures[f"{names[0]}.crank_angle"]
-
-    def way(name: str) -> float:
-        turned = sense * (figures[f"{name}.crank_angle"] - start)
-        return round(turned, 9) % figures.curve.period
-
-    return sorted(names, key=way)
+    figures, sense = page.figures, 1 if page.figures["speed"] > 0 else -1
+    ways = {name: sense * figures[f"{name}.crank_angle"] for name in names}
+    start, period = ways[names[0]], figures.curve.period
+    return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
 def _values(title: str, labels: dict[str, str], page: Page) -> Table:
@@ -222,34 +213,23 @@ def _extremes(page: Page) -> Table:
 def _ratios(page: Page) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for link in page.figures.machine.links:
-        if page.get(f"ratio.{link}.min") is None:
-            continue
-        name = f"ratio.{link}"
-        ends = (
-            Value(page.figures[f"{name}.{end}"], 0.0, page.from_zero(at), after=4)
-            for end in ("min", "max")
-            for at in [page.figures[f"{name}.{end}_at"]]
-        )
-        rows.append((link, *ends))
+        ends = [page.at(f"ratio.{link}.{end}", f"ratio.{link}.{end}_at") for end in ("min", "max")]
+        if None not in ends:
+            rows.append((link, *(replace(end, after=4) for end in ends if end is not None)))
     if rows:
         columns = (Column(""), Column(say("smallest")), Column(say("largest")))
         yield Table(say("Angular velocity over that of the drive"), columns, tuple(rows))
 
 
 def _visits(page: Page) -> Iterator[Block]:
-    visits = page.figures.visits
-    if len(visits) < 2:
-        return
     rows = tuple(
-        (
-            *map(page.turned, (visit.entry, visit.exit, visit.deepest)),
-            Value(visit.depth, dimension="length", unit="mm"),
-        )
-        for visit in visits
+        (*map(page.turned, (one.entry, one.exit, one.deepest)), Value(one.depth))
+        for one in page.figures.visits
     )
-    labels = (say("entry"), say("exit"), say("deepest"))
-    columns = (*(Column(label, "angle") for label in labels), Column(say("depth"), "length", "mm"))
-    yield Table(say("Every stay in the soil; crank angles"), columns, rows)
+    if len(rows) > 1:
+        angles = (Column(label, "angle") for label in (say("entry"), say("exit"), say("deepest")))
+        columns = (*angles, Column(say("depth"), "length", "mm"))
+        yield Table(say("Every stay in the soil; crank angles"), columns, rows)
 
 
 def _loops(page: Page) -> Iterator[Block]:
@@ -292,26 +272,20 @@ def _clearances(page: Page) -> Iterator[Block]:
 
 
 def _limits(page: Page) -> Iterator[Block]:
+    figures = ("limit", "highest_speed", "highest_forward_speed")
     rows = tuple(
-        (
-            say(label),
-            *(
-                page.cell(f"limits.{name}.{what}")
-                for what in ("limit", "highest_speed", "highest_forward_speed")
-            ),
-        )
+        (say(label), *(page.cell(f"limits.{name}.{what}") for what in figures))
         for name, label in LIMITS.items()
         if page.get(f"limits.{name}.limit") is not None
     )
-    if not rows:
-        return
-    columns = (
-        Column(""),
-        Column(say("limit"), "acceleration"),
-        Column(say("highest speed of the crank"), "angular speed", "rpm"),
-        Column(say("of the machine"), "speed"),
-    )
-    yield Table(say("Limits of the tip's acceleration"), columns, rows)
+    if rows:
+        columns = (
+            Column(""),
+            Column(say("limit"), "acceleration"),
+            Column(say("highest speed of the crank"), "angular speed", "rpm"),
+            Column(say("of the machine"), "speed"),
+        )
+        yield Table(say("Limits of the tip's acceleration"), columns, rows)
 
 
 def _forces(page: Page) -> Iterator[Block]:

@@ -21,12 +21,8 @@ from equipoise.planting.blocks import (
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
-    from equipoise.planting.goals import Goal
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
-
-
-# -- a search --------------------------------------------------------------------------------------
 
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
@@ -78,18 +74,16 @@ def _figure(value: float, name: str) -> Value:
 
 
 def _goals(fit: Fit) -> Table:
-    met = {True: say("yes"), False: say("no"), None: ""}
-    rows = tuple(
-        (
-            figure_named(goal.figure),
-            goal.make or "",
-            *_wanted(goal),
-            _told(fit.before, goal.figure),
-            _missed(_told(fit.after, goal.figure), fit.met.get(goal.figure)),
-            met[fit.met.get(goal.figure)],
-        )
-        for goal in fit.goals
-    )
+    words = {True: say("yes"), False: say("no"), None: ""}
+    rows: list[tuple[Cell, ...]] = []
+    for goal in fit.goals:
+        name, met = goal.figure, fit.met.get(goal.figure)
+        limits = (goal.target, goal.at_least, goal.at_most)
+        wanted = (None if value is None else _figure(value, name) for value in limits)
+        before, after = _told(fit.before, name), _told(fit.after, name)
+        if met is False and isinstance(after, Value):  # stands out
+            after = replace(after, broken=True)
+        rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
     labels = (
         *("", say("make"), say("wanted"), say("at least"), say("at most")),
         *(say("before"), say("after"), say("met")),
@@ -98,18 +92,6 @@ def _goals(fit: Fit) -> Table:
     kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
     columns = tuple(Column(labels[k]) for k in kept)
     return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
-
-
-def _missed(one: Cell, met: bool | None) -> Cell:
-    """A figure that misses its goal stands out."""
-    if met is not False or not isinstance(one, Value):
-        return one
-    return replace(one, broken=True)
-
-
-def _wanted(goal: Goal) -> Iterator[Cell]:
-    for value in (goal.target, goal.at_least, goal.at_most):
-        yield None if value is None else _figure(value, goal.figure)
 
 
 def _changes(fit: Fit) -> Table:
