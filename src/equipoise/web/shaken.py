@@ -16,9 +16,8 @@ from equipoise.quantities import display, in_unit
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
-from equipoise.web.charts import chart, gauge_choice
 from equipoise.web.edits import Solved
-from equipoise.web.figures import text_of
+from equipoise.web.figures import chart, gauge_choice, text_of
 from equipoise.web.state import Block
 
 Values = dict[str, Any]
