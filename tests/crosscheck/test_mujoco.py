@@ -5,21 +5,16 @@ from __future__ import annotations
 from itertools import chain
 
 import numpy as np
-import pytest
 
 from equipoise.mechanism.model import FRAME
 from support import mujoco_engine
 from support.analyses import (
-    PLANTED,
-    RANDOM,
     Subject,
     agree,
-    example_names,
-    example_subject,
+    every_subject,
     force_size,
     moment_size,
-    planted_subject,
-    random_subject,
+    subject_of,
     vector,
 )
 from support.engines import TOLERANCE, same_totals
@@ -61,33 +56,15 @@ def acting_on_links(subject: Subject) -> dict[str, Array]:
     return total
 
 
-def carried(subject: Subject) -> None:
-    """Check that each link gets just what MuJoCo asks for it, weight included."""
+@every_subject
+def test_totals_and_what_each_link_carries(name: str) -> None:
+    """Each link gets just what MuJoCo asks for it, weight included."""
+    subject = subject_of(name)
+    same_totals(subject, mujoco_engine.totals)
     machine, poses = subject.machine, subject.poses
     asked = mujoco_engine.demands(machine, poses, machine.gravity).links
     force, moment = force_size(machine, poses), moment_size(machine, poses)
-    for name, got in acting_on_links(subject).items():
-        want = asked.get(name, np.zeros_like(got))
-        agree(f"force on {name}", got[:, :2], want[:, :2], TOLERANCE, force)
-        agree(f"moment on {name}", got[:, 2], want[:, 2], TOLERANCE, moment)
-
-
-@pytest.mark.parametrize(("kind", "seed"), RANDOM)
-def test_random_machine(kind: str, seed: int) -> None:
-    subject = random_subject(kind, seed)
-    same_totals(subject, mujoco_engine.totals)
-    carried(subject)
-
-
-@pytest.mark.parametrize(("kind", "seed"), PLANTED)
-def test_random_machine_in_soil(kind: str, seed: int) -> None:
-    subject = planted_subject(kind, seed)
-    same_totals(subject, mujoco_engine.totals)
-    carried(subject)
-
-
-@pytest.mark.parametrize("name", example_names())
-def test_example(name: str) -> None:
-    subject = example_subject(name)
-    same_totals(subject, mujoco_engine.totals)
-    carried(subject)
+    for link, got in acting_on_links(subject).items():
+        want = asked.get(link, np.zeros_like(got))
+        agree(f"force on {link}", got[:, :2], want[:, :2], TOLERANCE, force)
+        agree(f"moment on {link}", got[:, 2], want[:, 2], TOLERANCE, moment)

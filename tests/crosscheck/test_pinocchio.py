@@ -2,30 +2,11 @@
 
 from __future__ import annotations
 
-import pytest
-
 from support import pinocchio_engine
-from support.analyses import (
-    PLANTED,
-    RANDOM,
-    example_names,
-    example_subject,
-    planted_subject,
-    random_subject,
-)
+from support.analyses import every_subject, subject_of
 from support.engines import same_totals
 
 
-@pytest.mark.parametrize(("kind", "seed"), RANDOM)
-def test_random_machine(kind: str, seed: int) -> None:
-    same_totals(random_subject(kind, seed), pinocchio_engine.totals)
-
-
-@pytest.mark.parametrize(("kind", "seed"), PLANTED)
-def test_random_machine_in_soil(kind: str, seed: int) -> None:
-    same_totals(planted_subject(kind, seed), pinocchio_engine.totals)
-
-
-@pytest.mark.parametrize("name", example_names())
-def test_example(name: str) -> None:
-    same_totals(example_subject(name), pinocchio_engine.totals)
+@every_subject
+def test_totals(name: str) -> None:
+    same_totals(subject_of(name), pinocchio_engine.totals)

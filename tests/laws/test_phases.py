@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 from itertools import permutations, product
 from math import pi
 
@@ -16,7 +17,7 @@ from scipy.optimize import differential_evolution, minimize
 
 import equipoise as eq
 from equipoise.balancing.multi_row import Combine
-from equipoise.balancing.phase_search import PhaseSearch, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.rows_in_time import in_time, measured, side_by_side, value_of
 from unit.vibration.build import Array
@@ -47,12 +48,14 @@ class Dumb:
         turning = np.exp(1j * np.outer(phases, self.waves))
         found = []
         for share, wish, scale in zip(self.shares, self.wishes, self.scales, strict=True):
-            short = np.fft.fftshift(np.sum(share * turning, axis=0))
-            fine = np.zeros(self.COUNT, complex)
-            fine[: len(short)] = short
-            signal = np.fft.ifft(np.roll(fine, -360)) * self.COUNT / 720
-            signal = signal if wish.output == "shaking_force" else signal.real
-            found.append(measured(signal, wish.measure) / scale)
+            short = np.sum(share * turning, axis=0)
+            if wish.output == "shaking_force":
+                fine = np.zeros(self.COUNT, complex)
+                fine[:360], fine[-360:] = short[:360], short[360:]
+                signal = np.fft.ifft(fine)
+            else:
+                signal = np.fft.irfft(short[:360], self.COUNT)
+            found.append(measured(signal * (self.COUNT / 720), wish.measure) / scale)
         return found
 
     def __call__(self, free: Array) -> float:
@@ -84,12 +87,19 @@ CASES: dict[str, tuple[int, list[Objective], Combine]] = {
 }
 
 
+@cache
+def chosen(case: str) -> tuple[eq.Machine, Phasing]:
+    """A machine with some rows, and the phases that are found for them."""
+    count, wishes, combine = CASES[case]
+    machine = side_by_side(TYPE_II, [0.4 * k * k for k in range(count)])
+    return machine, choose_phases(machine, wishes, combine=combine)
+
+
 @pytest.mark.parametrize("case", CASES)
 def test_nothing_better_is_found_by_evolution(case: str) -> None:
     """1e-6 of the value: sampled peaks are too low by up to 1e-7 times the square of the order."""
     count, wishes, combine = CASES[case]
-    machine = side_by_side(TYPE_II, [0.4 * k * k for k in range(count)])
-    found = choose_phases(machine, wishes, combine=combine)
+    machine, found = chosen(case)
     dumb = Dumb(machine, wishes, combine)
     rms_only = all(wish.measure in {"rms", "ripple"} for wish in wishes)
     here = dumb(np.array(found.phases[1:]))
@@ -117,8 +127,7 @@ def test_nothing_better_on_a_coarse_grid_in_time(output: str) -> None:
 def test_polished_to_ten_digits(case: str) -> None:
     """A simplex search from the phases found, small and large, gains nothing."""
     count, wishes, combine = CASES[case]
-    machine = side_by_side(TYPE_II, [0.4 * k * k for k in range(count)])
-    found = choose_phases(machine, wishes, combine=combine)
+    machine, found = chosen(case)
     cost = PhaseSearch(machine, tuple(wishes), Phases(), combine).cost
     start = np.array(found.phases)
     assert cost.values(start) == pytest.approx(found.combined[1], rel=1e-12)
@@ -148,10 +157,8 @@ def test_a_common_shift_changes_nothing() -> None:
 
 
 def test_the_result_is_its_own_result() -> None:
-    machine = side_by_side(TYPE_II, (0.0, 1.0, 2.5))
-    wishes = [Objective("shaking_force.y", "peak")]
-    found = choose_phases(machine, wishes)
-    again = choose_phases(found.machine, wishes)
+    _, found = chosen("peak")
+    again = choose_phases(found.machine, CASES["peak"][1])
     assert again.phases == found.phases
     assert again.machine is found.machine
     assert "no phases were found that are better" in str(again.notes[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import fields, replace
+from dataclasses import replace
 from functools import cache
 from itertools import pairwise
 from typing import Any
@@ -18,6 +18,7 @@ from equipoise.handheld.modes import vibrate_tool
 from equipoise.handheld.response import ToolResponse, respond_tool
 from equipoise.handheld.shaft import Section, Segment, Theory
 from equipoise.keys import Planes, Quantity, keys_of
+from laws.transforms import rescaled
 from unit.handheld.samples import THEORIES, bare, both, pieces_of, random_tool, still
 
 Array = np.ndarray[Any, Any]
@@ -379,47 +380,30 @@ def scaled(tool: Tool, length: float, stiffness: float, mass: float) -> tuple[To
     Whatever has no unit stays as it is.
     """
     rate = np.sqrt(stiffness / mass) / length**2
-    units = {
+    spring = stiffness / length**3
+    factors = {
+        **dict.fromkeys(("position", "start", "stop", "length"), length),
         "mass": mass * length,
         "inertia": mass * length**3,
-        "stiffness": stiffness / length**3,
-        "damping": stiffness / length**3 / rate,
-        "rotational_stiffness": stiffness / length,
-        "rotational_damping": stiffness / length / rate,
-        "position": length,
-        "start": length,
-        "stop": length,
-        "length": length,
+        "stiffness": spring,
+        "damping": spring / rate,
+        "rotational_stiffness": spring * length**2,
+        "rotational_damping": spring * length**2 / rate,
         "bending_stiffness": stiffness,
         "mass_per_length": mass,
         "shear_stiffness": stiffness / length**2,
         "rotary_inertia": mass * length**2,
     }
 
-    def grown(part: Any) -> Any:
-        if part is None:
-            return None
-        changes: dict[str, Any] = {}
-        for name in (one.name for one in fields(part)):
-            if name in units:
-                value = getattr(part, name)
-                pair = isinstance(value, tuple)
-                changes[name] = (
-                    tuple(units[name] * one for one in value) if pair else units[name] * value
-                )
-        for name in ("hand", "harness", "absorber"):
-            if hasattr(part, name):
-                changes[name] = grown(getattr(part, name))
-        if hasattr(part, "profile"):
-            changes["profile"] = grown(_plain(part.profile, tool.shaft.theory))
-        return replace(part, **changes)
+    def plain(part: Any) -> Any:
+        return replace(part, profile=part.profile.section(tool.shaft.theory))
 
-    shaft = replace(grown(tool.shaft), segments=tuple(grown(one) for one in tool.shaft.segments))
-    return replace(tool, shaft=shaft, stations=tuple(map(grown, tool.stations))), float(rate)
-
-
-def _plain(profile: Any, theory: Theory) -> Section:
-    return profile.section(theory)
+    shaft = replace(plain(tool.shaft), segments=tuple(map(plain, tool.shaft.segments)))
+    return replace(
+        tool,
+        shaft=rescaled(shaft, factors),
+        stations=rescaled(tool.stations, factors),
+    ), float(rate)
 
 
 @subjects

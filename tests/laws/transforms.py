@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
 from math import pi
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 
 import equipoise as eq
-from equipoise.mechanism.field import Planting, Soil
+from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, Vector
 
 Value = TypeVar("Value")
@@ -195,91 +195,62 @@ class Units:
 
 def in_units(machine: eq.Machine, units: Units) -> eq.Machine:
     """The machine in other units."""
-    length, drive, position = units.length, machine.drive, machine.position
-
-    def longer(z: complex) -> complex:
-        return z * length
-
-    if position is not None:
-        position = replace(position, points=mapped(position.points, longer))
-    return replace(
-        machine,
-        drive=replace(drive, speed=drive.speed / units.time,
-                      acceleration=drive.acceleration / units.time**2),
-        frame=mapped(machine.frame, longer),
-        links={name: link_in_units(link, units) for name, link in machine.links.items()},
-        loads=tuple(load_in_units(load, units) for load in machine.loads),
-        springs=tuple(
-            replace(spring, stiffness=spring.stiffness * units.force / length,
-                    free_length=spring.free_length * length)
-            for spring in machine.springs
-        ),
-        gravity=vector(lambda z: z * length / units.time**2, machine.gravity),
-        position=position,
-        planting=planting_in_units(machine.planting, units),
-    )  # fmt: skip
-
-
-def planting_in_units(planting: Planting | None, units: Units) -> Planting | None:
-    if planting is None:
-        return None
-    length, time = units.length, units.time
+    length, mass, time, force = units.length, units.mass, units.time, units.force
+    lengths = ("frame", "points", "center_of_mass", "free_length", "hill_spacing", "depth",
+               "surface", "tray")  # fmt: skip
     factors = {
+        **dict.fromkeys(lengths, length),
+        "mass": mass,
+        "inertia": mass * length**2,
+        "force": force,
+        "torque": units.moment,
+        "stiffness": force / length,
+        "speed": 1 / time,
+        "acceleration": 1 / time**2,
+        "gravity": length / time**2,
         "forward_speed": length / time,
         "acceleration_limit": length / time**2,
         "soil_acceleration_limit": length / time**2,
-        **dict.fromkeys(("hill_spacing", "depth", "surface"), length),
+        "resistance": force,
+        "per_depth": force / length,
+        "per_speed": force * time / length,
+        "per_depth_and_speed": force * time / length**2,
     }
-    given = {key: getattr(planting, key) for key in factors}
-    return replace(
-        planting,
-        tray=tray(planting, lambda z: z * length),
-        soil=None if planting.soil is None else soil_in_units(planting.soil, units),
-        **{key: value * factors[key] for key, value in given.items() if value is not None},
-    )
+
+    def measured(load: eq.Load) -> eq.Load:
+        """A table's values are forces in two columns, and torques in one."""
+        if load.table is None:
+            return load
+        factor = force if len(load.table.values) == 2 else units.moment
+        return replace(load, table=rescaled(load.table, {"values": factor}))
+
+    loads = tuple(measured(load) for load in machine.loads)
+    linkage = rescaled(replace(machine, loads=loads, support=None), factors)
+    return replace(linkage, support=machine.support)  # which has no part in forces
 
 
-def soil_in_units(soil: Soil, units: Units) -> Soil:
-    given, slowness = soil.table, units.time / units.length
-    if given is not None:
-        given = replace(
-            given,
-            depth=tuple(d * units.length for d in given.depth),
-            resistance=tuple(r * units.force for r in given.resistance),
-        )
-    return Soil(
-        soil.resistance * units.force,
-        soil.per_depth * units.force / units.length,
-        soil.per_speed * units.force * slowness,
-        soil.per_depth_and_speed * units.force / units.length * slowness,
-        given,
-    )
+def rescaled(thing: Any, factors: Mapping[str, float]) -> Any:
+    """With all that bears these names so many times as large, wherever it stands."""
 
+    def grown(value: Any, factor: float) -> Any:
+        if isinstance(value, Mapping):
+            return {name: grown(one, factor) for name, one in value.items()}
+        if isinstance(value, tuple):
+            return tuple(grown(one, factor) for one in value)
+        return None if value is None else factor * value
 
-def link_in_units(link: eq.Link, units: Units) -> eq.Link:
-    assert link.mass is not None
-    assert link.center_of_mass is not None
-    assert link.inertia is not None
-    return eq.Link(
-        mapped(link.points, lambda z: z * units.length),
-        link.mass * units.mass,
-        vector(lambda z: z * units.length, link.center_of_mass),
-        link.inertia * units.mass * units.length**2,
-    )
-
-
-def load_in_units(load: eq.Load, units: Units) -> eq.Load:
-    given = load.table
-    if given is not None:
-        factor = units.force if len(given.values) == 2 else units.moment
-        values = tuple(tuple(v * factor for v in column) for column in given.values)
-        given = replace(given, values=values)
-    return replace(
-        load,
-        force=None if load.force is None else vector(lambda z: z * units.force, load.force),
-        torque=None if load.torque is None else load.torque * units.moment,
-        table=given,
-    )
+    if isinstance(thing, Mapping):
+        return {name: rescaled(one, factors) for name, one in thing.items()}
+    if isinstance(thing, tuple):
+        return tuple(rescaled(one, factors) for one in thing)
+    if not is_dataclass(thing):
+        return thing
+    values = {one.name: getattr(thing, one.name) for one in fields(thing) if one.init}
+    changes = {
+        name: grown(value, factors[name]) if name in factors else rescaled(value, factors)
+        for name, value in values.items()
+    }
+    return replace(thing, **changes)  # type: ignore[type-var]
 
 
 def with_axes(machine: eq.Machine, link: str, angle: float, shift: complex) -> eq.Machine:

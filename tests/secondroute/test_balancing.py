@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -50,12 +51,22 @@ def added(link: str, at: str, shape: str = "any", **room: float) -> eq.balancing
     return eq.balancing.AddedMass(link, at, Weight(shape, **room))  # type: ignore[arg-type]
 
 
-def limit(output: str, measure: str, **much: float) -> eq.balancing.Limit:
-    return eq.balancing.Limit(Objective(output, measure), **much)  # type: ignore[arg-type]
+def small(words: str) -> tuple[Objective, ...]:
+    """Objectives in words: measures and outputs."""
+    return tuple(Objective(*one.split()[::-1]) for one in words.split(", "))  # type: ignore[arg-type]
 
 
-def small(*outputs: tuple[str, str]) -> tuple[Objective, ...]:
-    return tuple(Objective(*one) for one in outputs)  # type: ignore[arg-type]
+def limits(words: str) -> Iterator[eq.balancing.Limit]:
+    """Limits in words: measure, output, and how much of it, in SI units or % of before."""
+    for one in filter(None, words.split(", ")):
+        measure, output, much, *share = one.split()
+        wish = Objective(output, measure)  # type: ignore[arg-type]
+        most = {"ratio": float(much) / 100} if share else {"at_most": float(much)}
+        yield eq.balancing.Limit(wish, **most)
+
+
+def plan(wishes: str, kept: str = "", **parts: Any) -> Balance:
+    return Balance(objectives=small(wishes), limits=tuple(limits(kept)), **parts)
 
 
 def geared(low: float, high: float, shape: str = "any", **room: float) -> eq.balancing.GearedWeight:
@@ -65,93 +76,68 @@ def geared(low: float, high: float, shape: str = "any", **room: float) -> eq.bal
 
 # -- plans -----------------------------------------------------------------------------------------
 
-MOMENT = small(("shaking_moment", "rms"))
+MOMENT = "rms shaking_moment"
 CRANK = added("crank", "A", radius=0.06, at_most=0.5)
 ROCKER = added("rocker", "D", radius=0.06, at_most=0.5)
 BOX = eq.balancing.CenterMove("coupler", x=(-0.06, 0.02), y=(-0.03, 0.03))
 ANY = added("rocker", "C", radius=0.05, at_most=0.6)
 CIRCLE = eq.balancing.CenterMove("coupler", center=(-0.045, -0.02), radius=0.02)
+CRANK_POINT = replace(CRANK, weight=replace(CRANK.weight, shape="point"))
+ROCKER_POINT = replace(ROCKER, weight=replace(ROCKER.weight, shape="point"))
+ROCKER_DISC = added("rocker", "D", "disc", radius=0.05, **STEEL)
+ROCKER_SECTOR = added("rocker", "D", "sector", radius=0.06, inner_radius=0.01, **STEEL)
+TWO = "peak shaking_moment, ripple drive_torque"
 
 PAPERS: dict[str, tuple[str, Balance]] = {
-    "coupler in a box": ("yamashita-1", Balance(moves=(BOX,), objectives=MOMENT)),
-    "coupler in a circle": (
-        "yamashita-2",
-        Balance(moves=(CIRCLE,), objectives=small(("shaking_force", "peak"))),
-    ),
+    "coupler in a box": ("yamashita-1", plan(MOMENT, moves=(BOX,))),
+    "coupler in a circle": ("yamashita-2", plan("peak shaking_force", moves=(CIRCLE,))),
     "coupler, moment's range": (
         "yamashita-2",
-        Balance(moves=(CIRCLE,), objectives=small(("shaking_moment", "peak_to_peak"))),
+        plan("peak_to_peak shaking_moment", moves=(CIRCLE,)),
     ),
-    "crank": (
-        "yamashita-1",
-        Balance(masses=(CRANK,), objectives=small(("shaking_force", "rms"))),
-    ),
+    "crank": ("yamashita-1", plan("rms shaking_force", masses=(CRANK,))),
     "crank, vertical": (
         "yamashita-2",
-        Balance(
-            masses=(replace(CRANK, weight=replace(CRANK.weight, shape="point")),),
-            objectives=small(("shaking_force.y", "peak")),
-            limits=(limit("shaking_force.x", "peak", ratio=1.2),),
-        ),
+        plan("peak shaking_force.y", "peak shaking_force.x 120 %", masses=(CRANK_POINT,)),
     ),
     "rocker": (
         "yamashita-1",
-        Balance(
-            masses=(ROCKER,),
-            objectives=small(("shaking_moment", "peak")),
-            limits=(limit("joints.B", "peak", ratio=1.1),),
-        ),
+        plan("peak shaking_moment", "peak joints.B 110 %", masses=(ROCKER,)),
     ),
     "crank and rocker": (
         "yamashita-1",
-        Balance(
+        plan(
+            MOMENT,
+            "rms shaking_force 70 %, peak joints.D 100 %",
             masses=(CRANK, ROCKER),
-            objectives=MOMENT,
-            limits=(
-                limit("shaking_force", "rms", ratio=0.7),
-                limit("joints.D", "peak", ratio=1.0),
-            ),
             added_mass=0.8,
         ),
     ),
-    "rocker's disc": (
-        "yamashita-1",
-        Balance(masses=(added("rocker", "D", "disc", radius=0.05, **STEEL),), objectives=MOMENT),
-    ),
-    "rocker's sector": (
-        "yamashita-2",
-        Balance(
-            masses=(added("rocker", "D", "sector", radius=0.06, inner_radius=0.01, **STEEL),),
-            objectives=small(("shaking_moment", "peak"), ("drive_torque", "ripple")),
-            combine="squares",
-        ),
-    ),
+    "rocker's disc": ("yamashita-1", plan(MOMENT, masses=(ROCKER_DISC,))),
+    "rocker's sector": ("yamashita-2", plan(TWO, masses=(ROCKER_SECTOR,), combine="squares")),
     "all": (
         "yamashita-1",
-        Balance(
+        plan(
+            "peak shaking_moment, peak shaking_force",
+            "peak drive_torque 100 %",
             moves=(BOX,),
-            masses=(CRANK, replace(ROCKER, weight=Weight("point", radius=0.06, at_most=0.5))),
-            objectives=small(("shaking_moment", "peak"), ("shaking_force", "peak")),
-            limits=(limit("drive_torque", "peak", ratio=1.0),),
+            masses=(CRANK, ROCKER_POINT),
             added_mass=0.5,
         ),
     ),
     **{
         f"geared counterweight {which}": (
             f"lee-kim-{which}",
-            Balance(
-                geared=(geared(0.57, 0.57, at_most=0.6),),
-                objectives=small(("shaking_moment", "area")),
-            ),
+            plan("area shaking_moment", geared=(geared(0.57, 0.57, at_most=0.6),)),
         )
         for which in "abc"
     },
     "geared point": (
         "lee-kim-a",
-        Balance(
+        plan(
+            "rms shaking_moment, rms shaking_force",
             geared=(geared(0.8, 0.8, "point", at_most=0.6),),
             masses=(added("crank", "O2", radius=0.04, at_most=0.4),),
-            objectives=small(("shaking_moment", "rms"), ("shaking_force", "rms")),
             added_mass=0.5,
         ),
     ),
@@ -341,14 +327,14 @@ def test_values_before_and_after(name: str) -> None:
 
 def test_area_and_torque_of_a_sector() -> None:
     machine, plan = eq.load(PAPERS["rocker's sector"][0]), PAPERS["rocker's sector"][1]
-    plan = replace(plan, objectives=small(("shaking_moment", "area"), ("drive_torque", "ripple")))
+    plan = replace(plan, objectives=small("area shaking_moment, ripple drive_torque"))
     found, problem = eq.balance(machine, plan), Problem(machine, plan)
     assert evolved(problem)[0] == pytest.approx(found.cost, abs=BEATEN * 2)
 
 
 def test_each_weight_has_a_price() -> None:
     masses = (added("rocker", "D", radius=0.05, at_most=0.2), ANY)
-    found = eq.balance(eq.load("yamashita-1"), Balance(masses=masses, objectives=MOMENT))
+    found = eq.balance(eq.load("yamashita-1"), plan(MOMENT, masses=masses))
     masses = [price for name, price in found.prices.items() if name.startswith("mass")]
     assert sorted(price.at_most for price in masses) == [0.2, 0.6]
 
@@ -356,97 +342,80 @@ def test_each_weight_has_a_price() -> None:
 @pytest.mark.parametrize("which", "abc")
 def test_a_free_ratio(which: str) -> None:
     machine = eq.load(f"lee-kim-{which}")
-    plan = Balance(geared=(geared(0.4, 1.5, at_most=0.6),), objectives=MOMENT)
-    found = eq.balance(machine, plan)
-    cost, _ = FreeShaft(machine, plan).evolved()
+    free = plan(MOMENT, geared=(geared(0.4, 1.5, at_most=0.6),))
+    found = eq.balance(machine, free)
+    cost, _ = FreeShaft(machine, free).evolved()
     assert found.cost - BEATEN <= cost <= found.cost + 1e-6
 
 
 # -- against convex programs -----------------------------------------------------------------------
 
 SECTOR = added("rocker", "D", "sector", radius=0.05, inner_radius=0.02, **STEEL)
+CRANK_SECTOR = added("crank", "A", "sector", radius=0.05, **STEEL)
+LIMITED = (
+    added("crank", "O2", radius=0.05, at_most=0.5),
+    added("rocker", "O4", radius=0.05, at_most=0.8),
+)
+POINTS = (
+    added("crank", "A", "point", radius=0.05, at_most=0.4),
+    added("rocker", "D", "point", radius=0.04, at_most=0.4),
+)
 CONVEX: dict[str, tuple[str, Balance]] = {
     **{name: PAPERS[name] for name in ("crank and rocker", "geared counterweight a")},
     **{name: PAPERS[name] for name in ("geared counterweight b", "geared counterweight c")},
-    "any, root mean square": ("yamashita-1", Balance(masses=(CRANK, ANY), objectives=MOMENT)),
+    "any, root mean square": ("yamashita-1", plan(MOMENT, masses=(CRANK, ANY))),
     "any, forces and torque": (
         "yamashita-1",
-        Balance(
+        plan(
+            "rms shaking_force.x, rms shaking_force.y, ripple drive_torque",
+            "rms joints.D 100 %",
             masses=(CRANK, ROCKER),
-            objectives=small(
-                ("shaking_force.x", "rms"), ("shaking_force.y", "rms"), ("drive_torque", "ripple")
-            ),
-            limits=(limit("joints.D", "rms", ratio=1.0),),
             combine="squares",
             added_mass=0.6,
         ),
     ),
-    "any, area": (
-        "yamashita-2",
-        Balance(masses=(CRANK, ROCKER), objectives=small(("shaking_moment", "area"))),
-    ),
+    "any, area": ("yamashita-2", plan("area shaking_moment", masses=(CRANK, ROCKER))),
     "any, squares": (
         "yamashita-1",
-        Balance(
+        plan(
+            "peak_to_peak shaking_moment, peak shaking_force, ripple drive_torque",
             masses=(CRANK, ROCKER, added("coupler", "C", radius=0.03, mass=0.1)),
-            objectives=small(
-                ("shaking_moment", "peak_to_peak"),
-                ("shaking_force", "peak"),
-                ("drive_torque", "ripple"),
-            ),
             combine="squares",
         ),
     ),
     "any, limits": (
         "lee-kim-b",
-        Balance(
-            masses=(
-                added("crank", "O2", radius=0.05, at_most=0.5),
-                added("rocker", "O4", radius=0.05, at_most=0.8),
-            ),
-            objectives=small(("shaking_moment", "peak")),
-            limits=(
-                limit("shaking_force", "peak", ratio=0.8),
-                limit("joints.O4", "rms", ratio=1.0),
-                limit("drive_torque", "peak_to_peak", ratio=1.1),
-            ),
+        plan(
+            "peak shaking_moment",
+            "peak shaking_force 80 %, rms joints.O4 100 %, peak_to_peak drive_torque 110 %",
+            masses=LIMITED,
             added_mass=0.9,
         ),
     ),
-    "sector": ("yamashita-1", Balance(masses=(SECTOR,), objectives=MOMENT)),
+    "sector": ("yamashita-1", plan(MOMENT, masses=(SECTOR,))),
     "sector, force": (
         "yamashita-2",
-        Balance(
-            masses=(added("crank", "A", "sector", radius=0.05, **STEEL), SECTOR),
-            objectives=small(("shaking_force", "rms"), ("shaking_moment", "rms")),
+        plan(
+            "rms shaking_force, rms shaking_moment",
+            masses=(CRANK_SECTOR, SECTOR),
             combine="squares",
         ),
     ),
     "disc on the crank": (
         "yamashita-1",
-        Balance(
+        plan(
+            "rms shaking_force.x, peak shaking_force.y",
             masses=(added("crank", "A", "disc", radius=0.05, **STEEL),),
-            objectives=small(("shaking_force.x", "rms"), ("shaking_force.y", "peak")),
         ),
     ),
     "points and force": (
         "yamashita-2",
-        Balance(
-            masses=(
-                added("crank", "A", "point", radius=0.05, at_most=0.4),
-                added("rocker", "D", "point", radius=0.04, at_most=0.4),
-            ),
-            objectives=small(("shaking_force", "peak")),
-            limits=(limit("shaking_force.x", "rms", ratio=0.8),),
-            added_mass=0.5,
-        ),
+        plan("peak shaking_force", "rms shaking_force.x 80 %", masses=POINTS, added_mass=0.5),
     ),
     "coupler and force": (
         "yamashita-2",
-        Balance(
-            moves=(CIRCLE,),
-            masses=(CRANK,),
-            objectives=small(("shaking_force.y", "peak_to_peak"), ("shaking_force.x", "area")),
+        plan(
+            "peak_to_peak shaking_force.y, area shaking_force.x", moves=(CIRCLE,), masses=(CRANK,)
         ),
     ),
 }
@@ -573,37 +542,18 @@ def loosened(plan: Balance, name: str, share: float) -> Balance:
         return replace(plan, added_mass=plan.added_mass * share)
     what, _, link = name.partition(" on ")
     if what in {"mass", "radius"}:
-        more = _more_mass if what == "mass" else _more_room
-        return replace(
-            plan,
-            masses=tuple(
-                replace(a, weight=more(a.weight, share)) if a.link == link else a
-                for a in plan.masses
-            ),
-            geared=tuple(
-                replace(g, weight=more(g.weight, share)) if g.name == link else g
-                for g in plan.geared
-            ),
-        )
-    limits = tuple(
-        one
-        if one.name != name
-        else replace(one, ratio=one.ratio * share)
-        if one.ratio
-        else replace(one, at_most=(one.at_most or 0) * share)
-        for one in plan.limits
-    )
-    assert limits != plan.limits
-    return replace(plan, limits=limits)
+        key = {"mass": "at_most", "radius": "radius"}[what]
 
+        def more(part: Any, owner: str) -> Any:
+            larger = {key: getattr(part.weight, key) * share}
+            return replace(part, weight=replace(part.weight, **larger)) if owner == link else part
 
-def _more_mass(weight: Weight, share: float) -> Weight:
-    assert weight.at_most is not None
-    return replace(weight, at_most=weight.at_most * share)
-
-
-def _more_room(weight: Weight, share: float) -> Weight:
-    return replace(weight, radius=weight.radius * share)
+        masses = tuple(more(part, part.link) for part in plan.masses)
+        return replace(plan, masses=masses, geared=tuple(more(g, g.name) for g in plan.geared))
+    (which,) = (one for one in plan.limits if one.name == name)
+    key = "ratio" if which.ratio else "at_most"
+    larger = replace(which, **{key: getattr(which, key) * share})
+    return replace(plan, limits=tuple(larger if one is which else one for one in plan.limits))
 
 
 PRICED = {
@@ -611,16 +561,12 @@ PRICED = {
     **{name: PAPERS[name] for name in ("rocker", "all", "geared counterweight a")},
     "tight": (
         "yamashita-1",
-        Balance(
+        plan(
+            MOMENT,
+            "rms shaking_force 60 %, peak joints.D 90 %, peak joints.B 90",
             masses=(
                 added("rocker", "D", radius=0.05, at_most=2),
                 added("crank", "A", radius=0.05, at_most=2),
-            ),
-            objectives=MOMENT,
-            limits=(
-                limit("shaking_force", "rms", ratio=0.6),
-                limit("joints.D", "peak", ratio=0.9),
-                limit("joints.B", "peak", at_most=90.0),
             ),
             added_mass=1.0,
         ),
@@ -651,24 +597,13 @@ def test_prices(name: str) -> None:
 
 BOTH = (added("crank", "A", radius=0.05, at_most=2), added("rocker", "D", radius=0.05, at_most=2))
 CLASHES: dict[str, Balance] = {
-    "force and mass": Balance(
-        masses=BOTH,
-        objectives=MOMENT,
-        limits=(limit("shaking_force", "rms", ratio=0.8),),
-        added_mass=0.1,
-    ),
-    "two outputs": Balance(
+    "force and mass": plan(MOMENT, "rms shaking_force 80 %", masses=BOTH, added_mass=0.1),
+    "two outputs": plan(
+        MOMENT,
+        "rms shaking_force 87 %, peak shaking_force.x 87 %, peak drive_torque 200 %",
         moves=(CIRCLE,),
-        objectives=MOMENT,
-        limits=(
-            limit("shaking_force", "rms", ratio=0.87),
-            limit("shaking_force.x", "peak", ratio=0.87),
-            limit("drive_torque", "peak", ratio=2.0),
-        ),
     ),
-    "alone": Balance(
-        masses=BOTH, objectives=MOMENT, limits=(limit("drive_torque", "peak", ratio=0.3),)
-    ),
+    "alone": plan(MOMENT, "peak drive_torque 30 %", masses=BOTH),
 }
 
 

@@ -5,21 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
 
 from equipoise.mechanism.model import FRAME
 from support import free_bodies
 from support.analyses import (
-    PLANTED,
-    RANDOM,
     Subject,
     agree,
-    example_names,
-    example_subject,
+    every_subject,
     force_size,
     moment_size,
-    planted_subject,
-    random_subject,
+    subject_of,
     vector,
 )
 from support.free_bodies import FreeBodies, Reaction
@@ -93,22 +88,8 @@ def acting_on_the_later(subject: Subject) -> None:
             assert order.index(joint.by) < order.index(joint.on), name
 
 
-@pytest.mark.parametrize(("kind", "seed"), RANDOM)
-def test_random_machine(kind: str, seed: int) -> None:
-    subject = random_subject(kind, seed)
-    same_forces(subject)
-    acting_on_the_later(subject)
-
-
-@pytest.mark.parametrize(("kind", "seed"), PLANTED)
-def test_random_machine_in_soil(kind: str, seed: int) -> None:
-    subject = planted_subject(kind, seed)
-    same_forces(subject)
-    acting_on_the_later(subject)
-
-
-@pytest.mark.parametrize("name", example_names())
-def test_example(name: str) -> None:
-    subject = example_subject(name)
+@every_subject
+def test_forces_in_all_joints(name: str) -> None:
+    subject = subject_of(name)
     same_forces(subject)
     acting_on_the_later(subject)

@@ -7,14 +7,7 @@ import pytest
 
 import equipoise as eq
 from support import newton
-from support.analyses import (
-    RANDOM,
-    Subject,
-    agree,
-    example_names,
-    example_subject,
-    random_subject,
-)
+from support.analyses import EXAMPLES, RANDOM, Subject, agree, subject_of
 from support.machines import make
 from support.poses import Array, Poses, from_motion
 
@@ -62,9 +55,11 @@ def same_point(
               0.01 * size * rate)  # fmt: skip
 
 
-@pytest.mark.parametrize(("kind", "seed"), RANDOM)
-def test_random_machine(kind: str, seed: int) -> None:
-    same_motion(random_subject(kind, seed), make(kind, seed).start())
+@pytest.mark.parametrize("name", RANDOM)
+def test_random_machine(name: str) -> None:
+    subject = subject_of(name)
+    assert subject.case is not None
+    same_motion(subject, subject.case.start())
 
 
 @pytest.mark.parametrize("kind", GEARED)
@@ -75,9 +70,9 @@ def test_gears_over_several_turns(kind: str) -> None:
     same_motion(Subject(case.machine, motion, None, case), case.start())
 
 
-@pytest.mark.parametrize("name", example_names())
+@pytest.mark.parametrize("name", EXAMPLES)
 def test_example(name: str) -> None:
     """Only the branch at crank angle 0 is taken from the motion itself."""
-    subject = example_subject(name)
+    subject = subject_of(name)
     first = from_motion(subject.machine, eq.analyze(subject.machine, angles=np.zeros(1)).motion)
     same_motion(subject, newton.coordinates(first, 0))

@@ -20,8 +20,11 @@ from support.poses import Array, Poses, from_motion
 ANGLES = 0.0173 + np.linspace(0, 2 * np.pi, 24, endpoint=False)
 """Crank angles of every comparison, off the round numbers at which loads may begin or end."""
 
-RANDOM = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in range(10)]
-PLANTED = [pytest.param(kind, seed, id=f"{kind}-{seed}") for kind in KINDS for seed in range(2)]
+EXAMPLES = sorted(eq.examples("linkage"))
+RANDOM = [f"{kind}:{seed}" for kind in KINDS for seed in range(10)]
+PLANTED = [f"{kind} in soil:{seed}" for kind in KINDS for seed in range(2)]
+every_subject = pytest.mark.parametrize("name", [*EXAMPLES, *RANDOM, *PLANTED])
+"""Bundled examples, and random machines by kind and seed, also with a point in the soil."""
 
 
 @dataclass(frozen=True)
@@ -53,17 +56,15 @@ def analysed(machine: Machine, case: Case | None = None) -> Subject:
 
 
 @cache
-def random_subject(kind: str, seed: int) -> Subject:
-    """Analyse a random machine."""
-    case = make(kind, seed)
-    return analysed(case.machine, case)
-
-
-@cache
-def planted_subject(kind: str, seed: int) -> Subject:
-    """Analyse a random machine that drives over ground with one of its points in the soil."""
-    case = make(kind, seed)
-    return analysed(planted(case.machine, np.random.default_rng(seed)), case)
+def subject_of(name: str) -> Subject:
+    """Analyse an example or a random machine."""
+    kind, _, seed = name.partition(":")
+    if not seed:
+        return analysed(eq.load(name))
+    kind, soil, _ = kind.partition(" in soil")
+    case = make(kind, int(seed))
+    machine = case.machine
+    return analysed(planted(machine, np.random.default_rng(int(seed))) if soil else machine, case)
 
 
 def planted(machine: Machine, rng: np.random.Generator) -> Machine:
@@ -83,17 +84,6 @@ def planted(machine: Machine, rng: np.random.Generator) -> Machine:
     soil = Soil(10.0, 100.0 / size, 20.0 / pace, 50.0 / (size * pace), table)
     way = str(rng.choice(["forward", "backward"]))
     return machine.with_planting(tip=tip, travel=way, soil=soil, **level, **forward)
-
-
-@cache
-def example_subject(name: str) -> Subject:
-    """Analyse a bundled example."""
-    return analysed(eq.load(name))
-
-
-def example_names() -> list[str]:
-    """Return the names of the bundled examples."""
-    return sorted(eq.examples("linkage"))
 
 
 def vector(signal: Any) -> Array:

@@ -48,6 +48,12 @@ def test_chosen_pictures(folder: Path, arguments: list[str], written: list[str])
     assert sorted(str(path.relative_to(folder)) for path in there) == written
 
 
+def test_outputs_are_told_by_their_labels(folder: Path) -> None:
+    outputs = ("--output", "shaking_force.y", "--output", "drive_torque")
+    told = succeeded(equipoise("plot", "yamashita-1", *outputs, "-o", "a"))
+    assert told == "a/outputs.svg  shaking force y, drive torque\n"
+
+
 def test_a_map_tells_the_best_place(folder: Path) -> None:
     """Fig. 12 of Yamashita, Ichikawa and Mori: 35.7 mm at 111 deg from the line of pivots."""
     options = ("--points", "9", "--set", f"{WEIGHT}.mass = 1145 g", "-o", "map")

@@ -6,7 +6,7 @@ from cmath import phase, rect
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import product, starmap
+from itertools import combinations, product, starmap
 from math import pi
 from typing import Any
 
@@ -72,6 +72,12 @@ class Gearing:
         return f"{self.geared.name}-axis"
 
     @property
+    def apart(self) -> float:
+        """Distance of the shafts, m, where their places are given."""
+        assert self.geared.axis is not None
+        return abs(complex(*self.geared.axis) - self.at_pin)
+
+    @property
     def turns_fully(self) -> bool:
         """Whether the driver goes round, so that only few ratios bring the shaft back."""
         speed = self.motion.links[self.geared.driver].angular_velocity
@@ -108,11 +114,10 @@ class Gearing:
 
     def _why_none(self) -> str:
         if self.geared.teeth is not None:
-            assert self.geared.axis is not None and self.geared.module is not None
-            apart = abs(complex(*self.geared.axis) - self.at_pin)
+            assert self.geared.module is not None
             return (
-                f"the gears of the {self.geared.name} do not mesh: shafts {apart * 1e3:.5g} mm "
-                f"apart need {2 * apart / self.geared.module:.5g} teeth of module "
+                f"the gears of the {self.geared.name} do not mesh: shafts {self.apart * 1e3:.5g} "
+                f"mm apart need {2 * self.apart / self.geared.module:.5g} teeth of module "
                 f"{self.geared.module * 1e3:.4g} mm together; move the axis, or leave it out"
             )
         low, high = self.geared.ratio or (0.0, 0.0)
@@ -122,16 +127,17 @@ class Gearing:
         )
 
     def _choices(self) -> Iterator[Mesh]:
-        if self.geared.teeth is not None:
-            assert self.geared.module is not None
-            low, high = self.geared.teeth
-            half = self.geared.module / 2
-            counts = range(low, high + 1)
-            triples = product(counts, counts, self._directions())
-            meshes = (Mesh(half * a, half * b, way, (a, b)) for a, b, way in triples)
-            yield from (mesh for mesh in meshes if self._meets(mesh))
-        else:
+        if self.geared.teeth is None:
             yield from starmap(self.mesh, product(self._ratios(), self._directions()))
+            return
+        assert self.geared.module is not None
+        low, high = self.geared.teeth
+        half, counts = self.geared.module / 2, range(low, high + 1)
+        for a, b, way in product(counts, counts, self._directions()):
+            mesh = Mesh(half * a, half * b, way, (a, b))
+            meets = self.geared.axis is None or abs(mesh.driver + mesh.shaft - self.apart) < SAME
+            if meets:
+                yield mesh
 
     def _directions(self) -> list[float]:
         if self.geared.direction is None:
@@ -142,13 +148,6 @@ class Gearing:
         whole = high - low >= 2 * pi - 1e-9
         return [float(d) for d in np.linspace(low, high, WAYS, endpoint=not whole)]
 
-    def _meets(self, mesh: Mesh) -> bool:
-        """Whether the gears touch on shafts whose places are given."""
-        if self.geared.axis is None:
-            return True
-        apart = abs(complex(*self.geared.axis) - self.at_pin)
-        return abs(mesh.driver + mesh.shaft - apart) < SAME
-
     def _ratios(self) -> list[float]:
         assert self.geared.ratio is not None
         low, high = self.geared.ratio
@@ -157,11 +156,8 @@ class Gearing:
         if not self.turns_fully:
             count = COARSE if "direction" in self.ranges else GRID
             return [float(ratio) for ratio in np.geomspace(low, high, count)]
-        fractions = {
-            Fraction(p, q)
-            for q in range(1, LARGEST_DENOMINATOR + 1)
-            for p in range(1, int(high * q) + 1)
-        }
+        bottoms = range(1, LARGEST_DENOMINATOR + 1)
+        fractions = {Fraction(p, q) for q in bottoms for p in range(1, int(high * q) + 1)}
         return sorted(float(f) for f in fractions if low <= f <= high)
 
     def near(self, start: Mesh, numbers: dict[str, float]) -> Mesh:
@@ -173,9 +169,8 @@ class Gearing:
     def mesh(self, ratio: float, direction: float) -> Mesh:
         """Gears of a ratio, with the shaft in a direction from the driver's pin."""
         if self.geared.axis is not None:
-            apart = abs(complex(*self.geared.axis) - self.at_pin)
-            driver = apart * ratio / (1 + ratio)
-            return Mesh(driver, apart - driver, direction)
+            driver = self.apart * ratio / (1 + ratio)
+            return Mesh(driver, self.apart - driver, direction)
         assert self.geared.pitch_radius is not None
         return Mesh(self.geared.pitch_radius, self.geared.pitch_radius / ratio, direction)
 
@@ -208,15 +203,13 @@ class Gearing:
         place: Vector = (self.axis(mesh).real, self.axis(mesh).imag)
         mass, inertia = self._gear(mesh.shaft)
         shaft = Link({self.name: (0.0, 0.0)}, mass, (0.0, 0.0), inertia)
-        given: dict[str, Any] = (
-            {"ratio": -mesh.ratio} if mesh.teeth is None else {"teeth": mesh.teeth}
-        )
+        turning = {"ratio": -mesh.ratio} if mesh.teeth is None else {"teeth": mesh.teeth}
         machine = _with_gear(machine, geared.driver, self.pin, *self._gear(mesh.driver))
         machine = replace(
             machine,
             frame={**machine.frame, self.name: place},
             links={**machine.links, geared.name: shaft},
-            gears=(*machine.gears, Gear(geared.driver, geared.name, **given)),
+            gears=(*machine.gears, Gear(geared.driver, geared.name, **turning)),
         )
         return machine, AddedWeight(machine, geared.name, self.name, geared.weight)
 
@@ -259,12 +252,11 @@ def nearest(motion: Motion, link: str, place: complex) -> float:
     """How near a link's points, and the lines between them, come to a place over a turn, m."""
     points = [motion.points[name].place for name in motion.machine.links[link].points]
     least = min(float(np.min(np.abs(p - place))) for p in points)
-    for k, one in enumerate(points):
-        for other in points[k + 1 :]:
-            along = other - one
-            share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-30)
-            foot = one + np.clip(share, 0.0, 1.0) * along
-            least = min(least, float(np.min(np.abs(foot - place))))
+    for one, other in combinations(points, 2):
+        along = other - one
+        share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-30)
+        foot = one + np.clip(share, 0.0, 1.0) * along
+        least = min(least, float(np.min(np.abs(foot - place))))
     return least
 
 
@@ -275,18 +267,17 @@ def with_shafts(machine: Machine, shafts: BalanceShafts) -> tuple[Machine, list[
     first, and turns with the drive's link: a pair of gears from outside each time.
     """
     names = [f"{shafts.name}-{k}" for k in (1, 2)]
-    points = [f"{name}-axis" for name in names]
-    frame = {**machine.frame, **dict(zip(points, shafts.axes, strict=True))}
-    empty = {
-        name: Link({point: (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0)
-        for name, point in zip(names, points, strict=True)
-    }
+    points = dict(zip(names, (f"{name}-axis" for name in names), strict=True))
+    empty = {name: Link({at: (0.0, 0.0)}, 0.0, (0.0, 0.0), 0.0) for name, at in points.items()}
     gears = (
         Gear(machine.drive.link, names[0], ratio=-float(shafts.order)),
         Gear(names[0], names[1], ratio=-1.0),
     )
     machine = replace(
-        machine, frame=frame, links={**machine.links, **empty}, gears=(*machine.gears, *gears)
+        machine,
+        frame={**machine.frame, **dict(zip(points.values(), shafts.axes, strict=True))},
+        links={**machine.links, **empty},
+        gears=(*machine.gears, *gears),
     )
-    pairs = zip(names, points, strict=True)
-    return machine, [AddedWeight(machine, n, p, shafts.weight) for n, p in pairs]
+    weights = [AddedWeight(machine, name, at, shafts.weight) for name, at in points.items()]
+    return machine, weights

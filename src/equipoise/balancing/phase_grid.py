@@ -20,7 +20,6 @@ from math import comb, factorial, prod
 import numpy as np
 
 from equipoise.balancing.multi_row import Cost, RowSignals, Term, by_orders
-from equipoise.mechanism.balance import Measure
 from equipoise.signals import Array, synthesis
 
 MOST = 5_000_000
@@ -89,7 +88,10 @@ class Grid:
     def best(self, progress: Callable[[int], None]) -> Array:
         """The best arrangements (R, m), rad, the best first; `progress` hears how many are done."""
         sampled = any(not by_orders(term.measure) for term in self.cost.terms)
-        judges = [self._judge(term) for term in self.cost.terms]
+        judges = [
+            self._by_pairs(term) if by_orders(term.measure) else self._by_samples(term)
+            for term in self.cost.terms
+        ]
         levels, costs = np.zeros((0, self.cost.rows), np.int64), np.zeros(0)
         done = 0
         for chunk in self._chunks(SAMPLED_CHUNK if sampled else CHUNK):
@@ -113,9 +115,6 @@ class Grid:
                 left, here = np.divmod(left, len(part))
                 chunk[:, group] = part[here]
             yield chunk
-
-    def _judge(self, term: Term) -> Callable[[Array], Array]:
-        return self._by_pairs(term) if by_orders(term.measure) else self._by_samples(term)
 
     def _by_pairs(self, term: Term) -> Callable[[Array], Array]:
         """Value (B,) of numbers of steps (B, m), by the pairs' tables."""
@@ -146,38 +145,31 @@ class Grid:
         samples = synthesis(turned, theta).astype(np.float32)
 
         def judge(levels: Array) -> Array:
-            found = sum(samples[levels[:, k], :, k] for k in range(self.cost.rows))
-            values = np.asarray(found)
+            values = np.asarray(sum(samples[levels[:, k], :, k] for k in range(self.cost.rows)))
             values = values[:, :, 0] if values.shape[2] == 1 else np.linalg.norm(values, axis=2)
-            return np.asarray(np.max(_sampled(values, term.measure), axis=1), float)
+            high, low = np.max(values, axis=-1), np.min(values, axis=-1)
+            found = high - low if term.measure == "peak_to_peak" else np.maximum(high, -low)
+            if term.measure == "area":
+                found = 2 * np.pi * np.mean(np.abs(values), axis=-1)
+            return np.asarray(np.max(found, axis=1), float)
 
         return judge
-
-
-def _sampled(values: Array, measure: Measure) -> Array:
-    """Measure (...) of sampled signals (..., N)."""
-    if measure == "area":
-        return np.asarray(2 * np.pi * np.mean(np.abs(values), axis=-1))
-    high, low = np.max(values, axis=-1), np.min(values, axis=-1)
-    return np.asarray(high - low if measure == "peak_to_peak" else np.maximum(high, -low))
 
 
 def alike(cost: Cost) -> list[list[int]]:
     """Rows that do the same to every objective, by groups; what does not vary is left out."""
     signals = [term.signals.amplitudes[..., 1:] for term in cost.terms]
+    tops = [np.max(np.abs(a)) for a in signals]
     groups: list[list[int]] = []
     for k in range(cost.rows):
         for group in groups:
-            if all(_same(a[:, group[0]], a[:, k], a) for a in signals):
+            gaps = (np.max(np.abs(a[:, group[0]] - a[:, k])) for a in signals)
+            if all(gap <= SAME * top for gap, top in zip(gaps, tops, strict=True)):
                 group.append(k)
                 break
         else:
             groups.append([k])
     return groups
-
-
-def _same(one: Array, other: Array, whole: Array) -> bool:
-    return bool(np.max(np.abs(one - other)) <= SAME * np.max(np.abs(whole)))
 
 
 def sorted_choices(levels: int, count: int) -> Array:

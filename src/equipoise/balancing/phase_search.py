@@ -138,7 +138,10 @@ class PhaseSearch:
         grid, rows = self.grid, self.cost.rows
         first = [self.present, np.arange(rows) * (self.cost.period / rows)]
         if grid is None or grid.levels < FEW_LEVELS * self.force.turns:
-            first += list(self._guesses())
+            shape = (max(2, GUESSES // rows), rows)
+            guesses = np.random.default_rng(1).uniform(0.0, self.cost.period, shape)
+            guesses[:, 0] = 0.0
+            first += list(guesses)
         if grid is None:
             progress(len(first), len(first))
             return np.array(first)
@@ -146,12 +149,6 @@ class PhaseSearch:
         most = CANDIDATES if grid.levels == self.levels else COARSE_CANDIDATES
         apart = sorted({max(WIDE, grid.step), grid.step}, reverse=True)
         return np.vstack([*first, distinct(cells, self.cost.period, apart, most)])
-
-    def _guesses(self) -> Array:
-        count = max(2, GUESSES // self.cost.rows)
-        found = np.random.default_rng(1).uniform(0.0, self.cost.period, (count, self.cost.rows))
-        found[:, 0] = 0.0
-        return found
 
     def _descended(self, phases: Array) -> Array:
         """The arrangement from which no single row can be moved by a step for the better."""
@@ -278,13 +275,16 @@ def choose_phases(
     before, after = (
         {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
     )
+    force = search.force
+    left = np.max(np.abs(force.total(found)[0]), axis=0)[1:]
+    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(found)
     return Phasing(
         machine=placed,
         phases=tuple(row.phase for row in placed.rows),
         before=before,
         after=after,
         combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
-        remaining=_remaining(search, found),
+        remaining=tuple(force.orders[1:][left > SURVIVES * loudest].tolist()),
         lateral={
             one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
         },
@@ -302,14 +302,6 @@ def _placed(search: PhaseSearch, found: Array) -> Machine:
     turned = (first.phase + found[1:]) % search.cost.period
     moved = [replace(row, phase=phase) for row, phase in zip(others, turned.tolist(), strict=True)]
     return search.machine.with_rows([first, *moved])
-
-
-def _remaining(search: PhaseSearch, phases: Array) -> tuple[float, ...]:
-    force = search.force
-    left = np.max(np.abs(force.total(phases)[0]), axis=0)
-    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(phases)
-    loud = left[1:] > SURVIVES * loudest
-    return tuple(float(order) for order in force.orders[1:][loud])
 
 
 def _notes(search: PhaseSearch, found: Array) -> Iterator[Note]:

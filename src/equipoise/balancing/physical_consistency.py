@@ -90,8 +90,8 @@ class ConsistentMasses:
         except NoSolutionError:
             return None
         added = dict(zip(self.links, (masses - self.mass).tolist(), strict=True))
-        massless = {link for link, own in zip(self.links, self.mass, strict=True) if own == 0}
-        traces = {link for link in massless if SMALL < added[link] <= TRACE}
+        massless = [link for link, own in zip(self.links, self.mass, strict=True) if own == 0]
+        traces = [link for link in massless if SMALL < added[link] <= TRACE]
         least = TRACE if traces else SMALL
         found = {link: more * self.unit for link, more in added.items() if more > least}
         return found | dict.fromkeys(sorted(traces), 0.0)
@@ -201,10 +201,9 @@ class ConsistentMasses:
         for own, mass, inertia in zip(of_links, self.mass, self.inertia, strict=True):
             moments = float(own[X] ** 2 + own[Y] ** 2)
             turning = max(float(own[INERTIA]), 0.0)
+            lost = np.inf if moments > rounding else 0.0
             if turning > rounding:
                 lost = moments / (4 * turning)
-            else:
-                lost = np.inf if moments > rounding else 0.0
             bracket = float(own[MASS]) - lost
             if bracket < -SMALL or own[INERTIA] < -rounding:
                 return -np.inf
@@ -285,7 +284,7 @@ class Feasibility:
     both: Answer
 
     @property
-    def answers(self) -> tuple[Answer, Answer, Answer]:
+    def answers(self) -> tuple[Answer, ...]:
         return self.force, self.moment, self.both
 
     def __str__(self) -> str:
@@ -314,17 +313,12 @@ def _answer(machine: Machine, what: str) -> Answer:
     added = masses.least_added()
     if added is not None:
         return Answer(what, True, added, True, _possible(what, added), None)
-    proof, points = _proof(machine, masses), masses.by_points()
+    proof, points, found = None, masses.by_points(), masses.contradiction()
+    if found is not None:
+        row, least = found
+        words = reading(machine, row, signed=True)
+        proof = Proof(row * words.factor, words.text, least * words.factor, words.unit)
     return Answer(what, False, None, points, _impossible(what, proof, points), proof)
-
-
-def _proof(machine: Machine, masses: ConsistentMasses) -> Proof | None:
-    found = masses.contradiction()
-    if found is None:
-        return None
-    row, least = found
-    words = reading(machine, row, signed=True)
-    return Proof(row * words.factor, words.text, least * words.factor, words.unit)
 
 
 def _possible(what: str, added: Mapping[str, float]) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,7 +20,7 @@ from equipoise.balancing.objectives import Near, bound_measure, measured, signal
 from equipoise.balancing.program import Affine, Program
 from equipoise.balancing.weights import AddedWeight
 from equipoise.errors import UsageError
-from equipoise.mechanism.balance import Balance, Limit, Objective
+from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import parameter_values
 from equipoise.signals import Array
@@ -67,6 +67,10 @@ class Problem:
         for move in plan.moves:
             start = start.with_link(move.link, center_of_mass=(0.0, 0.0))
         return cls(machine, plan, start, tuple(parts), Near(machine))
+
+    def with_numbers(self, numbers: list[Array]) -> Iterator[tuple[DesignVariables, Array]]:
+        """Each part, and its numbers."""
+        return zip(self.parts, numbers, strict=True)
 
     def near(self, numbers: list[Array]) -> Problem:
         """The same, with gauges read as they are near the machine of some numbers."""
@@ -128,11 +132,9 @@ class Problem:
     def cost_at(self, numbers: list[Array]) -> float:
         """The same for the parts' numbers, as the program has it."""
         x = np.concatenate(numbers)
+        each = ((one.measure, self.signals[one.name]) for one in self.plan.objectives)
         return self.plan.combined(
-            [
-                max(measured(signal.at(x), one.measure) for signal in self.signals[one.name])
-                for one in self.plan.objectives
-            ]
+            [max(measured(s.at(x), how) for s in found) for how, found in each]
         )
 
     def scale(self, objective: Objective) -> float:
@@ -198,34 +200,32 @@ class Problem:
     @cached_property
     def built(self) -> Built:
         """The program of everything that is asked."""
-        program = Program()
+        program, plan = Program(), self.plan
         places = [program.numbers(part.count) for part in self.parts]
         squares = [
-            square
-            for part, at in zip(self.parts, places, strict=True)
-            for square in part.constrain(program, at)
+            one for part, at in self.with_numbers(places) for one in part.constrain(program, at)
         ]
-        self._limit_added(program, places)
-        numbers = np.concatenate(places)
-        terms = [self._term(program, numbers, one) for one in self.plan.objectives]
-        for limit in self.plan.limits:
-            self._limit(program, numbers, limit)
-        self._cost(program, terms)
-        return Built(program, places, self._that_matter(squares, numbers))
-
-    def _limit_added(self, program: Program, places: list[Array]) -> None:
-        if self.plan.added_mass is None:
-            return
         masses, units = self.added_masses(places)
-        if len(masses):
-            slope = Affine.fixed(1.0)
-            program.nonnegative(Affine.of(masses, -units, self.plan.added_mass), ADDED, slope)
+        if plan.added_mass is not None and len(masses):
+            rows = Affine.of(masses, -units, plan.added_mass)
+            program.nonnegative(rows, ADDED, Affine.fixed(1.0))
+        numbers = np.concatenate(places)
+        terms = [self._term(program, numbers, one) for one in plan.objectives]
+        for limit in plan.limits:
+            scale, most = self.scale(limit.objective), limit.at_most
+            bound = Affine.fixed(limit.ratio if most is None else most / scale)
+            for signal in self.signals[limit.name]:
+                measure = limit.objective.measure
+                bound_measure(program, numbers, signal, measure, bound, limit.name)
+        self._cost(program, terms)
+        matter = dict(zip(numbers.tolist(), self._matters, strict=True))
+        return Built(program, places, [square for square in squares if matter[square.lift]])
 
     def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
         """Places of the numbers that are added masses, and a unit of each, kg."""
         found = [
             (at[part.mass_place], part.mass_unit)
-            for part, at in zip(self.parts, places, strict=True)
+            for part, at in self.with_numbers(places)
             if part.mass_place is not None
         ]
         masses, units = zip(*found, strict=True) if found else ((), ())
@@ -238,13 +238,6 @@ class Problem:
             bound_measure(program, numbers, signal, objective.measure, Affine.of(term, 1.0))
         return int(term[0])
 
-    def _limit(self, program: Program, numbers: Array, limit: Limit) -> None:
-        scale = self.scale(limit.objective)
-        at_most = limit.ratio if limit.at_most is None else limit.at_most / scale
-        bound = Affine.fixed(at_most)
-        for signal in self.signals[limit.name]:
-            bound_measure(program, numbers, signal, limit.objective.measure, bound, limit.name)
-
     def _cost(self, program: Program, terms: list[int]) -> None:
         weights = [one.weight for one in self.plan.objectives]
         if self.plan.combine == "sum" or len(terms) == 1:
@@ -254,11 +247,6 @@ class Problem:
         factors = np.diag([1.0, *weights])
         program.cones(Affine.of([int(whole[0]), *terms], factors), len(factors))
         program.cost = {int(whole[0]): 1.0}
-
-    def _that_matter(self, squares: list[Square], numbers: Array) -> list[Square]:
-        """Squares whose lifts change an objective or a limited output."""
-        place_of = {int(place): k for k, place in enumerate(numbers)}
-        return [square for square in squares if self._matters[place_of[square.lift]]]
 
     @cached_property
     def _matters(self) -> Array:
@@ -280,13 +268,8 @@ class Problem:
 
     def mass_added(self, numbers: list[Array]) -> float:
         """Mass of weights and gears, kg."""
-        pairs = zip(self.parts, numbers, strict=True)
-        weights = sum(float(own @ part.effect[:, 0]) for part, own in pairs)
+        weights = sum(float(own @ part.effect[:, 0]) for part, own in self.with_numbers(numbers))
         return self.start.mass - self.machine.mass + weights
-
-    def split(self, x: Array) -> list[Array]:
-        """The numbers of each part, tightened."""
-        return self.tightened([x[at] for at in self.built.places])
 
     def tightened(self, numbers: list[Array]) -> list[Array]:
         """Squares made equal; of numbers that do not matter, the least that are possible."""
@@ -304,19 +287,19 @@ class Problem:
 
     def machine_with(self, numbers: list[Array]) -> Machine:
         """The machine that the parts' numbers make."""
-        machine = self.start
-        values = parameter_values(machine).reshape(-1, 4).copy()
-        order = list(machine.links)
-        for part, own in zip(self.parts, numbers, strict=True):
-            values[order.index(part.link)] += own @ part.effect
-        for link in {part.link for part in self.parts if not isinstance(part, FreeSpring)}:
-            machine = with_parameters(machine, link, values[order.index(link)])
-        pairs = zip(self.parts, numbers, strict=True)
-        springs = [part.spring(own) for part, own in pairs if isinstance(part, FreeSpring)]
-        kept = [spring for spring in springs if spring is not None]
-        if kept:
-            machine = replace(machine, springs=(*machine.springs, *kept))
-        return machine
+        machine, springs = self.start, list(self.start.springs)
+        values = dict(zip(machine.links, parameter_values(machine).reshape(-1, 4), strict=True))
+        changed = {part.link: values[part.link] for part in self.parts}
+        for part, own in self.with_numbers(numbers):
+            if isinstance(part, FreeSpring):
+                springs += filter(None, [part.spring(own)])
+            else:
+                changed[part.link] = changed[part.link] + own @ part.effect
+        for part in self.parts:
+            if not isinstance(part, FreeSpring):
+                machine = with_parameters(machine, part.link, changed[part.link])
+        added = len(springs) > len(machine.springs)
+        return replace(machine, springs=tuple(springs)) if added else machine
 
 
 @dataclass(frozen=True, eq=False)

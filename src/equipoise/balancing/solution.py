@@ -67,12 +67,14 @@ def solve_problem(
     bent = problem.reads_gauges and problem.supports_more
     if not bent and not problem.flips:
         return found
-    cost = problem.cost_of(found.machine)
+    cost, limits_gauges = problem.cost_of(found.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
         near = problem.near(found.numbers)
         towards = _solve_once(near, progress)
-        if _limits_gauges(problem):  # which are kept where they are read, not a step before
-            better = towards if _apart(found, towards) > SETTLED else None
+        if limits_gauges:  # which are kept where they are read, not a step before
+            pairs = zip(found.numbers, towards.numbers, strict=True)
+            apart = max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
+            better = towards if apart > SETTLED else None
         else:
             better = _on_the_way(near, found, towards, cost)
         if better is None:
@@ -81,22 +83,12 @@ def solve_problem(
     return found
 
 
-def _limits_gauges(problem: Problem) -> bool:
-    return any(one.objective.output.startswith("gauges.") for one in problem.plan.limits)
-
-
-def _apart(one: Solution, other: Solution) -> float:
-    """The largest difference of any number, scaled."""
-    pairs = zip(one.numbers, other.numbers, strict=True)
-    return max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
-
-
 def _begun(problem: Problem) -> Problem:
     """The problem, read near a machine that keeps the limits of gauges as far as can be.
 
     Near the machine as it is, with a lighter support, they may look as if they could not be kept.
     """
-    gauged = [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
+    gauged = _gauged(problem)
     if not gauged or not problem.supports_more:
         return problem
     others = tuple(one for one in problem.plan.limits if one not in gauged)
@@ -105,14 +97,18 @@ def _begun(problem: Problem) -> Problem:
     return problem.near(solve_problem(first).numbers)
 
 
+def _gauged(problem: Problem) -> list[Limit]:
+    """Limits of what gauges read."""
+    return [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
+
+
 def _on_the_way(
     problem: Problem, found: Solution, towards: Solution, cost: float
 ) -> Solution | None:
     """A solution between two that costs less than the first; None where there is none."""
     for share in SHARES:
         pairs = zip(found.numbers, towards.numbers, strict=True)
-        between = [(1 - share) * one + share * other for one, other in pairs]
-        numbers = problem.tightened(between)
+        numbers = problem.tightened([(1 - share) * one + share * two for one, two in pairs])
         machine = problem.machine_with(numbers)
         if problem.cost_of(machine) < cost - STILL:
             return replace(towards, numbers=numbers, machine=machine)
@@ -124,7 +120,8 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
     numbers = closed_form(problem)
     if numbers is not None:
         machine = problem.machine_with(numbers)
-        best = as_best(problem, problem.cost_of(machine))
+        cost = problem.cost_of(machine)
+        best = Best(np.zeros(0), cost, cost, {}, Program(), 0)  # no limit, no interval, no gap
         return Solution(problem, best, numbers, machine, Note("closed form"))
     built = problem.built
     try:
@@ -133,16 +130,21 @@ def _solve_once(problem: Problem, progress: Progress | None, above: float = inf)
         raise UsageError(f"{error}; change a limit a little, or free less") from error
     except NoSolutionError:
         raise infeasibility(problem) from None
-    numbers = problem.split(best.x) if above < inf else _lightest_numbers(problem, best)
+    numbers = _split(problem, best.x) if above < inf else _lightest_numbers(problem, best)
     numbers = problem.lightened(numbers)
     one = best.nodes == 1
     method = Note("cone program") if one else Note("branch and bound")
     return Solution(problem, best, numbers, problem.machine_with(numbers), method)
 
 
+def _split(problem: Problem, x: Array) -> list[Array]:
+    """The numbers of each part, tightened."""
+    return problem.tightened([x[at] for at in problem.built.places])
+
+
 def _lightest_numbers(problem: Problem, best: Best) -> list[Array]:
     """Of the numbers that are as good, those that add the least mass."""
-    found = problem.split(best.x)
+    found = _split(problem, best.x)
     masses, units = problem.added_masses(problem.built.places)
     if not len(masses) or (problem.reads_gauges and not problem.leaves_masses_open):
         return found
@@ -152,7 +154,7 @@ def _lightest_numbers(problem: Problem, best: Best) -> list[Array]:
     program.nonnegative(Affine.of(terms, -weights, best.value + SLACK * problem.whole))
     program.cost = {int(m): float(u) for m, u in zip(masses, units / np.max(units), strict=True)}
     try:
-        lighter = problem.split(program.solve().x)
+        lighter = _split(problem, program.solve().x)
     except NoSolutionError:  # as near to the best as that, there may be no room to move
         return found
     worse = problem.cost_at(lighter) - best.value
@@ -167,58 +169,50 @@ def closed_form(problem: Problem) -> list[Array] | None:
         return None
     if any(one.measure not in {"rms", "ripple"} or len(one.speeds) > 1 for one in plan.objectives):
         return None
-    free = [_free_numbers(part) for part in problem.parts]
-    if not free or any(numbers is None for numbers in free):
+    free, given = [], []
+    for part in problem.parts:
+        numbers = _free_numbers(part)
+        if numbers is None:
+            return None
+        free.append(np.isin(np.arange(part.count), numbers))
+        given.append(np.zeros(part.count))
+        if isinstance(part, AddedWeight) and part.weight.mass is not None:
+            given[-1][0] = part.weight.mass / part.mass_unit
+    if not free:
         return None
-    counts = np.cumsum([0, *(part.count for part in problem.parts)])
-    places = np.concatenate([start + n for start, n in zip(counts, free, strict=False)])
-    found = _least_squares(problem, places, _given_numbers(problem))
-    if found is None:
-        return None
-    return problem.tightened(np.split(found, counts[1:-1]))
+    found = _least_squares(problem, np.concatenate(free), np.concatenate(given))
+    counts = np.cumsum([part.count for part in problem.parts])
+    return None if found is None else problem.tightened(np.split(found, counts[:-1]))
 
 
-def _free_numbers(part: DesignVariables) -> Array | None:
+def _free_numbers(part: DesignVariables) -> tuple[int, int] | None:
     """Which numbers of a part are first moments without limits; None where it has limits."""
     if isinstance(part, MovedCenter):
         move = part.move
-        return np.array([0, 1]) if (move.x, move.y, move.center) == (None,) * 3 else None
+        return (0, 1) if (move.x, move.y, move.center) == (None,) * 3 else None
     if isinstance(part, AddedWeight) and part.weight.mass is not None:
         free = part.weight.shape in {"any", "point"} and not isfinite(part.weight.radius)
-        return np.array([1, 2]) if free else None
+        return (1, 2) if free else None
     return None
 
 
-def _given_numbers(problem: Problem) -> Array:
-    """All numbers, with those that are given and 0 elsewhere."""
-    numbers = [np.zeros(part.count) for part in problem.parts]
-    for part, own in zip(problem.parts, numbers, strict=True):
-        if isinstance(part, AddedWeight) and part.weight.mass is not None:
-            own[0] = part.weight.mass / part.mass_unit
-    return np.concatenate(numbers)
+def _least_squares(problem: Problem, free: Array, given: Array) -> Array | None:
+    """All numbers (K,), with the free ones such that the sum of squares is least.
 
-
-def _least_squares(problem: Problem, places: Array, given: Array) -> Array | None:
-    """All numbers, with those at some places such that the sum of squares is least."""
+    given : (K,) those that are given, and 0 elsewhere.
+    """
     matrices, vectors = [], []
-    others = np.setdiff1d(np.arange(len(given)), places)
-    lifts = others[given[others] == 0]
+    lifts = ~free & (given == 0)
     for one in problem.plan.objectives:
         (signal,) = problem.signals[one.name]
         if np.max(np.abs(signal.columns[lifts]), initial=0.0) > WITHOUT_EFFECT:
             return None  # an inertia that grows with the square of a place
         matrix, vector = mean_square_rows(signal, one.measure)
-        matrices.append(one.weight * matrix[:, places])
+        matrices.append(one.weight * matrix[:, free])
         vectors.append(one.weight * (vector + matrix @ given))
-    moments = np.linalg.lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
     found = given.copy()
-    found[places] = moments
+    found[free] = np.linalg.lstsq(np.concatenate(matrices), -np.concatenate(vectors), rcond=None)[0]
     return found
-
-
-def as_best(problem: Problem, cost: float) -> Best:
-    """A closed form as what the search would have found: no limit, no interval, no gap."""
-    return Best(np.zeros(0), cost, cost, {}, Program(), 0)
 
 
 MOST_LIMITS = 40
@@ -263,7 +257,7 @@ def _limit_in_words(problem: Problem, name: str) -> str:
         return f"{name} at most {1e3 * most:.4g} g" if name == ADDED and most else name
     if limit.ratio is not None:
         return f"{name} at most {limit.ratio * 100:.4g} % of before"
-    return f"{name} at most {limit.at_most:.4g} {_unit(problem, limit)}"
+    return f"{name} at most {limit.at_most:.4g} {unit_of(limit.objective, problem.machine)}"
 
 
 def _way_out(problem: Problem, clash: list[str]) -> str:
@@ -282,8 +276,5 @@ def _way_out(problem: Problem, clash: list[str]) -> str:
     least /= limit.objective.weight
     kept = "the other is kept" if len(clash) == 2 else "the others are kept"
     where = f" while {kept}" if len(clash) > 1 else ""
-    return f"{limit.name} can become {least:.4g} {_unit(problem, limit)} at the least{where}"
-
-
-def _unit(problem: Problem, limit: Limit) -> str:
-    return unit_of(limit.objective, problem.machine)
+    unit = unit_of(limit.objective, problem.machine)
+    return f"{limit.name} can become {least:.4g} {unit} at the least{where}"

@@ -123,8 +123,8 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     for name in names:
         if name not in found.analysis.outputs:
             raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
-    draw = partial(outputs_chart, found.analysis, names)
-    return [Picture("outputs", "motion", ", ".join(names), draw)]
+    caption = ", ".join(found.analysis.outputs[name].label() for name in names)
+    return [Picture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))]
 
 
 def _chosen(pictures: Iterable[Picture], only: Sequence[str] | None) -> list[Picture]:
@@ -174,8 +174,8 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.figures.objectives import landscape as drawn_map
-    from equipoise.figures.objectives import told_best
+    from equipoise.figures.studies import landscape as drawn_map
+    from equipoise.figures.studies import told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 

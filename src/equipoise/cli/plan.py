@@ -21,7 +21,7 @@ from equipoise.cli.options import (
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
-    from equipoise.mechanism.balance import Balance, GearedWeight, Limit, Objective, Weight
+    from equipoise.mechanism.balance import Balance, GearedWeight, Objective, Weight
     from equipoise.mechanism.model import Machine
 
 MEASURES = ("rms", "ripple", "peak", "peak_to_peak", "area")
@@ -136,6 +136,7 @@ class Freed:
         """The file's plan, with what is free in the place of what the file says."""
         from equipoise.balancing.optimisation import pin_of
         from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Phases
+        from equipoise.mechanism.checks import unknown
 
         plan = machine.balance or Balance()
         if not self.any:
@@ -146,7 +147,8 @@ class Freed:
             ("--geared-counterweight", [self.geared_counterweight]),
         ):
             for link in links or ():
-                _check_link(option, machine, link)
+                if link is not None and link not in machine.links:
+                    raise UsageError(f"{option}: {unknown(link, machine.links, 'link')}")
         weighted = [machine.drive.link] if self.crank_counterweight else []
         weighted += self.counterweight or []
         return replace(
@@ -192,7 +194,9 @@ class Freed:
                 '--pitch-radius "50 mm"'
             )
         weight, ratio = self.weight(machine, driver), self.ratio or (0.2, 3.0)
-        name = _new_name(machine)
+        names = ("counterweight", *(f"counterweight-{k}" for k in range(2, len(machine.links) + 3)))
+        taken = {*machine.links, *machine.frame}
+        name = next(name for name in names if taken.isdisjoint({name, f"{name}-axis"}))
         return (GearedWeight(driver, weight, ratio, pitch_radius=self.pitch_radius, name=name),)
 
 
@@ -211,20 +215,6 @@ def plan_of(
     with blaming_by_place(PLACES):
         machine.with_balance(plan)
     return plan
-
-
-def _check_link(option: str, machine: Machine, link: str | None) -> None:
-    from equipoise.mechanism.checks import unknown
-
-    if link is not None and link not in machine.links:
-        raise UsageError(f"{option}: {unknown(link, machine.links, 'link')}")
-
-
-def _new_name(machine: Machine) -> str:
-    """For a counterweight beside those that there are already."""
-    names = ("counterweight", *(f"counterweight-{k}" for k in range(2, len(machine.links) + 3)))
-    taken = {*machine.links, *machine.frame}
-    return next(name for name in names if taken.isdisjoint({name, f"{name}-axis"}))
 
 
 def read_objective(option: str, text: str) -> Objective:
@@ -270,6 +260,11 @@ def _read_word(option: str, word: str, value: str) -> dict[str, Any]:
 
 
 def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
+    """A plan with one more limit, such as ``peak joints.B <= 120 N``."""
+    from equipoise.mechanism.balance import Limit
+    from equipoise.mechanism.objectives import quantity_of
+    from equipoise.schema.numbers import parse_share
+
     head, sign, tail = (part.strip() for part in text.partition("<="))
     if not (head and sign and tail):
         raise UsageError(
@@ -278,23 +273,17 @@ def _limited(machine: Machine, plan: Balance, text: str) -> Balance:
         )
     if head == "added_mass":
         return replace(plan, added_mass=quantity("--limit", tail, "mass"))
-    return replace(plan, limits=(*plan.limits, _limit(machine, head, tail)))
-
-
-def _limit(machine: Machine, head: str, tail: str) -> Limit:
-    from equipoise.mechanism.balance import Limit
-    from equipoise.mechanism.objectives import quantity_of
-    from equipoise.schema.numbers import parse_share
-
     asked = read_objective("--limit", head)
     with blaming("--limit"):
         share = parse_share(tail)
-        if share is not None:
-            return Limit(asked, ratio=share)
-        dimension = quantity_of(asked, machine)
-    if dimension is None:
+        dimension = None if share is not None else quantity_of(asked, machine)
+    if share is not None:
+        limit = Limit(asked, ratio=share)
+    elif dimension is not None:
+        limit = Limit(asked, at_most=quantity("--limit", tail, dimension))
+    else:
         raise UsageError(
             f"--limit: there is no unit for the area under {asked.output}; give a share of the "
             'value before, such as "80 %"'
         )
-    return Limit(asked, at_most=quantity("--limit", tail, dimension))
+    return replace(plan, limits=(*plan.limits, limit))

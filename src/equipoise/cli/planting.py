@@ -102,10 +102,10 @@ def fit(
             machine,
             given.goals,
             given.vary,
-            given.sense,
-            seed=given.seed if seed is None else seed,
-            generations=given.generations,
-            population=given.population,
+            given.search.crank,
+            seed=given.search.seed if seed is None else seed,
+            generations=given.search.generations,
+            population=given.search.population,
             progress=progress,
         )
     origin = f"Geometry found by equipoise plant fit {Path(targets).name}, seed {fitted.seed}."

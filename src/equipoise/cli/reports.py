@@ -107,16 +107,15 @@ def _kind(out: str) -> str:
 
 def _angles_of(kind: str, seconds: float) -> int:
     """Crank angles in a turn: so many for each frame that paths are smooth."""
-    from equipoise.figures.film import in_a_turn
+    from equipoise.figures.stage import in_a_turn
 
     frames = SVG_FRAMES if kind == "svg" else in_a_turn(kind, seconds)
     return frames * ceil(LEAST_ANGLES / frames)
 
 
 def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) -> str | bytes:
-    from equipoise.figures import film
+    from equipoise.figures.animation import animated_svg
     from equipoise.figures.stage import Arrow
-    from equipoise.figures.svg import animated_svg
     from equipoise.symbols.scene import Scene
 
     scene = Scene.of(found.motion)
@@ -127,6 +126,8 @@ def _animated(found: Analysis, kind: str, force: bool, options: dict[str, Any]) 
         options["arrow"] = Arrow(forces.about, forces.shaking_force.value, of_one)
     if kind == "svg":
         return animated_svg(scene, title=found.machine.title, frames=SVG_FRAMES, **options)
+    from equipoise.figures import film
+
     draw = film.gif if kind == "gif" else film.mp4
     with counted("frame") as told:
         return draw(scene, told=told, **options)

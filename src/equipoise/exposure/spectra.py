@@ -37,9 +37,7 @@ from equipoise.exposure.weighting import (
     sizes,
     squared_factor,
 )
-from equipoise.signals import harmonics
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, harmonics
 
 LEAST_RATE = 2 * float(EDGES[-1])
 """Hz: below, a record cannot hold the whole band of 1250 Hz."""

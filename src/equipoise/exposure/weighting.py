@@ -24,9 +24,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.quantities.units import HUGE, TINY
 from equipoise.results.result import Result
-from equipoise.signals import highest_at
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, highest_at
 
 AXES = ("x", "y", "z")
 

@@ -16,9 +16,9 @@ from matplotlib.patheffects import withStroke
 from matplotlib.transforms import Affine2D
 
 from equipoise.errors import UsageError, needed
-from equipoise.figures.moving import Moving, Part, Stroke, laid_out
+from equipoise.figures.animation import Moving, Part, Stroke, laid_out
 from equipoise.figures.paint import settings
-from equipoise.figures.stage import Arrow, check_seconds, check_width
+from equipoise.figures.stage import RATES, Arrow, check_seconds, check_width, in_a_turn
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS, Colors, Look
 from equipoise.symbols.shapes import Array
 
@@ -27,8 +27,6 @@ if TYPE_CHECKING:
 
 Told = Callable[[int, int], None]
 
-RATES = {"gif": 25, "mp4": 30}
-"""Frames a second.  Delays of a GIF are whole hundredths of a second."""
 MOST_PIXELS = 600_000_000
 """In all frames of a film, each taken as square."""
 MOST_COLORS = 255
@@ -123,11 +121,6 @@ def mp4(
             film.mux(stream.encode(picture))
         film.mux(stream.encode())
     return file.getvalue()
-
-
-def in_a_turn(kind: str, seconds: float) -> int:
-    """Frames in a turn of the crank that takes some seconds."""
-    return max(1, round(seconds * RATES[kind]))
 
 
 def _prepared(

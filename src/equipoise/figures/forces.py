@@ -31,7 +31,7 @@ from equipoise.i18n import say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Array, Arrow, Axis, Bars, Chart, Curve, Line, Mark, Panel
 from equipoise.results.outputs import CAUSES
-from equipoise.signals import Periodic
+from equipoise.signals import Periodic, highest_at
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -175,7 +175,7 @@ def _told_sizes(
 ) -> tuple[list[Mark], list[Curve], tuple[Arrow, ...], str]:
     """An arrow to the peak and a circle of the mean size, with their values, or why not."""
     sizes = np.abs(values)
-    k = int(np.argmax(sizes))
+    k = int(highest_at(sizes))
     if not sizes[k]:
         return [], [], (), say("zero at every crank angle")
     mean, peak = float(np.mean(sizes)), complex(values[k])

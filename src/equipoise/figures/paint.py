@@ -125,18 +125,12 @@ def _paint(axes: Axes, item: Item, order: int) -> None:
         artist.set(markersize=wide, markeredgecolor=item.edge, markerfacecolor=item.face)
         artist.set(markeredgewidth=0 if item.shape == "." else item.width)
     else:
-        look: Any = {
-            "zorder": order,
-            "joinstyle": "round",
-            "capstyle": "round" if item.round else "butt",
-        }
-        look |= {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
-        look |= {"linewidth": item.width if item.color else 0.0}
-        if item.dashes:
-            look["linestyle"] = (0, item.dashes)
-        if item.opacity < 1:
-            look["alpha"] = item.opacity
-        artist = PathPatch(_path(item), **look)
+        look: Any = {"facecolor": item.fill or "none", "edgecolor": item.color or "none"}
+        look |= {"linewidth": item.width if item.color else 0.0, "joinstyle": "round"}
+        look |= {"linestyle": (0, item.dashes)} if item.dashes else {}
+        look |= {"alpha": item.opacity} if item.opacity < 1 else {}
+        cap: Any = "round" if item.round else "butt"
+        artist = PathPatch(_path(item), capstyle=cap, zorder=order, **look)
     axes.add_artist(artist)
     if item.clip is not None:
         left, top, right, bottom = item.clip
@@ -149,11 +143,11 @@ def _paint(axes: Axes, item: Item, order: int) -> None:
 def _path(stroke: Stroke) -> Path:
     parts = []
     for line in stroke.lines:
-        codes = np.full(len(line), Path.LINETO, Path.code_type)
+        corners = np.vstack([line, line[:1]]) if stroke.closed else line
+        codes = np.full(len(corners), Path.LINETO, Path.code_type)
         codes[0] = Path.MOVETO
         if stroke.closed:
-            codes = np.append(codes, np.array([Path.CLOSEPOLY], Path.code_type))
-        corners = np.vstack([line, line[:1]]) if stroke.closed else line
+            codes[-1] = Path.CLOSEPOLY
         parts.append(Path(corners, codes))
     return Path.make_compound_path(*parts)
 
@@ -163,21 +157,13 @@ def _write(axes: Axes, words: Words, order: int) -> None:
         left, top, right, bottom = box_of(words)
         look: Any = {"facecolor": PAPER, "alpha": BACK, "linewidth": 0, "zorder": order}
         axes.add_artist(Rectangle((left - 1, top + 0.5), right - left + 2, bottom - top, **look))
-    anchors = {"start": "left", "middle": "center", "end": "right"}
-    place: Any = {"ha": anchors[words.anchor], "va": "baseline"}
+    ends = {"start": "left", "middle": "center", "end": "right"}
+    place: Any = {"ha": ends[words.anchor], "va": "baseline"}
+    x = words.x
     if words.turned:
         upright = {"start": "bottom", "middle": "center", "end": "top"}
         place = {"ha": "right", "va": upright[words.anchor], "rotation": 90}
-        x = words.x + 0.22 * words.size
-    else:
-        x = words.x
-    axes.text(
-        x,
-        words.y,
-        words.text,
-        fontsize=words.size,
-        color=words.color,
-        fontweight="bold" if words.bold else "normal",
-        zorder=order + 0.5,
-        **place,
-    )
+        x += 0.22 * words.size
+    weight = "bold" if words.bold else "normal"
+    place |= {"fontsize": words.size, "color": words.color, "fontweight": weight}
+    axes.text(x, words.y, words.text, zorder=order + 0.5, **place)

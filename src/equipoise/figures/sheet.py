@@ -251,7 +251,7 @@ class Labels:
 
     def reserve(self, x: float, y: float, half: float = 3.0) -> None:
         """Keep texts away from a marker, so many points around its middle."""
-        self.boxes = np.vstack([self.boxes, [x - half, y - half, x + half, y + half]])
+        self.occupy((x - half, y - half, x + half, y + half))
 
     def occupy(self, box: Box) -> None:
         """Keep texts out of a box."""

@@ -25,6 +25,8 @@ IN_A_TURN = 240
 """Points of a path in a turn of the crank."""
 SIZE, LEAST = 12.0, 11.0
 """Of type, in pixels: in a picture 640 pixels wide, and in small ones."""
+RATES = {"gif": 25, "mp4": 30}
+"""Frames a second of films.  Delays of a GIF are whole hundredths of a second."""
 MOST_SECONDS = 600
 WIDTHS = 100, 3840
 
@@ -262,6 +264,11 @@ def _of_paths(stage: Stage, traced: tuple[str, ...]) -> Iterator[list[Label]]:
             Label(name, right + off, "start", "main"),
             Label(name, bottom + 1j * off, color="main"),
         ]
+
+
+def in_a_turn(kind: str, seconds: float) -> int:
+    """Frames of a film in a turn of the crank that takes some seconds."""
+    return max(1, round(seconds * RATES[kind]))
 
 
 def check_seconds(seconds: float) -> None:

@@ -15,6 +15,7 @@ from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
 from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
+from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.layout import Line as ShaftLine
@@ -200,7 +201,7 @@ def speed_shown(response: ToolResponse) -> float:
     else:
         moved = [np.abs(response.displacement(one.name)) for one in response.tool.stations]
         felt = np.max([np.sum(one**2, axis=(0, 1)) for one in moved], axis=0)
-    return float(speeds[np.argmax(felt)])
+    return float(speeds[highest_at(felt, smooth=False)])
 
 
 def _displaced(line: ShaftLine, loudest: list[int]) -> dict[tuple[int, int], Array]:
@@ -224,7 +225,7 @@ def _largest(amplitude: Array) -> Array:
     """Where an amplitude (X,) is at the instant when it is largest."""
     turned = np.exp(-0.5j * np.angle(np.sum(amplitude**2)))
     shape = np.real(amplitude * turned)
-    return np.asarray(shape * np.sign(shape[np.argmax(np.abs(shape))] or 1.0))
+    return np.asarray(shape * np.sign(shape[highest_at(np.abs(shape), smooth=False)] or 1.0))
 
 
 def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> Panel:
@@ -236,7 +237,7 @@ def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> 
     if len(loudest) > 1 or squares.shape[1] > 1:
         for role, k in zip(ORDER_ROLES, loudest, strict=False):
             curves.append(Curve(places, np.sqrt(squares[:, k]), "", role))
-    k = int(np.argmax(total))
+    k = int(highest_at(total, smooth=False))
     at, top = float(places[k]), float(total[k])
     text = say("{value} at {place} mm", value=y.quantity(top), place=f"{MM * at:.0f}")
     mark = Mark(at, top, text, "ink", 60.0, sign=False)

@@ -7,7 +7,7 @@ from html import escape
 
 import numpy as np
 
-from equipoise.figures.sheet import Array, Box, Item, Sheet, Signs, Stroke, Words, box_of
+from equipoise.figures.sheet import Array, Box, Sheet, Signs, Stroke, Words, box_of
 from equipoise.figures.style import PAPER
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
@@ -31,7 +31,16 @@ def svg_of(sheet: Sheet) -> str:
     """The whole document."""
     width, height = _number(sheet.width), _number(sheet.height)
     clips: dict[Box, str] = {}
-    parts = [_clipped(item, clips, text) for item in sheet.items for text in _drawn(item)]
+    parts: list[str] = []
+    for item in sheet.items:
+        if isinstance(item, Words):
+            parts += _words(item)
+            continue
+        text = _signs(item) if isinstance(item, Signs) else _stroke(item)
+        if item.clip is not None:
+            name = clips.setdefault(item.clip, f"c{len(clips) + 1}")
+            text = text.replace(" ", f' clip-path="url(#{name})" ', 1)
+        parts.append(text)
     boxes = "".join(
         f'<clipPath id="{name}"><rect {_rectangle(box)}/></clipPath>' for box, name in clips.items()
     )
@@ -43,23 +52,6 @@ def svg_of(sheet: Sheet) -> str:
         + "\n".join(parts)
         + "\n</svg>\n"
     )
-
-
-def _clipped(item: Item, clips: dict[Box, str], text: str) -> str:
-    clip = getattr(item, "clip", None)
-    if clip is None:
-        return text
-    name = clips.setdefault(clip, f"c{len(clips) + 1}")
-    return text.replace(" ", f' clip-path="url(#{name})" ', 1)
-
-
-def _drawn(item: Item) -> Iterator[str]:
-    if isinstance(item, Words):
-        yield from _words(item)
-    elif isinstance(item, Signs):
-        yield _signs(item)
-    else:
-        yield _stroke(item)
 
 
 def _words(words: Words) -> Iterator[str]:
@@ -111,18 +103,15 @@ def _signs(signs: Signs) -> str:
         line = f'stroke="{signs.edge}" stroke-width="{_number(size)}" stroke-linecap="round"'
         return f'<path d="{path}" fill="none" {line}/>'
     look = f'fill="{signs.face}" stroke="{signs.edge}" stroke-width="{_number(signs.width)}"'
+    half, whole = size / 2, _number(size)
     if signs.shape == "o":
-        radius = _number(size / 2)
-        arc = f"a{radius},{radius} 0 1,0"
-        path = "".join(
-            f"M{_number(x - size / 2)},{_number(y)}{arc} {_number(size)},0{arc} {_number(-size)},0"
-            for x, y in places.tolist()
-        )
+        arc = f"a{_number(half)},{_number(half)} 0 1,0"
+        ring = f"{arc} {whole},0{arc} {_number(-size)},0"
+        path = "".join(f"M{_number(x - half)},{_number(y)}{ring}" for x, y in places.tolist())
     elif signs.shape == "x":
-        whole = _number(size)
         cross = f"l{whole},{whole}m-{whole},0l{whole},-{whole}"
         path = "".join(
-            f"M{_number(x - size / 2)},{_number(y - size / 2)}{cross}" for x, y in places.tolist()
+            f"M{_number(x - half)},{_number(y - half)}{cross}" for x, y in places.tolist()
         )
     else:
         outline = size * np.array(SHAPES[signs.shape])

@@ -21,14 +21,13 @@ from equipoise.results.blocks import (
     Text,
     Value,
 )
+from equipoise.signals import Array, highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Station, Tool
     from equipoise.handheld.modes import PlaneModes, ToolModes
     from equipoise.handheld.response import ToolResponse
     from equipoise.handheld.sweep import ToolSweep, Transmission, Transmissions
-
-Array = np.ndarray[Any, Any]
 
 SILENT = 1e3
 """Times 1e-10 of the largest transmission, below which it is none."""
@@ -210,7 +209,7 @@ def sweep_blocks(found: ToolSweep) -> Iterator[Block]:
     yield _stations(found)
     yield _forces(found)
     moment, place = found.largest_moment
-    k = int(np.argmax(moment))
+    k = int(highest_at(moment, smooth=False))
     yield Text(
         say(
             "Largest bending moment: {moment} N m RMS at {place} mm of the shaft, engine at "
@@ -255,7 +254,7 @@ def _stations(found: ToolSweep) -> Table:
     largest = float(np.max(found.largest_moment[0]))
     rows: list[tuple[Cell, ...]] = []
     for row, (name, place) in enumerate(named):
-        k = int(np.argmax(at.acceleration[row]))
+        k = int(highest_at(at.acceleration[row], smooth=False))
         *moved, bent = (float(part[row, k]) for part in at)
         cells = map(Value, (place, float(found.speed[k]), *moved))
         rows.append((name, *cells, Value(bent, largest)))
@@ -280,7 +279,7 @@ def _forces(found: ToolSweep) -> Block:
     for one in found.tool.stations:
         powers = found.power(one.name)
         for part, force in found.force(one.name).items():
-            k = int(np.argmax(force))
+            k = int(highest_at(force, smooth=False))
             largest = Value(float(force[k]), at=float(found.speed[k]))
             rows.append((one.name, say(part), largest, Value(float(np.max(powers[part])), 1e-6)))
     if not rows:

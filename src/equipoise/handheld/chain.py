@@ -36,6 +36,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from equipoise.handheld.duals import value_of
+from equipoise.signals import Array
 
 SHORT = 0.9
 """Share of the lowest natural frequency of a clamped segment up to which it is used, squared."""
@@ -139,9 +140,6 @@ def _paired_series(quadratic: Any, quartic: Any) -> tuple[Any, Any, Any, Any]:
         c0, c1, c2, c3 = c0 + q * even, c1 + q * odd, c2 + p * even, c3 + p * odd
         p, q = quadratic * p + q, quartic * p
     return c0, c1, c2, c3
-
-
-Array = np.ndarray[Any, Any]
 
 
 class Pair(NamedTuple):

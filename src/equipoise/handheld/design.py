@@ -25,8 +25,7 @@ from equipoise.handheld.studies import changed
 from equipoise.handheld.sweep import speeds_between
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 Told = Callable[[int, int], None]
 """Is called with how many searches are done, and how many there are."""

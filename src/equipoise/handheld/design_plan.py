@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError, UsageError
@@ -53,12 +53,22 @@ station, root of the mean square over time, at the worst speed of the band; mass
 SPEEDS = Listing(Quantity(dimension="angular speed"), (2,), 'two such as ["6000 rpm", "8000 rpm"]')
 
 
-def _size(where: str, text: str, dimension: Dimension) -> float:
-    """A quantity in SI units; a `ModelError` tells what is wrong with its text."""
-    try:
-        return parse(text, dimension)
-    except UsageError as error:
-        raise ModelError(where, str(error)) from error
+def _in_si(
+    given: dict[str, Any], by: str, known: Mapping[str, Dimension], what: str, **ends: str
+) -> dict[str, Any]:
+    """The values of a table with those in SI units whose dimension another of its keys tells.
+
+    ends : field of each of them, with its key in the file.
+    """
+    if given[by] not in known:
+        raise ModelError(by, unknown(given[by], known, what))
+    sizes = {}
+    for field, name in ends.items():
+        try:
+            sizes[field] = parse(given[field], known[given[by]])
+        except UsageError as error:
+            raise ModelError(name, str(error)) from error
+    return given | sizes
 
 
 @declared
@@ -81,11 +91,7 @@ class DesignVariable(Frozen):
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> DesignVariable:
-        name = given["key"]
-        if name not in KEYS:
-            raise ModelError("key", unknown(name, KEYS, "key of a station"))
-        low = _size("from", given.pop("low"), KEYS[name])
-        return cls(**given | {"low": low, "high": _size("to", given["high"], KEYS[name])})
+        return cls(**_in_si(given, "key", KEYS, "key of a station", low="from", high="to"))
 
     @classmethod
     def to_table(cls, value: DesignVariable) -> dict[str, Any]:
@@ -117,10 +123,7 @@ class DesignLimit(Frozen):
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> DesignLimit:
-        if given["output"] not in OUTPUTS:
-            raise ModelError("output", unknown(given["output"], OUTPUTS, "output"))
-        at_most = _size("at_most", given["at_most"], OUTPUTS[given["output"]])
-        return cls(**given | {"at_most": at_most})
+        return cls(**_in_si(given, "output", OUTPUTS, "output", at_most="at_most"))
 
     @classmethod
     def to_table(cls, value: DesignLimit) -> dict[str, Any]:

@@ -28,8 +28,7 @@ from equipoise.handheld.response import (
 )
 from equipoise.handheld.studies import has, number_of
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 WORKING, IDLING, RACING = "working", "idling", "racing"
 NO_HANDS = "no hand holds the tool; give a station a hand with its stiffness, or its impedance"

@@ -12,9 +12,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.handheld.chain import carry, count, log_determinant
 from equipoise.handheld.duals import Dual
 from equipoise.handheld.layout import Layout
-from equipoise.handheld.model import Station, Tool
-
-Array = np.ndarray[Any, Any]
+from equipoise.handheld.model import Tool
+from equipoise.signals import Array
 
 PARTS, ROUNDS = 63, 20
 """Each round cuts the bracket of every frequency into so many parts, one more than these, until
@@ -49,23 +48,18 @@ def floating(tool: Tool) -> list[list[str]]:
 
 def _free(tool: Tool, plane: int) -> Array:
     """By how many places springs hold, and whether one holds a rotation: however stiff they are."""
-    places = sorted({one.position for one in tool.stations if _spring(one, plane)})
+    layout = Layout(tool, 0.0)
+    places = set()
+    for one in tool.stations:  # springs to what does not move; a measured hand is none
+        springs: Any = sum(layout.holding(one, 0.0, "undamped").values())
+        if springs[plane, 0]:
+            places.add(one.position)
     turning = any(one.rotational_stiffness[plane] for one in tool.stations)
     if len(places) > 1 or (places and turning):
         return np.empty((0, 2))
     if places:
-        return np.array([[0.0 - places[0], 1.0]])
+        return np.array([[0.0 - places.pop(), 1.0]])
     return np.eye(2)[: 1 if turning else 2]
-
-
-def _spring(station: Station, plane: int) -> float:
-    """Stiffness to what does not move, N/m; a measured hand is none."""
-    total = station.stiffness[plane]
-    if station.harness is not None:
-        total += station.harness.stiffness[plane]
-    if station.hand is not None and not station.hand.impedance:
-        total += station.hand.hands * station.hand.stiffness[plane]
-    return total
 
 
 def natural_frequencies(tool: Tool, number: int) -> Array:

@@ -25,6 +25,7 @@ from equipoise.handheld.studies import number_of
 from equipoise.i18n import say, to_say
 from equipoise.quantities import number
 from equipoise.results.blocks import Block, Cell, Change, Column, Section, Table, Text, Value
+from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import Before, ToolDesign
@@ -68,7 +69,7 @@ def exposure_of_tool(found: ToolExposure) -> Iterator[Block | Section]:
             value=number(float(found.a_hv[k])),
             speed=rpm(float(found.speed[k])),
         )
-        for k in (np.argmin(found.a_hv), np.argmax(found.a_hv))
+        for k in (highest_at(-found.a_hv, smooth=False), highest_at(found.a_hv, smooth=False))
     )
     yield Text(say("Worst hand over this range: a_hv from {low} to {high}", low=least, high=most))
     yield Text(say("Along the shaft nothing moves in bending, so a_hv has two axes."))
@@ -92,7 +93,7 @@ def _hands(found: ToolExposure) -> Table:
         if name in found.equivalents:
             label = say("idling and racing, ISO 22867")
             rows.append((name, label, None, None, None, Value(found.equivalents[name])))
-        k = int(np.argmax(grip.a_hv))
+        k = int(highest_at(grip.a_hv, smooth=False))
         top = Value(float(grip.a_hv[k]), at=float(found.speed[k]))
         rows.append((name, say("most"), None, None, None, top))
     labels = (say("unweighted"), say("vertical"), say("lateral"), "a_hv")

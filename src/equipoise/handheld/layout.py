@@ -23,8 +23,8 @@ from equipoise.handheld.chain import (
 from equipoise.handheld.duals import Dual, stacked, value_of
 from equipoise.handheld.model import Impedance, Station, Tool
 from equipoise.handheld.shaft import Section
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 TOUCHING = 1e-9
 """Share by which a frequency may pass the end of a table for rounding."""
 

@@ -22,9 +22,7 @@ from equipoise.handheld.layout import Field, Kind, Layout
 from equipoise.handheld.model import PLANES, Station, Tool
 from equipoise.i18n import Note, to_say
 from equipoise.results.result import Result
-from equipoise.signals import highest_at
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, highest_at
 
 POINTS = 401
 """Places at which a shape is told."""

@@ -17,9 +17,7 @@ from equipoise.mechanism.dynamics import forces, massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
 from equipoise.results.result import Result
-from equipoise.signals import Periodic
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, Periodic
 
 ANGLES = 720
 """Crank angles in a turn from which a linkage's orders are taken."""

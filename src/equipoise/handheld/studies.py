@@ -14,8 +14,7 @@ from equipoise.handheld.layout import Layout
 from equipoise.handheld.model import NOTHING, Station, Tool
 from equipoise.mechanism.checks import unknown
 from equipoise.results.result import Result
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 
 def changed(tool: Tool, station: str, key: str, value: float) -> Tool:

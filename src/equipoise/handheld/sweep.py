@@ -22,9 +22,7 @@ from equipoise.handheld.response import (
     shakes,
 )
 from equipoise.results.result import Result
-from equipoise.signals import highest_at
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, highest_at
 
 MODES = 6
 """Natural frequencies."""

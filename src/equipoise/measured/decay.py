@@ -17,8 +17,8 @@ from equipoise.measured.turning import Turns, find_turns
 from equipoise.quantities import in_unit, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Span, Table, Text, Value
 from equipoise.results.result import Result
+from equipoise.signals import Array
 
-Array = np.ndarray[Any, Any]
 Quantities = dict[str, Quantity]
 
 MUCH_CORRELATED = 3.0

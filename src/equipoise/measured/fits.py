@@ -12,8 +12,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.measured.record import Kind, Record, Swinging, reaches
 from equipoise.measured.turning import Turns
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 STEP = 1e-30
 """Of complex differences, which do not cancel."""

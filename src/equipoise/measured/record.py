@@ -18,8 +18,7 @@ from typing import Any, Literal
 import numpy as np
 
 from equipoise.errors import UsageError
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 LARGEST_SWING = 1.0
 """rad: far more than a gauge's displacement over its arm can stand for."""

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from math import inf
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 ORDERS = ((9, (0, 1, 2, 3, 4)), (4, (0, 1, 2)), (2, (0, 1)), (1, (0,)))
 STILL = ((8, (0, 2, 3, 4)), (5, (0, 2, 3)), (3, (0, 2)))

@@ -10,15 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
-from typing import Any
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.measured.record import Record
 from equipoise.measured.smoothing import Local, Samples, fitted, means, steepest_time, top, zigzag
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 ROUGH = 0.3
 """Of the whole range: swings above it show at once."""

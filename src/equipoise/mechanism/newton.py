@@ -243,7 +243,8 @@ class LoopGroup:
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (3 n, N) without dimension."""
         scale = np.tile([self.size, self.size, 1.0], len(self.links))
-        return np.abs(steps) / scale[:, None]
+        sizes: Array = np.abs(steps) / scale[:, None]
+        return sizes
 
     def divide(self, matrix: Array, right: Array) -> Array:
         """Solve the loops' matrix (N, 3 n, 3 n) for a right-hand side (3 n, N)."""

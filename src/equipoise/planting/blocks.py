@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import pi
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named
-from equipoise.planting.goals import dimension_of
+from equipoise.planting.names import (
+    EXTREMES,
+    INSTANTS,
+    OF_AN_INSTANT,
+    PATH,
+    SOIL,
+    Named,
+    dimension_of,
+)
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
@@ -17,58 +25,13 @@ from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Va
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
-INSTANTS = {
-    "pick_up": to_say("pick-up"),
-    "entry": to_say("entry"),
-    "lowest": to_say("lowest point"),
-    "release": to_say("release"),
-    "exit": to_say("exit"),
-    "highest": to_say("highest point"),
-}
-"""Columns of the table of instants; it begins with the first that there is."""
-OF_AN_INSTANT = {
-    "x": to_say("x"),
-    "y": to_say("y"),
-    "velocity.x": to_say("velocity x"),
-    "velocity.y": to_say("velocity y"),
-    "velocity.size": to_say("velocity"),
-    "velocity.direction": to_say("direction of velocity"),
-    "acceleration.x": to_say("acceleration x"),
-    "acceleration.y": to_say("acceleration y"),
-    "acceleration.size": to_say("acceleration"),
-    "acceleration.direction": to_say("direction of acceleration"),
-    "ground_velocity.x": to_say("over ground: velocity x"),
-    "ground_velocity.size": to_say("over ground: velocity"),
-    "ground_velocity.direction": to_say("over ground: direction"),
-    "attitude": to_say("attitude of the finger"),
-}
-PATH = {
-    "curve.height": to_say("height of the curve"),
-    "curve.width": to_say("width of the curve"),
-    "curve.length": to_say("length of the curve"),
-    "curve.lift": to_say("rise above the soil"),
-    "curve.smallest_radius.value": to_say("smallest radius of the curve"),
-    "ground.smallest_radius.value": to_say("smallest radius over ground"),
-    "hill_spacing": to_say("distance of hills"),
-    "planting_frequency": to_say("planting frequency"),
-}
-SOIL = {
-    "soil.depth": to_say("depth in the soil"),
-    "soil.crank_travel": to_say("crank travel in the soil"),
-    "soil.time": to_say("time in the soil"),
-    "soil.path_length_ground": to_say("path in the soil over ground"),
-    "soil.path_length_machine": to_say("path in the soil relative to the machine"),
-    "soil.ground_distance": to_say("ground distance from entry to exit"),
-    "soil.hole_length": to_say("length of the hole at the surface"),
-    "soil.max_acceleration.value": to_say("largest acceleration in the soil"),
-}
-EXTREMES = {
-    "max_speed": to_say("largest velocity of the tip"),
-    "min_speed": to_say("smallest velocity of the tip"),
-    "max_acceleration": to_say("largest acceleration of the tip"),
-    "min_acceleration": to_say("smallest acceleration of the tip"),
-}
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
+DRIVEN = (
+    to_say(
+        "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at {forward} m/s"
+    ),
+    to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s"),
+)
 UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "mm"}
 """Units in which these are told."""
 
@@ -111,7 +74,7 @@ def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
     """A figure with its dimension, by its name."""
     if value is None:
         return None
-    kind = cast("Dimension | None", dimension_of(name))
+    kind = dimension_of(name)
     after = 2 if kind == "angle" else None
     unit = None if kind is None else UNITS.get(kind)
     return Value(value, scale, after=after, dimension=kind, unit=unit)
@@ -137,23 +100,13 @@ def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Blo
 def _heading(page: Page) -> Iterator[str]:
     figures = page.figures
     drive, speed = figures.machine.drive, figures["speed"]
-    told = {
-        "link": drive.link,
-        "speed": number(abs(speed) / PER_RPM),
-        "travel": figures.planting.travel,
-        "forward": number(abs(figures["forward_speed"])),
-    }
-    if speed > 0:
-        yield say(
-            "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at "
-            "{forward} m/s",
-            **told,
-        )
-    else:
-        yield say(
-            "{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s",
-            **told,
-        )
+    yield say(
+        DRIVEN[0] if speed > 0 else DRIVEN[1],
+        link=drive.link,
+        speed=number(abs(speed) / PER_RPM),
+        travel=figures.planting.travel,
+        forward=number(abs(figures["forward_speed"])),
+    )
     base = finger_base(figures.curve)
     tip = say("tip {tip} on {link}", tip=figures.planting.tip, link=figures.curve.link)
     finger = [] if base is None else [say("finger from {base}", base=base)]
@@ -170,15 +123,15 @@ def _instants(page: Page) -> Table:
     names = _in_time(page, names)
     angles = (page.turned(page.get(f"{name}.crank_angle")) for name in names)
     rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
-    for key, label in OF_AN_INSTANT.items():
+    for key, one in OF_AN_INSTANT.items():
         still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
-        if still or page.get(f"entry.{key}") is None:
+        if key == "crank_angle" or still or page.get(f"entry.{key}") is None:
             continue
         size = key.partition(".")[0]
         height = page.figures["curve.height"] if key in ("x", "y") else 0.0
         scales = [page.get(f"{name}.{size}.size") or height for name in names]
         pairs = zip(names, scales, strict=True)
-        rows.append((say(label), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
+        rows.append((say(one.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
     title = say("Instants; relative to the machine where nothing else is said, directions from x")
     columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
     return Table(title, columns, tuple(rows))
@@ -186,21 +139,16 @@ def _instants(page: Page) -> Table:
 
 def _in_time(page: Page, names: list[str]) -> list[str]:
     """Instants in the order of time, from the first of `INSTANTS` on."""
-    figures = page.figures
-    sense = 1 if figures["speed"] > 0 else -1
-    start = figures[f"{names[0]}.crank_angle"]
-
-    def way(name: str) -> float:
-        turned = sense * (figures[f"{name}.crank_angle"] - start)
-        return round(turned, 9) % figures.curve.period
-
-    return sorted(names, key=way)
+    figures, sense = page.figures, 1 if page.figures["speed"] > 0 else -1
+    ways = {name: sense * figures[f"{name}.crank_angle"] for name in names}
+    start, period = ways[names[0]], figures.curve.period
+    return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
-def _values(title: str, labels: dict[str, str], page: Page) -> Table:
+def _values(title: str, figures: dict[str, Named], page: Page) -> Table:
     rows = tuple(
-        (say(label), page.cell(name))
-        for name, label in labels.items()
+        (say(one.words), page.cell(name))
+        for name, one in figures.items()
         if page.get(name) is not None
     )
     return Table(title, (Column(""), Column(say("value"))), rows)
@@ -209,11 +157,11 @@ def _values(title: str, labels: dict[str, str], page: Page) -> Table:
 def _extremes(page: Page) -> Table:
     rows = tuple(
         (
-            say(label),
+            say(one.words),
             page.at(f"{name}.value", f"{name}.crank_angle"),
             page.cell(f"{name}.direction"),
         )
-        for name, label in EXTREMES.items()
+        for name, one in EXTREMES.items()
     )
     columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
     return Table(say("Extremes relative to the machine, at crank angle"), columns, rows)
@@ -222,34 +170,23 @@ def _extremes(page: Page) -> Table:
 def _ratios(page: Page) -> Iterator[Block]:
     rows: list[tuple[Cell, ...]] = []
     for link in page.figures.machine.links:
-        if page.get(f"ratio.{link}.min") is None:
-            continue
-        name = f"ratio.{link}"
-        ends = (
-            Value(page.figures[f"{name}.{end}"], 0.0, page.from_zero(at), after=4)
-            for end in ("min", "max")
-            for at in [page.figures[f"{name}.{end}_at"]]
-        )
-        rows.append((link, *ends))
+        ends = [page.at(f"ratio.{link}.{end}", f"ratio.{link}.{end}_at") for end in ("min", "max")]
+        if None not in ends:
+            rows.append((link, *(replace(end, after=4) for end in ends if end is not None)))
     if rows:
         columns = (Column(""), Column(say("smallest")), Column(say("largest")))
         yield Table(say("Angular velocity over that of the drive"), columns, tuple(rows))
 
 
 def _visits(page: Page) -> Iterator[Block]:
-    visits = page.figures.visits
-    if len(visits) < 2:
-        return
     rows = tuple(
-        (
-            *map(page.turned, (visit.entry, visit.exit, visit.deepest)),
-            Value(visit.depth, dimension="length", unit="mm"),
-        )
-        for visit in visits
+        (*map(page.turned, (one.entry, one.exit, one.deepest)), Value(one.depth))
+        for one in page.figures.visits
     )
-    labels = (say("entry"), say("exit"), say("deepest"))
-    columns = (*(Column(label, "angle") for label in labels), Column(say("depth"), "length", "mm"))
-    yield Table(say("Every stay in the soil; crank angles"), columns, rows)
+    if len(rows) > 1:
+        angles = (Column(label, "angle") for label in (say("entry"), say("exit"), say("deepest")))
+        columns = (*angles, Column(say("depth"), "length", "mm"))
+        yield Table(say("Every stay in the soil; crank angles"), columns, rows)
 
 
 def _loops(page: Page) -> Iterator[Block]:
@@ -292,26 +229,20 @@ def _clearances(page: Page) -> Iterator[Block]:
 
 
 def _limits(page: Page) -> Iterator[Block]:
+    figures = ("limit", "highest_speed", "highest_forward_speed")
     rows = tuple(
-        (
-            say(label),
-            *(
-                page.cell(f"limits.{name}.{what}")
-                for what in ("limit", "highest_speed", "highest_forward_speed")
-            ),
-        )
+        (say(label), *(page.cell(f"limits.{name}.{what}") for what in figures))
         for name, label in LIMITS.items()
         if page.get(f"limits.{name}.limit") is not None
     )
-    if not rows:
-        return
-    columns = (
-        Column(""),
-        Column(say("limit"), "acceleration"),
-        Column(say("highest speed of the crank"), "angular speed", "rpm"),
-        Column(say("of the machine"), "speed"),
-    )
-    yield Table(say("Limits of the tip's acceleration"), columns, rows)
+    if rows:
+        columns = (
+            Column(""),
+            Column(say("limit"), "acceleration"),
+            Column(say("highest speed of the crank"), "angular speed", "rpm"),
+            Column(say("of the machine"), "speed"),
+        )
+        yield Table(say("Limits of the tip's acceleration"), columns, rows)
 
 
 def _forces(page: Page) -> Iterator[Block]:

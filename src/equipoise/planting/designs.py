@@ -11,7 +11,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import FRAME, Link, Machine, Vector, size_of, unknown
+from equipoise.mechanism.model import FRAME, Machine, Vector, size_of, unknown
 from equipoise.mechanism.tip import planting_of, tip_link
 from equipoise.signals import Array
 
@@ -59,7 +59,8 @@ class Designs:
     ) -> None:
         self.machine, self.sense = machine, sense
         known = {variable.name: variable for variable in _variables(machine)}
-        names = list(_usual(known)) if vary is None else list(vary)
+        usual = [name for name in known if "." not in name or name in ("tip.x", "tip.y")]
+        names = usual if vary is None else list(vary)
         if not names:
             raise UsageError("vary: names nothing; name at least one number, or leave it out")
         for name in names:
@@ -86,16 +87,17 @@ class Designs:
         return start
 
     def build(self, values: Sequence[float] | Array) -> Machine:
-        """The machine that has these values."""
+        """The machine that has these values; places that have moved are rounded to `DIGITS`."""
         machine = self.machine
-        bodies: Bodies = {
-            body: {name: complex(*place) for name, place in machine.points_of(body).items()}
-            for body in (FRAME, *machine.links)
-        }
+        names = (FRAME, *machine.links)
+        bodies = {name: _places(machine.points_of(name)) for name in names}
         for variable, value in zip(self.variables, values, strict=False):
             variable.put(bodies, float(value))
-        links = {name: _moved(link, bodies[name]) for name, link in machine.links.items()}
-        frame = _pairs(bodies[FRAME], machine.frame)
+        points = {name: _pairs(bodies[name], machine.points_of(name)) for name in names}
+        links = {
+            name: link if points[name] == dict(link.points) else replace(link, points=points[name])
+            for name, link in machine.links.items()
+        }
         size = abs(machine.drive.speed)
         speed = {
             "as given": machine.drive.speed,
@@ -104,23 +106,21 @@ class Designs:
             "either": size if values[-1] >= 0 else -size,
         }[self.sense]
         drive = replace(machine.drive, speed=speed)
-        return replace(machine, frame=frame, links=links, drive=drive)
+        return replace(machine, frame=points[FRAME], links=links, drive=drive)
+
+
+def _places(points: Mapping[str, Vector]) -> dict[str, complex]:
+    return {name: complex(*place) for name, place in points.items()}
 
 
 def _pairs(points: Mapping[str, complex], before: Mapping[str, Vector]) -> dict[str, Vector]:
     """Places of points; those that have moved with so many digits that a file stays readable."""
-    pairs: dict[str, Vector] = {}
-    for name, place in points.items():
-        x, y = before[name]
-        if place != complex(x, y):
-            x, y = round(place.real, DIGITS), round(place.imag, DIGITS)
-        pairs[name] = (x, y)
-    return pairs
-
-
-def _moved(link: Link, points: Mapping[str, complex]) -> Link:
-    moved = _pairs(points, link.points)
-    return link if moved == dict(link.points) else replace(link, points=moved)
+    return {
+        name: old
+        if place == complex(*old)
+        else (round(place.real, DIGITS), round(place.imag, DIGITS))
+        for (name, place), old in zip(points.items(), before.values(), strict=True)
+    }
 
 
 def _within(variable: Variable, low: float, high: float) -> Variable:
@@ -129,11 +129,6 @@ def _within(variable: Variable, low: float, high: float) -> Variable:
     if variable.dimension == "length" and variable.name.count(".") == 0 and low <= 0:
         raise UsageError(f"vary.{variable.name}: a length must stay above 0")
     return replace(variable, low=low, high=high)
-
-
-def _usual(known: Mapping[str, Variable]) -> Iterator[str]:
-    yield from (name for name in known if name.count(".") == 0)
-    yield from (name for name in known if name in ("tip.x", "tip.y"))
 
 
 def _variables(machine: Machine) -> Iterator[Variable]:

@@ -27,6 +27,7 @@ from equipoise.mechanism.tip import (
 from equipoise.planting.stroke import (
     Figures,
     direction,
+    distance,
     finger_base,
     ground_drive,
     in_time,
@@ -34,6 +35,7 @@ from equipoise.planting.stroke import (
     instant,
     pick_up,
     release,
+    to_line,
     while_driving,
     wrapped,
 )
@@ -331,7 +333,7 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
     for link in outlines:
         result |= _smallest(curve, f"clearance.tray.{link}", partial(apart, link=link))
     name, passes = f"clearance.tray.tip {tip}", pick_up(curve, entry)
-    found = _smallest(curve, name, lambda theta: _to_line(curve.at(theta).place, start, stop))
+    found = _smallest(curve, name, lambda theta: to_line(curve.at(theta).place, start, stop))
     met = np.isfinite(passes)
     found[f"{name}.value"][met] = 0.0
     found[f"{name}.crank_angle"][met] = wrapped(curve, passes)[met]
@@ -341,18 +343,3 @@ def clearances(curve: TipCurve, entry: Array) -> Figures:
 def _smallest(curve: TipCurve, name: str, signal: Signal) -> Figures:
     value, at = lowest_within(signal, *_cycle(curve), samples=len(curve.theta) + 1)
     return {f"{name}.value": value, f"{name}.crank_angle": wrapped(curve, at)}
-
-
-def distance(a: Array, b: Array, c: complex, d: complex) -> Array:
-    """Distance between lines from a to b (..., K) and a line from c to d, m."""
-    gaps = [_to_line(a, c, d), _to_line(b, c, d), _to_line(c, a, b), _to_line(d, a, b)]
-    apart = cross(b - a, c - a) * cross(b - a, d - a) < 0
-    across = cross(d - c, a - c) * cross(d - c, b - c) < 0
-    return np.where(apart & across, 0.0, np.min(np.broadcast_arrays(*gaps), axis=0))
-
-
-def _to_line(point: Any, start: Any, stop: Any) -> Array:
-    along = stop - start
-    length2 = np.maximum(np.abs(along) ** 2, 1e-300)
-    share = np.clip(dot(along, point - start) / length2, 0.0, 1.0)
-    return np.asarray(np.abs(point - start - share * along))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from math import pi, radians
@@ -17,35 +18,9 @@ from equipoise.mechanism.model import Machine, unknown
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.designs import Designs
 from equipoise.planting.figures import tip_figures
+from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.stroke import soil_crossings
 from equipoise.signals import Array
-
-_NAMES = {
-    "length": "height width length lift depth x y surface hill_spacing smallest_radius "
-    "path_length_machine path_length_ground ground_advance ground_distance hole_length",
-    "angle": "crank_angle direction attitude crank_travel min_at max_at transmission",
-    "speed": "velocity ground_velocity max_speed min_speed forward_speed highest_forward_speed",
-    "acceleration": "acceleration max_acceleration min_acceleration limit",
-    "time": "time",
-    "frequency": "planting_frequency",
-    "angular speed": "speed highest_speed",
-}
-_DIMENSIONS = {name: kind for kind, names in _NAMES.items() for name in names.split()}
-
-TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
-"""Last parts of the names of angles that are the same after a turn."""
-
-
-def dimension_of(figure: str) -> str | None:
-    """Dimension of a figure such as ``curve.height``, or None for a plain number."""
-    *path, last = figure.split(".")
-    if path and path[0] == "ratio" and last in ("min", "max"):
-        return None
-    if path and path[0] == "clearance" and last == "value":
-        return "length"
-    component = last in ("size", "value", "min") or (last in ("x", "y") and len(path) > 1)
-    return _DIMENSIONS.get(path[-1] if path and component else last)
-
 
 USUAL_SHARE = 0.01
 USUAL_ANGLE = radians(1)
@@ -124,29 +99,18 @@ class Goal:
 
     def slack(self, values: Array) -> list[Array]:
         """For each limit, how far values are inside it; negative outside."""
-        limits = ((self.at_least, 1.0), (self.at_most, -1.0))
-        return [
-            sign * (self._near(values, limit) - limit)
-            for limit, sign in limits
-            if limit is not None
-        ]
+        signs = {1.0: self.at_least, -1.0: self.at_most}
+        given = [limit for limit in signs.values() if limit is not None]
+        if self.turning and given:  # the values whole turns away that are nearest to the limits
+            middle = sum(given) / len(given)
+            values = middle + np.mod(values - middle + pi, 2 * pi) - pi
+        return [sign * (values - limit) for sign, limit in signs.items() if limit is not None]
 
     def met(self, value: float, step: float) -> bool:
         """Whether a figure keeps the limits and is within one step of the target."""
         one = np.array([value])
         kept = all(slack[0] >= 0 for slack in self.slack(one))
         return kept and bool(abs(self.off(one)[0]) <= step)
-
-    def _near(self, values: Array, limit: float) -> Array:
-        """Values, or for turning angles those whole turns away that are nearest to a limit."""
-        if not self.turning:
-            return values
-        middle = limit if None in (self.at_least, self.at_most) else self._middle()
-        return middle + np.mod(values - middle + pi, 2 * pi) - pi
-
-    def _middle(self) -> float:
-        assert self.at_least is not None and self.at_most is not None
-        return (self.at_least + self.at_most) / 2
 
     def size(self, values: Array) -> Array:
         """What is to become small, 0 unless `make` is given."""
@@ -242,22 +206,18 @@ class Problem:
 
     def _built(self, values: Array) -> tuple[list[Machine | None], Array]:
         """Machines, and the smallest number (P,) of any of their dyads round the turn."""
-        machines: list[Machine | None] = []
-        for row in values:
-            try:
+        machines: list[Machine | None] = [None] * len(values)
+        worst, families = np.full(len(values), -1.0), {}
+        for k, row in enumerate(values):
+            with suppress(EquipoiseError):  # lengths of nothing, pins that coincide
                 machine = self.designs.build(row)
-                assemble(machine)
-                machines.append(machine)
-            except EquipoiseError:  # lengths of nothing, pins that coincide
-                machines.append(None)
-        worst = np.full(len(values), -1.0)
-        built = [k for k, machine in enumerate(machines) if machine is not None]
-        if built:
-            family = Family([assemble(m) for m in machines if m is not None])
-            theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (len(built), GRID + 1))
+                families[k], machines[k] = assemble(machine), machine
+        if families:
+            family, count = Family([*families.values()]), len(families)
+            theta = np.broadcast_to(np.linspace(0, 2 * np.pi, GRID + 1), (count, GRID + 1))
             with np.errstate(all="ignore"):
                 numbers = family.margins(family.solve(theta))
-            worst[built] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
+            worst[[*families]] = np.min(np.nan_to_num(numbers, nan=-1.0), axis=1)
         return machines, worst
 
 

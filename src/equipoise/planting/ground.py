@@ -7,6 +7,7 @@ positive whichever way it turns.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -106,8 +107,10 @@ class GroundPath:
         crossed = _crossing_pairs(nodes, places, cycle)
         pairs = [pair for pair in (self._polished(*ways) for ways in crossed) if pair]
         found: list[tuple[float, float]] = []
-        for first, second in sorted(filter(self._apart, pairs)):
-            if not any(abs(first - a) + abs(second - b) < 1e-9 for a, b in found):
+        for first, second in sorted(pairs):
+            inside = -1e-12 <= first < self.curve.period - 1e-12
+            apart = inside and 1e-7 < second - first < self.curve.period
+            if apart and not any(abs(first - a) + abs(second - b) < 1e-9 for a, b in found):
                 found.append((first, second))
         loops = (self._loop(first, second) for first, second in found)
         smallest = SMALLEST_LOOP * float(self.curve.highest[0][0] - self.curve.lowest[0][0])
@@ -120,11 +123,6 @@ class GroundPath:
         near = np.mod(_crowded(self.slow, step), self.curve.period)
         once = np.unique(np.concatenate([once, near]))
         return np.concatenate([once, once + self.curve.period])
-
-    def _apart(self, pair: tuple[float, float]) -> bool:
-        first, second = pair
-        inside = -1e-12 <= first < self.curve.period - 1e-12
-        return inside and 1e-7 < second - first < self.curve.period
 
     def _polished(self, first: float, second: float) -> tuple[float, float] | None:
         """Newton's method on the two components of the way between both passes.
@@ -150,10 +148,7 @@ class GroundPath:
         swept = integral(
             lambda way: kernels.cross(self.place(way) - origin, self.rate(way)), breaks[None]
         )
-        height, width = (
-            self._extent(first, second, lambda place, axis=axis: getattr(place, axis))
-            for axis in ("imag", "real")
-        )
+        height, width = (self._extent(first, second, axis) for axis in ("imag", "real"))
         return Loop(
             first=self.crank_angle(first),
             second=self.crank_angle(second),
@@ -165,10 +160,13 @@ class GroundPath:
             in_soil=bool(origin.imag < self.curve.surface[0]),
         )
 
-    def _extent(self, first: float, second: float, part: Any) -> float:
-        low, high = np.array([first]), np.array([second])
-        least = lowest_within(lambda way: part(self.place(way)), low, high)[0]
-        most = lowest_within(lambda way: -part(self.place(way)), low, high)[0]
+    def _extent(self, first: float, second: float, axis: str) -> float:
+        ends = np.array([first]), np.array([second])
+
+        def part(way: Array, sign: int) -> Any:
+            return sign * getattr(self.place(way), axis)
+
+        least, most = (lowest_within(partial(part, sign=sign), *ends)[0] for sign in (1, -1))
         return float(-most[0] - least[0])
 
 

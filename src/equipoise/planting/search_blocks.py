@@ -9,43 +9,30 @@ from typing import TYPE_CHECKING, Any
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.planting.blocks import (
-    EXTREMES,
-    INSTANTS,
-    OF_AN_INSTANT,
-    PATH,
-    SOIL,
-    UNITS,
-    cell,
-)
+from equipoise.planting.blocks import UNITS, cell
+from equipoise.planting.names import FIGURES, INSTANTS, LINKAGE, OF_AN_INSTANT
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
-    from equipoise.planting.goals import Goal
     from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
-
-
-# -- a search --------------------------------------------------------------------------------------
 
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
     *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
-    "transmission.min",
+    *LINKAGE,
 )
 
 
 def figure_named(name: str) -> str:
     """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
-    labels = {**PATH, **SOIL, **{f"{key}.value": label for key, label in EXTREMES.items()}}
-    if name in labels:
-        return say(labels[name])
-    if name == "transmission.min":
-        return say("smallest transmission angle")
+    known = FIGURES | LINKAGE
+    if name in known:
+        return say(known[name].words)
     instant, _, key = name.partition(".")
-    what = say("crank angle") if key == "crank_angle" else say(OF_AN_INSTANT.get(key, ""))
-    if not what or instant not in INSTANTS:
+    if instant not in INSTANTS or key not in OF_AN_INSTANT:
         return name
+    what = say(OF_AN_INSTANT[key].words)
     return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
 
 
@@ -78,18 +65,16 @@ def _figure(value: float, name: str) -> Value:
 
 
 def _goals(fit: Fit) -> Table:
-    met = {True: say("yes"), False: say("no"), None: ""}
-    rows = tuple(
-        (
-            figure_named(goal.figure),
-            goal.make or "",
-            *_wanted(goal),
-            _told(fit.before, goal.figure),
-            _missed(_told(fit.after, goal.figure), fit.met.get(goal.figure)),
-            met[fit.met.get(goal.figure)],
-        )
-        for goal in fit.goals
-    )
+    words = {True: say("yes"), False: say("no"), None: ""}
+    rows: list[tuple[Cell, ...]] = []
+    for goal in fit.goals:
+        name, met = goal.figure, fit.met.get(goal.figure)
+        limits = (goal.target, goal.at_least, goal.at_most)
+        wanted = (None if value is None else _figure(value, name) for value in limits)
+        before, after = _told(fit.before, name), _told(fit.after, name)
+        if met is False and isinstance(after, Value):  # stands out
+            after = replace(after, broken=True)
+        rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
     labels = (
         *("", say("make"), say("wanted"), say("at least"), say("at most")),
         *(say("before"), say("after"), say("met")),
@@ -98,18 +83,6 @@ def _goals(fit: Fit) -> Table:
     kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
     columns = tuple(Column(labels[k]) for k in kept)
     return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
-
-
-def _missed(one: Cell, met: bool | None) -> Cell:
-    """A figure that misses its goal stands out."""
-    if met is not False or not isinstance(one, Value):
-        return one
-    return replace(one, broken=True)
-
-
-def _wanted(goal: Goal) -> Iterator[Cell]:
-    for value in (goal.target, goal.at_least, goal.at_most):
-        yield None if value is None else _figure(value, goal.figure)
 
 
 def _changes(fit: Fit) -> Table:
@@ -131,7 +104,7 @@ def _changes(fit: Fit) -> Table:
 def _figures(fit: Fit) -> Table:
     asked = {goal.figure for goal in fit.goals}
     rows: list[tuple[Cell, ...]] = []
-    for name in (*PATH, *SOIL, *(f"{name}.value" for name in EXTREMES), *OTHERS):
+    for name in (*FIGURES, *OTHERS):
         known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
         if name not in asked and known:
             rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))

@@ -237,6 +237,22 @@ class Edge:
         return inside
 
 
+def distance(a: Array, b: Array, c: complex, d: complex) -> Array:
+    """Distance between lines from a to b (..., K) and a line from c to d, m."""
+    gaps = [to_line(a, c, d), to_line(b, c, d), to_line(c, a, b), to_line(d, a, b)]
+    apart = kernels.cross(b - a, c - a) * kernels.cross(b - a, d - a) < 0
+    across = kernels.cross(d - c, a - c) * kernels.cross(d - c, b - c) < 0
+    return np.where(apart & across, 0.0, np.min(np.broadcast_arrays(*gaps), axis=0))
+
+
+def to_line(point: Any, start: Any, stop: Any) -> Array:
+    """Distance of points from a line between two others, m."""
+    along = stop - start
+    length2 = np.maximum(np.abs(along) ** 2, 1e-300)
+    share = np.clip(kernels.dot(along, point - start) / length2, 0.0, 1.0)
+    return np.asarray(np.abs(point - start - share * along))
+
+
 def pick_up(curve: TipCurve, entry: Array) -> Array:
     """Crank angle (P,) at which the tip last passes the tray's edge before it enters the soil.
 

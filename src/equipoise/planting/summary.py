@@ -38,9 +38,15 @@ class SoilForces:
 
     def compared(self) -> dict[str, tuple[Figures, Figures]]:
         """Figures in the air and in the soil of the drive torque and of every joint's force."""
-        air, soil = _signals(self.in_air), _signals(self.in_soil)
-        angles = self.motion.crank_angle
-        return {name: (figures(angles, air[name]), figures(angles, soil[name])) for name in air}
+        air, soil = (
+            {"drive_torque": figures(self.motion.crank_angle, found.drive_torque)}
+            | {
+                f"joints.{name}": figures(self.motion.crank_angle, joint.size)
+                for name, joint in found.joints.items()
+            }
+            for found in (self.in_air, self.in_soil)
+        )
+        return {name: (air[name], soil[name]) for name in air}
 
 
 def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
@@ -51,11 +57,6 @@ def soil_forces(machine: Machine, angles: int = 720) -> SoilForces | None:
     motion = move(machine, angles)
     dry = replace(motion, linkage=motion.linkage.of(machine.with_planting(soil=None)))
     return SoilForces(motion, forces(motion), forces(dry))
-
-
-def _signals(found: Forces) -> dict[str, Array]:
-    joints = {f"joints.{name}": joint.size for name, joint in found.joints.items()}
-    return {"drive_torque": found.drive_torque, **joints}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -160,7 +161,7 @@ def plant(machine: Machine, speed: float | None = None) -> PlantingFigures:
     return PlantingFigures(
         curve=curve,
         figures=known,
-        visits=tuple(_wrapped(curve, stay) for stay in stays),
+        visits=tuple(_within_cycle(curve, stay) for stay in stays),
         loops=path.loops(),
         cusps=path.cusps(),
         tray_crossings=crossed,
@@ -172,9 +173,9 @@ def _of(figures: Figures) -> dict[str, float]:
     return {**asdict(figures), "peak_to_peak": figures.peak_to_peak}
 
 
-def _wrapped(curve: TipCurve, visit: Visit) -> Visit:
-    entry, leave = wrapped(curve, np.array([visit.entry, visit.exit]))
-    return Visit(float(entry), float(leave), visit.deepest, visit.depth)
+def _within_cycle(curve: TipCurve, visit: Visit) -> Visit:
+    entry, leave = wrapped(curve, np.array([visit.entry, visit.exit])).tolist()
+    return replace(visit, entry=entry, exit=leave)
 
 
 def _of_drive(curve: TipCurve) -> dict[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from math import degrees
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
+from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
 from equipoise.studies.evaluate import evaluator
 from equipoise.studies.outcomes import Outcome
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount
     from equipoise.studies.study import Study
-
-Array = np.ndarray[Any, Any]
 
 
 # -- linkages --------------------------------------------------------------------------------------

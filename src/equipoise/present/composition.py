@@ -163,8 +163,8 @@ def _sections(
 
 
 def _animation(found: Findings) -> str:
+    from equipoise.figures.animation import animated_svg
     from equipoise.figures.stage import Arrow
-    from equipoise.figures.svg import animated_svg
     from equipoise.symbols.scene import Scene
 
     analysis = found.analysis

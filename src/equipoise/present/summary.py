@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sin
-from typing import Any
 
 import numpy as np
 
@@ -20,9 +19,7 @@ from equipoise.present.remedies import good_already, helps_told
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, scaled
-from equipoise.signals import Figures, figures, harmonics
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array, Figures, figures, harmonics
 
 
 @dataclass(frozen=True, eq=False)

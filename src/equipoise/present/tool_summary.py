@@ -19,6 +19,7 @@ from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.remedies import capital
 from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
+from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
     from equipoise.handheld.design import ToolDesign
@@ -137,7 +138,7 @@ def _transmitted(found: ToolFindings) -> Iterator[str]:
     assert transmission is not None
     for name, one in transmission.stations.items():
         size = np.max(one.size, axis=0)
-        k = int(np.argmax(size))
+        k = int(highest_at(size, smooth=False))
         yield say(
             "Of a force at {source}, {name} gets at most {ratio} times as much, at {speed} rpm.",
             source=transmission.source,

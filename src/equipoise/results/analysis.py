@@ -19,13 +19,12 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
-from equipoise.signals import Figures, Periodic, figures_of_each
+from equipoise.signals import Array, Figures, Periodic, figures_of_each
 
 if TYPE_CHECKING:
     import pandas
     import xarray
 
-Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 
 LATERAL = ("roll_moment", "yaw_moment")
@@ -70,7 +69,7 @@ class Analysis(Result):
     @cached_property
     def outputs(self) -> Outputs:
         """Every output of motion and forces, by name."""
-        return Outputs.of(self)
+        return Outputs(self)
 
     @cached_property
     def summary(self) -> Mapping[str, Figures]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,12 +22,10 @@ from equipoise.results.machine_blocks import (
     smallest,
 )
 from equipoise.results.outputs import CAUSES
-from equipoise.signals import Periodic, figures
+from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
-
-Array = np.ndarray[Any, Any]
 
 MOST_ORDERS = 8
 """Orders that are told of."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,14 +11,12 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import body_named
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
-from equipoise.signals import Figures, figures
+from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assessment import FourBar
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
-
-Array = np.ndarray[Any, Any]
 
 FOUR_BARS = (
     to_say("double-crank (drag link)"),

@@ -9,19 +9,15 @@ from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.quantities import Dimension
-from equipoise.signals import Figures, Periodic, figures
+from equipoise.signals import Array, Figures, Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import Objective
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,11 +102,6 @@ class Outputs:
                 for one, items in own:
                     if item in items:
                         self._found[one.named(item)] = Output(one, item, analysis)
-
-    @classmethod
-    def of(cls, analysis: Any) -> Outputs:
-        """The outputs of an analysis."""
-        return cls(analysis)
 
     def __iter__(self) -> Iterator[Output]:
         return iter(self._found.values())

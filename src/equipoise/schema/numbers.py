@@ -10,7 +10,7 @@ from functools import cached_property
 from math import atan2, cos, hypot, pi, sin
 from typing import Any
 
-from equipoise.errors import UsageError
+from equipoise.errors import ModelError, UsageError
 from equipoise.keys import PLANES, Frozen, declared, key
 from equipoise.quantities import (
     HUGE,
@@ -23,7 +23,7 @@ from equipoise.quantities import (
     plain_unit,
     rounded,
 )
-from equipoise.quantities.reading import too_far
+from equipoise.quantities.reading import described, too_far
 
 SHARE = rf"({NUMBER}) +%"
 _DIGITS = 60
@@ -163,6 +163,24 @@ def read_number(given: Any, whole: bool = False) -> Number | None:
     except UsageError:
         return None
     return None if share is None else Number(share, share=True)
+
+
+def si_value(where: str, given: Any, dimension: str | None) -> float:
+    """A value of a file in SI units; a plain number where its figure has no dimension.
+
+    Raises
+    ------
+    ModelError : it is something else; `where` is its place.
+    """
+    if dimension is None:
+        number = read_number(given)
+        if number is None or number.dimension is not None:
+            raise ModelError(where, f"got {described(given)}; give a plain number, such as 2")
+        return number.value
+    try:
+        return parse(given, dimension)  # type: ignore[arg-type]
+    except UsageError as error:
+        raise ModelError(where, str(error)) from error
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from typing import Any, Literal, NamedTuple
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys import SCHEMA_VERSION, Frozen
 from equipoise.mechanism.checks import unknown
+from equipoise.quantities.reading import described
 from equipoise.schema.files import LARGEST, FileError, printable, read_text
 
 Kind = Literal["linkage", "tool"]
@@ -126,14 +127,12 @@ def examples(kind: FileKind | None = None) -> dict[str, str]:
 
     kind : ``linkage``, ``tool`` or ``study``, for those of one kind only.
     """
-    contents = {
-        name: tomllib.loads(file.read_text(encoding="utf-8")) for name, file in bundled().items()
-    }
-    return {
-        name: str(content["title"])
-        for name, content in contents.items()
-        if kind in {None, kind_of(content)}
-    }
+    titles: dict[str, str] = {}
+    for name, file in bundled().items():
+        content = tomllib.loads(file.read_text(encoding="utf-8"))
+        if kind in {None, kind_of(content)}:
+            titles[name] = str(content["title"])
+    return titles
 
 
 def document_of(kind: FileKind) -> type[Frozen]:
@@ -181,7 +180,15 @@ def toml_content(text: str) -> dict[str, Any]:
     ModelError : it is no TOML, or of another version.
     """
     content = _toml(text)
-    _check_version(content)
+    if "schema" not in content:
+        raise ModelError(
+            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
+        )
+    given = content["schema"]
+    if type(given) is not int or given != SCHEMA_VERSION:
+        raise ModelError(
+            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
+        )
     return content
 
 
@@ -210,17 +217,3 @@ def _syntax(message: str) -> str:
     if what.startswith(("Cannot overwrite", "Cannot declare", "Cannot mutate")):
         what += ", a key or table is given twice"
     return f"{where}: {what[:1].lower()}{what[1:]}; give valid TOML".removeprefix(": ")
-
-
-def _check_version(content: dict[str, Any]) -> None:
-    if "schema" not in content:
-        raise ModelError(
-            "schema", f"missing; begin the file with schema = {SCHEMA_VERSION} (all tables after)"
-        )
-    given = content["schema"]
-    if type(given) is not int or given != SCHEMA_VERSION:
-        from equipoise.quantities.reading import described
-
-        raise ModelError(
-            "schema", f"got {described(given)}; this program reads schema = {SCHEMA_VERSION}"
-        )

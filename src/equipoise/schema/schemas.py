@@ -1,8 +1,7 @@
-"""JSON Schemas of files, and tables of keys for the documentation, from what classes declare."""
+"""JSON Schemas of files, from what classes declare."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -10,7 +9,7 @@ from equipoise import keys
 from equipoise.quantities import KINDS, Dimension, pattern
 from equipoise.schema.numbers import Polar
 from equipoise.schema.opening import FileKind, document_of
-from equipoise.schema.writing import plain_default, value_text
+from equipoise.schema.writing import plain_default
 
 Schema = dict[str, Any]
 Definitions = dict[str, Schema]
@@ -192,77 +191,3 @@ SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
     keys.Told: lambda kind, _: {"type": "string", **(kind.schema or {})},
     keys.Whole: _whole,
 }
-
-# -- the documentation -----------------------------------------------------------------------------
-
-_COUNTS = {2: "two", 3: "three"}
-WORDS: dict[type[keys.Kind], str] = {
-    keys.Anything: "value",
-    keys.Direction: "angle, or vector",
-    keys.File: "file",
-    keys.Flag: "true or false",
-    keys.Number: "number",
-    keys.Whole: "whole number",
-}
-"""What values of kinds without a choice are called; all others are text."""
-
-
-def key_table(of: type[keys.Frozen]) -> str:
-    """Rows of the documentation, one for each key of a class that holds no table."""
-    plain = (one for one in keys.keys_of(of).values() if not holds_tables(one.kind))
-    rows = (
-        f"| `{one.name}` | {words_of(one.kind)} | {_default(one)} | {one.text} |" for one in plain
-    )
-    table = "\n".join(["| key | kind | default | meaning |", "|---|---|---|---|", *rows])
-    return table.replace("|  |", "| |")
-
-
-def holds_tables(kind: keys.Kind) -> bool:
-    """Whether a key has tables below it, which the documentation tells for themselves."""
-    return isinstance(keys.innermost(kind), keys.Table | keys.Tables)
-
-
-def _default(one: keys.Key) -> str:
-    if one.required:
-        return "required"
-    default = plain_default(one)
-    if default in (None, [], {}):
-        return ""
-    return f"`{value_text(default)}`"
-
-
-def words_of(kind: keys.Kind) -> str:
-    """What a value is, as the documentation calls it."""
-    if isinstance(kind, keys.Listing | keys.Named | keys.OneOr | keys.Planes):
-        return _words_of_several(kind)
-    if isinstance(kind, keys.Quantity):
-        return re.sub(r"^an? ", "", KINDS[kind.dimension].noun)
-    if isinstance(kind, keys.Whole) and kind.names:
-        return " or ".join(map(str, kind.names))
-    if isinstance(kind, keys.Text) and (names := kind.names or kind.suggested):
-        *most, last = (f'`"{name}"`' for name in names)
-        return f"{', '.join(most)} or {last}"
-    if isinstance(kind, keys.Point):
-        return "place" if kind.space else "point"
-    return WORDS.get(type(kind), "text")
-
-
-def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes) -> str:
-    item = words_of(kind.item)
-    if isinstance(kind, keys.Listing):
-        if isinstance(kind.item, keys.Text) and kind.item.names:
-            return f"list of {item}"
-        count = _COUNTS.get(kind.sizes[0], "") if kind.sizes else "list of"
-        return f"{count} {_plural(item)}"
-    if isinstance(kind, keys.Named):
-        return f"{item if item[0] == '`' else _plural(item)} by name"
-    if isinstance(kind, keys.OneOr):
-        return f"{item}, or {_COUNTS[kind.size]}"
-    return f"{item}, in planes"
-
-
-def _plural(words: str) -> str:
-    first, dot, rest = words.partition(" of ")
-    ending = {"s": "es", "y": "ies"}.get(first[-1], "s")
-    stem = first[:-1] if ending == "ies" and first[-2:] != "ey" else first
-    return f"{stem}{ending}{dot}{rest}"

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 from equipoise.errors import EquipoiseError, ModelError, UsageError
-from equipoise.quantities import KINDS, format_exact, parse
+from equipoise.quantities import KINDS, format_exact
 from equipoise.quantities.reading import described
-from equipoise.schema.numbers import read_number
+from equipoise.schema.numbers import read_number, si_value
 from equipoise.schema.opening import (
     Opened,
     bundled,
@@ -166,7 +166,7 @@ def _vary(where: str, given: VaryTable, template: Template) -> Vary:
 
 def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -> Spread:
     def read(key: str, one: Any) -> float:
-        return value if one is None else _value(f"{where}{key}", one, dimension)
+        return value if one is None else si_value(f"{where}{key}", one, dimension)
 
     if given.range is not None:
         low, high = (read(f"[{n}]", one) for n, one in enumerate(given.range, 1))
@@ -180,19 +180,6 @@ def _spread(where: str, given: VaryTable, value: float, dimension: str | None) -
     assert given.uniform is not None
     uniform = given.uniform
     return Uniform(read(".centre", uniform.centre), read(".half_width", uniform.half_width))
-
-
-def _value(where: str, given: Any, dimension: str | None) -> float:
-    """A value of a number of the model, in SI units."""
-    if dimension is None:
-        number = read_number(given)
-        if number is None or number.dimension is not None:
-            raise ModelError(where, f"got {described(given)}; give a plain number, such as 2")
-        return number.value
-    try:
-        return parse(given, dimension)  # type: ignore[arg-type]
-    except UsageError as error:
-        raise ModelError(where, str(error)) from error
 
 
 # -- which designs, and what is computed of them ---------------------------------------------------
@@ -228,7 +215,7 @@ def _output(where: str, given: OutputTable, template: Template) -> Output:
 def _limit(where: str, given: Any, dimension: str | None) -> float:
     """A limit in SI units; where its dimension is not known, a plain number or any quantity."""
     if dimension is not None:
-        return _value(where, given, dimension)
+        return si_value(where, given, dimension)
     number = read_number(given)
     if number is None or number.share:
         raise ModelError(

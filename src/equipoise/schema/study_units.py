@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tomllib
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from equipoise.codegen.figures import COMPUTED, REASONS
@@ -47,9 +48,7 @@ def resume(
     """
     from equipoise.studies import run
 
-    def restored(texts: Mapping[str, str]) -> Study:
-        return _restored(texts, path)
-
+    restored = partial(_restored, path=path)
     return run.resume(path, restored, workers=workers, cluster=cluster, progress=progress)
 
 

@@ -10,13 +10,13 @@ from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal, get_args
 
-from equipoise import quantities
 from equipoise.errors import ModelError, UsageError
 from equipoise.keys import (
     VERSION,
     Anything,
     Frozen,
     Keys,
+    Named,
     Table,
     Tables,
     Text,
@@ -26,9 +26,11 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
-from equipoise.planting.goals import Goal, dimension_of
+from equipoise.planting.goals import Goal
+from equipoise.planting.names import dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
+from equipoise.schema.numbers import si_value
 from equipoise.schema.opening import in_file, toml_content
 from equipoise.schema.reading import Context, read_table
 
@@ -71,7 +73,7 @@ class TargetTable(Frozen):
         Tables(Table(GoalTable)), "what figures have to be", example=[]
     )
     search: SearchTable = key(Table(SearchTable), "how to search", default=SearchTable())
-    vary: Mapping[str, Any] | None = key(VALUE, "numbers with their limits", default=None)
+    vary: Mapping[str, Any] | None = key(Named(VALUE), "numbers with their limits", default=None)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> TargetTable:
@@ -85,10 +87,7 @@ class Targets:
 
     goals: tuple[Goal, ...]
     vary: Mapping[str, tuple[float, float]] | None
-    sense: Sense
-    seed: int
-    generations: int
-    population: int
+    search: SearchTable
 
 
 def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targets:
@@ -108,29 +107,15 @@ def read_targets(path: str | os.PathLike[str], figures: Collection[str]) -> Targ
             text = read_text(path)
         except FileError as problem:
             raise ModelError("", str(problem)) from problem
-        return _targets(_document(text), figures)
-
-
-def _document(text: str) -> TargetTable:
-    content = toml_content(text)
-    if "goals" not in content:
-        raise ModelError("goals", "missing; add at least one table [[goals]]")
-    table: TargetTable = read_table(TargetTable, content, Context())
-    return table
-
-
-def _targets(document: TargetTable, figures: Collection[str]) -> Targets:
-    if not document.goals:
-        raise ModelError("goals", "there is none; give at least one [[goals]]")
-    search = document.search
-    return Targets(
-        goals=tuple(_goal(f"goals[{n}]", g, figures) for n, g in enumerate(document.goals, 1)),
-        vary=None if document.vary is None else dict(_limits(document.vary)),
-        sense=search.crank,
-        seed=search.seed,
-        generations=search.generations,
-        population=search.population,
-    )
+        content = toml_content(text)
+        if "goals" not in content:
+            raise ModelError("goals", "missing; add at least one table [[goals]]")
+        table: TargetTable = read_table(TargetTable, content, Context())
+        if not table.goals:
+            raise ModelError("goals", "there is none; give at least one [[goals]]")
+        goals = tuple(_goal(f"goals[{n}]", one, figures) for n, one in enumerate(table.goals, 1))
+        vary = None if table.vary is None else dict(_limits(table.vary))
+        return Targets(goals, vary, table.search)
 
 
 def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Goal:
@@ -142,23 +127,12 @@ def _goal(where: str, goal: GoalTable, figures: Collection[str]) -> Goal:
         raise ModelError(f"{where}.figure", unknown(goal.figure, figures, "figure"))
     keys = ("target", "at_least", "at_most", "tolerance")
     given = {
-        one: _value(f"{where}.{one}", getattr(goal, one), dimension_of(goal.figure))
+        one: si_value(f"{where}.{one}", getattr(goal, one), dimension_of(goal.figure))
         for one in keys
         if getattr(goal, one) is not None
     }
     try:
         return Goal(goal.figure, make=goal.make, **given)
-    except UsageError as error:
-        raise ModelError(where, str(error)) from error
-
-
-def _value(where: str, given: Quantity, dimension: str | None) -> float:
-    if dimension is None:
-        if isinstance(given, str):
-            raise ModelError(where, f"got {given!r}; give a plain number, such as -0.9")
-        return float(given)
-    try:
-        return quantities.parse(given, dimension)  # type: ignore[arg-type]
     except UsageError as error:
         raise ModelError(where, str(error)) from error
 
@@ -175,5 +149,5 @@ def _limits(
         if not isinstance(value, list) or len(value) != 2:
             raise ModelError(f"vary.{name}", 'give two limits, such as ["20 mm", "60 mm"]')
         dimension = "angle" if name == "ground_angle" else "length"
-        low, high = (_value(f"vary.{name}", limit, dimension) for limit in value)
+        low, high = (si_value(f"vary.{name}", limit, dimension) for limit in value)
         yield name, (low, high)

@@ -97,8 +97,8 @@ def plate(corners: Array, roles: Sequence[str] = ("edge", "body")) -> list[Shape
 
 def wheel(center: complex, radius: float) -> list[Shape]:
     """A gear: its pitch circle with three spokes, so that one sees it turn."""
-    ways = np.exp(2j * np.pi * np.arange(3) / 3)
-    spokes = [line("spoke", center, center + 0.94 * radius * way) for way in ways]
+    ways = 0.94 * radius * np.exp(2j * np.pi * np.arange(3) / 3)
+    spokes = [line("spoke", center, center + way) for way in ways]
     return [circle("wheel", center, radius), *spokes]
 
 
@@ -226,20 +226,18 @@ def mount(
     return [*lines, *ground, circle("float" if one_sided else "foot", place, grown=PIN)]
 
 
-def _spring_and_dashpot() -> dict[bool, list[Array]]:
-    """From 0 to 1, sides over the length: a zigzag; a piston in a cylinder open to the ground."""
-    half = MOUNT[1] / MOUNT[0]
-    along = np.concatenate([[0, 0.2], 0.2 + 0.6 * (np.arange(6) + 0.5) / 6, [0.8, 1]])
-    spring = [along + 1j * half * np.array([0, 0, *([1, -1] * 3), 0, 0])]
-    cylinder = np.array([0.75 + 1j * half, 0.35 + 1j * half, 0.35 - 1j * half, 0.75 - 1j * half])
-    piston = np.array([0.6 + 0.8j * half, 0.6 - 0.8j * half])
-    return {
-        True: spring,
-        False: [np.array([0, 0.35 + 0j]), cylinder, piston, np.array([0.6, 1 + 0j])],
-    }
-
-
-_BODIES = _spring_and_dashpot()
+HALF = 1j * MOUNT[1] / MOUNT[0]
+ALONG = np.concatenate([[0, 0.2], 0.2 + 0.6 * (np.arange(6) + 0.5) / 6, [0.8, 1]])
+_BODIES: dict[bool, list[Array]] = {
+    True: [ALONG + HALF * np.array([0, 0, *([1, -1] * 3), 0, 0])],
+    False: [
+        np.array([0, 0.35 + 0j]),
+        np.array([0.75 + HALF, 0.35 + HALF, 0.35 - HALF, 0.75 - HALF]),
+        np.array([0.6 + 0.8 * HALF, 0.6 - 0.8 * HALF]),
+        np.array([0.6, 1 + 0j]),
+    ],
+}
+"""From 0 to 1, sides over the length: a zigzag; a piston in a cylinder open to the ground."""
 
 
 def gauge(place: complex, way: complex) -> list[Shape]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from math import pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.analysis_blocks import loud
 from equipoise.results.blocks import Block, Cell, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven
+from equipoise.signals import Array
 from equipoise.vibration.response import MODELS, Model
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.response import Mode, Response
     from equipoise.vibration.transient import Transient
 
-Array = np.ndarray[Any, Any]
 Kind = tuple[Dimension, str | None]
 """A dimension, and the unit in which it is usual here."""
 

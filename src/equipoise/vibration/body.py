@@ -19,8 +19,7 @@ import numpy as np
 from equipoise.errors import ModelError
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Mount, Support, unit_vector
-
-Array = np.ndarray[Any, Any]
+from equipoise.signals import Array
 
 MISSING = (
     "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges"

@@ -19,18 +19,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
 from math import copysign, pi
-from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ResponseError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
+from equipoise.signals import Array
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
 from equipoise.vibration.collocation import Rates
 from equipoise.vibration.linkages import Sums, sums
 
-Array = np.ndarray[Any, Any]
 Torque = Callable[[Array, Array], Array]
 """Torque on the crank, N m, at its speed, rad/s, and a shift of the motor's speed, rad/s."""
 

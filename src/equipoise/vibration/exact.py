@@ -10,7 +10,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from math import pi
-from typing import Any
 
 import numpy as np
 
@@ -20,7 +19,7 @@ from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.reactions import Pass
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import PITCH, Body, Reading
 from equipoise.vibration.coupled import Coupled, settled
 from equipoise.vibration.linear import Linear, gauges_of
@@ -51,8 +50,6 @@ from equipoise.vibration.steady import (
     turns_of,
     with_motor,
 )
-
-Array = np.ndarray[Any, Any]
 
 LEANING = 10.0
 """deg, from which on it is told how far from the drawn position the support has come to rest."""

@@ -14,12 +14,11 @@ from equipoise.errors import MassError, ModelError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
+from equipoise.signals import Array
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.response import Mode, Values
-
-Array = np.ndarray[Any, Any]
 
 QUIET = 1e-3
 """Share of the loudest resonance at every gauge below which one is not told."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from operator import add
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
@@ -23,12 +23,11 @@ from equipoise.mechanism.kernels import cross
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.support import AXES, FREEDOMS, Gauge, Row
-from equipoise.signals import Periodic, highest_at
+from equipoise.signals import Array, Periodic, highest_at
 from equipoise.vibration.body import Body, Rest, at_rest, moved, rigid_mass
 from equipoise.vibration.linkages import rows_of, spread
 from equipoise.vibration.response import Mode
 
-Array = np.ndarray[Any, Any]
 Step = Literal["linear", "torque", "moment"]
 STEPS: tuple[Step, ...] = ("linear", "torque", "moment")
 

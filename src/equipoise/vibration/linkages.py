@@ -31,9 +31,8 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.reactions import Demand, Pass, load_demands, reactions, spring_demands
 from equipoise.mechanism.steps import p, u
 from equipoise.mechanism.support import Row
+from equipoise.signals import Array
 from equipoise.vibration.body import PITCH
-
-Array = np.ndarray[Any, Any]
 
 
 @dataclass(frozen=True, eq=False)

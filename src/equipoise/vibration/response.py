@@ -12,9 +12,8 @@ import numpy as np
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 
-Array = np.ndarray[Any, Any]
 Values = dict[str, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 MODELS: dict[Model, str] = {

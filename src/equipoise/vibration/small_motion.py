@@ -13,22 +13,19 @@ from dataclasses import dataclass, replace
 from functools import cached_property, reduce
 from math import copysign, pi
 from operator import add
-from typing import Any
 
 import numpy as np
 
 from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.motion import move
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import IN_PLANE, PITCH
 from equipoise.vibration.collocation import Conditions, Rates
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.linkages import rows_of
 from equipoise.vibration.response import DriveSignals, GaugeSignals, MountForce, Response, in_words
 from equipoise.vibration.steady import ROUGH, SAMPLES, steady
-
-Array = np.ndarray[Any, Any]
 
 NEUTRAL = 1e-9
 """Growth of a mode, beside its frequency, up to which it is rounding."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from math import ceil, copysign, pi
-from typing import Any
 
 import numpy as np
 
@@ -15,12 +14,12 @@ from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Drive, Machine
 from equipoise.mechanism.motion import move
+from equipoise.signals import Array
 from equipoise.vibration.collocation import NOTHING, RULE, Conditions, Orbit, System, solve
 from equipoise.vibration.coupled import Coupled, Torque
 from equipoise.vibration.linear import Linear
 from equipoise.vibration.linkages import rows_of
 
-Array = np.ndarray[Any, Any]
 Guess = Callable[[Array], Array]
 
 NO_STEADY_STATE = (

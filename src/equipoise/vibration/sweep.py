@@ -15,7 +15,7 @@ from equipoise.i18n import Note, to_say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
-from equipoise.signals import Periodic
+from equipoise.signals import Array, Periodic
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.forced import (
     Progress,
@@ -29,8 +29,6 @@ from equipoise.vibration.free import Resonance, resonances
 from equipoise.vibration.linear import Linear, Step
 from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
-
-Array = np.ndarray[Any, Any]
 
 SPEEDS = 200
 """In a sweep, besides those about resonances."""

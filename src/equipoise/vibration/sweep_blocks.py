@@ -11,13 +11,12 @@ import numpy as np
 from equipoise.i18n import say
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.blocks import Block, Cell, Column, Many, Notes, Span, Table, Text, Value
+from equipoise.signals import Array
 from equipoise.vibration.blocks import model_told, modes_table, reading
 
 if TYPE_CHECKING:
     from equipoise.vibration.free import FreeVibration
     from equipoise.vibration.sweep import Sweep
-
-Array = np.ndarray[Any, Any]
 
 MOST_PEAKS = 6
 """Peaks that are told of each gauge."""

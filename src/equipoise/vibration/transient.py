@@ -14,14 +14,13 @@ from equipoise.errors import MassError, ResponseError, UsageError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.results.result import Result
+from equipoise.signals import Array
 from equipoise.vibration.body import Body, Reading
 from equipoise.vibration.coupled import Coupled, follow
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, steady_speed
 from equipoise.vibration.linear import gauges_of
 from equipoise.vibration.steady import equations, motor_setting
-
-Array = np.ndarray[Any, Any]
 
 MOST_TURNS = 2000
 LEAST_SAMPLES, SAMPLES_PER_TURN, MOST_SAMPLES = 2001, 72, 1_000_000

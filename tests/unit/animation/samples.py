@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import equipoise as eq
 from equipoise.figures.stage import Arrow
 from equipoise.results.analysis import Analysis
 from equipoise.symbols.scene import Scene
+from unit.figures.samples import three_turns
 
 
 def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, Arrow]:
@@ -19,8 +18,6 @@ def prepared(found: Analysis) -> tuple[Analysis, Scene, Arrow]:
     return found, Scene.of(found.motion), arrow
 
 
-def three_turns(angles: int) -> Analysis:
+def of_three_turns(angles: int) -> Analysis:
     """A planetary arm whose tip is back after three turns."""
-    arm = eq.load("planetary-planting-arm")
-    first, second = arm.gears
-    return eq.analyze(replace(arm, gears=(first, replace(second, teeth=(40, 30)))), angles)
+    return eq.analyze(three_turns(), angles)

@@ -16,7 +16,7 @@ from equipoise.figures.film import gif, mp4
 from equipoise.figures.stage import Stage
 from equipoise.symbols.looks import DARK, LIGHT
 from equipoise.symbols.scene import Scene
-from unit.animation.samples import analyzed, prepared, three_turns
+from unit.animation.samples import analyzed, of_three_turns, prepared
 
 SMALL = {"seconds": 0.4, "width": 320}
 """Ten frames of a GIF, twelve of an MP4."""
@@ -81,7 +81,7 @@ def test_a_film_shows_the_motion() -> None:
 
 def test_a_film_takes_as_many_turns_as_it_is_told_and_has_even_sides() -> None:
     pytest.importorskip("av")
-    _, scene, arrow = prepared(three_turns(60))
+    _, scene, arrow = prepared(of_three_turns(60))
     told: list[tuple[int, int]] = []
     options = {"seconds": 0.2, "width": 201, "arrow": arrow, "dark": True}
     whole = frames_of_mp4(mp4(scene, told=lambda *count: told.append(count), **options))

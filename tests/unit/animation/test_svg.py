@@ -11,10 +11,10 @@ import pytest
 
 import equipoise as eq
 from equipoise.errors import UsageError
-from equipoise.figures.svg import animated_svg
+from equipoise.figures.animation import animated_svg
 from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
-from unit.animation.samples import analyzed, prepared, three_turns
+from unit.animation.samples import analyzed, of_three_turns, prepared
 
 NAME = "{http://www.w3.org/2000/svg}"
 STEP = re.compile(
@@ -145,7 +145,7 @@ def test_blocks_stay_in_their_slots() -> None:
 
 
 def test_wheels_of_many_turns_turn_on_and_end_as_they_began() -> None:
-    _, scene, _ = prepared(three_turns(720))
+    _, scene, _ = prepared(of_three_turns(720))
     text = animated_svg(scene, title="", frames=40, seconds=2.0)
     picture = Picture(text)
     assert "animation-duration:6s" in text

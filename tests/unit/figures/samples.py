@@ -23,12 +23,15 @@ def one_link(title: str = "One link", link: str = "crank", tip: str = "P") -> Ma
     return machine.with_planting(tip=tip, forward_speed=0.5, depth=0.02, soil=SOIL)
 
 
-def long_cycle() -> Machine:
+def three_turns() -> Machine:
     """A planetary arm whose tip is back after three turns."""
     arm = eq.load("planetary-planting-arm")
     first, second = arm.gears
-    machine = replace(arm, gears=(first, replace(second, teeth=(40, 30))))
-    return machine.with_planting(tip="P", forward_speed=0.3, depth=0.03, soil=SOIL)
+    return replace(arm, gears=(first, replace(second, teeth=(40, 30))))
+
+
+def long_cycle() -> Machine:
+    return three_turns().with_planting(tip="P", forward_speed=0.3, depth=0.03, soil=SOIL)
 
 
 def arm(**planting: object) -> Machine:

@@ -117,13 +117,10 @@ def test_the_pose_is_that_of_the_linkages_picture() -> None:
     """Of a machine that has gears already, which are told apart from new ones."""
     machine = eq.load("geared-counterweight")
     weight = eq.balancing.AddedMass("crank", "O2", eq.balancing.Weight("point", 0.03))
-    result = eq.balance(
-        machine,
-        eq.balancing.Balance(
-            masses=(weight,), objectives=(eq.balancing.Objective("shaking_force"),)
-        ),
+    force = eq.balancing.Objective("shaking_force")
+    chart = changes(
+        eq.balance(machine, eq.balancing.Balance(masses=(weight,), objectives=(force,)))
     )
-    chart = changes(result)
     angle = re.search(r"in the frame: [0-9.]+°", words(chart))
     assert angle and angle[0] in words(linkage(eq.analyze(machine, 720)))
     told = words(chart).split("\n")
@@ -153,10 +150,7 @@ def test_springs() -> None:
     result = found("spring")
     (spring_drawn,) = springs(changes_of("spring"))
     spring = result.machine.springs[-1]
-    ends = [
-        at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]),
-        50 + 120j,
-    ]
+    ends = [at_pose("spring", "rocker", result.machine.links["rocker"].points["C"]), 50 + 120j]
     assert spring_drawn[[0, -1]] == pytest.approx(np.array(ends))
     assert f"{spring.stiffness:.4g} N/m" in words(changes_of("spring"))
     none = Change("spring", "rocker", {"point": "C", "to": "S", "stiffness": 0.0, "free_length": 0})

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from functools import cache
-from itertools import combinations
+from itertools import combinations, pairwise
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 from equipoise.figures import layout, render
 from equipoise.figures.layout import lay_out
 from equipoise.figures.planting import charts as planting_charts
-from equipoise.figures.sheet import Sheet, box_of
+from equipoise.figures.sheet import Labels, Sheet, Text, box_of, spread
 from equipoise.figures.view import View
 from equipoise.i18n import speaking
 from equipoise.planting.summary import plant
@@ -122,3 +123,26 @@ def views(chart: Chart) -> list[View]:
         patch.setattr(layout, "draw", seen)
         lay_out(chart)
     return found
+
+
+# -- texts that keep clear of each other -----------------------------------------------------------
+
+
+def test_texts_side_by_side() -> None:
+    assert list(spread([1, 5, 9], [2, 2, 2], 0, 10)) == [1, 5, 9]
+    placed = spread([5.2, 5.0, 5.1], [2, 1, 3], 0, 10)
+    assert list(np.argsort(placed)) == [1, 2, 0]
+    ordered = sorted(zip(placed, (2, 1, 3), strict=True))
+    assert all(b - a >= (u + v) / 2 - 1e-6 for (a, u), (b, v) in pairwise(ordered))
+
+
+def test_texts_without_room() -> None:
+    crowd = spread([0, 0, 0], [5, 5, 5], 0, 10)
+    assert np.all((crowd >= 2.5) & (crowd <= 7.5))
+    sheet = Sheet(72.0, 72.0)
+    labels = Labels(sheet, (0.0, 0.0, 72.0, 72.0))
+    labels.reserve(36.0, 36.0, half=100)
+    assert not labels.put(36.0, 36.0, Text("no room", "#000000", optional=True))
+    assert not sheet.words
+    assert labels.put(36.0, 36.0, Text("all the same", "#000000"))
+    assert [words.text for words in sheet.words] == ["all the same"]

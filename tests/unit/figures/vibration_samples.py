@@ -15,6 +15,7 @@ from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.results.charts import Chart
 from equipoise.vibration.forced import respond
 from equipoise.vibration.sweep import Sweep, sweep_speed
+from unit.figures.samples import three_turns
 
 RPM = 30 / pi
 G = 9.80665
@@ -90,9 +91,7 @@ def space(freedoms: tuple[str, ...] = ("heave", "roll", "pitch")) -> Machine:
 
 def long_cycle() -> Machine:
     """Linkages that are back after three turns."""
-    arm = eq.load("planetary-planting-arm")
-    first, second = arm.gears
-    return plane(replace(arm, gears=(first, replace(second, teeth=(40, 30)))))
+    return plane(three_turns())
 
 
 def crowded() -> Machine:

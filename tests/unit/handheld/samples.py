@@ -26,6 +26,27 @@ def bare(*stations: Station, length: float = 1.5, section: Section = SECTION, **
     return Tool("bare", Shaft(length, section, **shaft), stations)
 
 
+def shaken(tool: Tool, *excitations: Excitation) -> Tool:
+    """The tool with these causes and no other."""
+    return replace(tool, excitations=excitations)
+
+
+FULL = Station(
+    "full",
+    0.4,
+    mass=0.7,
+    inertia=(0.01, 0.02),
+    stiffness=(300.0, 500.0),
+    damping=(4.0, 5.0),
+    rotational_stiffness=(60.0, 70.0),
+    rotational_damping=(0.8, 0.9),
+    absorber=Absorber(0.2, (3e3, 4e3), (1.5, 2.5)),
+    hand=Hand(0.3, (900.0, 800.0), (30.0, 20.0), hands=2),
+    harness=Harness((110.0, 120.0), (13.0, 14.0)),
+)
+"""A station with all that may sit on one."""
+
+
 def both(value: float) -> tuple[float, float]:
     """The same number in both planes."""
     return value, value

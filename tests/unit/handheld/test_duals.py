@@ -9,9 +9,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from equipoise.handheld.duals import Dual, stacked, value_of, variables
-
-Array = np.ndarray[Any, Any]
+from equipoise.handheld.duals import Dual, stacked, variables
 
 OPERATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "x + y": lambda x, y: x + y,
@@ -106,11 +104,6 @@ def test_variables_have_a_slope_by_themselves_alone() -> None:
     np.testing.assert_array_equal(slopes, np.eye(3))
     product = found[0] * found[1] / found[2]
     np.testing.assert_allclose(np.squeeze(product.slopes), [3 / 5, 2 / 5, -6 / 25], rtol=1e-15)
-
-
-def test_value_of() -> None:
-    assert value_of(3.5) == 3.5
-    assert value_of(Dual(2.0, 1.0)) == 2.0
 
 
 def test_stacked() -> None:

@@ -190,24 +190,6 @@ def test_phase_is_the_angle_of_the_shaft_of_either(ratio: float) -> None:
     np.testing.assert_allclose(changes[0], changes[1], rtol=1e-9)
 
 
-def test_a_phase_moves_each_order_by_its_own_angle() -> None:
-    """Order k by k times the angle of the crank."""
-    plain = {shake.order: shake.force for shake in of(linkage=slider_crank())}
-    ahead = {shake.order: shake.force for shake in of(linkage=slider_crank(), phase=0.3)}
-    assert plain.keys() == ahead.keys()
-    for order, force in plain.items():
-        np.testing.assert_allclose(ahead[order], force * np.exp(0.3j * order), rtol=1e-12)
-
-
-def test_orders_of_a_linkage_of_several_turns() -> None:
-    """Orders of the crank, not of the period: thirds where the gears meet again after three."""
-    machine = make("geared_five_bar", 0).machine
-    assert eq.mechanism.assemble(machine).cycle.turns == 3
-    orders = np.array([shake.order for shake in of(linkage=machine)])
-    np.testing.assert_allclose(3 * orders, np.round(3 * orders), atol=1e-12)
-    assert np.any(np.abs(orders - np.round(orders)) > 0.1)
-
-
 def test_orders_that_coincide_are_added_with_their_phases() -> None:
     """A third order of a tenth of the speed, and a force at 0.3 of it: one frequency, one signal.
 

@@ -95,55 +95,6 @@ def samples(count: int = 40) -> tuple[Array, Array, Array, Array, Array]:
     return tuple(np.array(rows).T)  # type: ignore[return-value]
 
 
-def scaled(found: Transfer, length: Array, flexibility: Array) -> Array:
-    """The matrix without units, with lengths over that of the segment, and forces over EI / l^2."""
-    force = 1 / (flexibility * length**2)
-    units = np.array([length, np.ones_like(length), force, force * length]).T
-    return square(found) / units[:, :, None] * units[:, None, :]
-
-
-@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_determinant_and_reciprocity(theory: str) -> None:
-    """The trace of the equations is 0, and w with V, theta with M are pairs: T' J T = J.
-
-    Without units the entries are up to some hundreds; 1e-12 are their products' roundings.
-    """
-    length, e, s, m, r = samples()
-    found = shear_transfer(length, e, s, m, r) if theory == "timoshenko" else transfer(length, e, m)
-    matrix = scaled(found, length, e)
-    size = np.max(np.abs(matrix), axis=(1, 2))
-    pairs = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.eye(2), np.zeros((2, 2))]])
-    product = np.swapaxes(matrix, 1, 2) @ pairs @ matrix
-    assert np.max(np.abs(product - pairs) / size[:, None, None] ** 2) < 1e-14
-    assert np.max(np.abs(np.linalg.det(matrix) - 1) / size**2) < 1e-12
-
-
-def test_no_shear_and_no_rotary_inertia_is_the_plain_beam() -> None:
-    length, e, _, m, _ = samples()
-    thick = scaled(shear_transfer(length, e, 0.0 * e, m, 0.0 * m), length, e)
-    plain = scaled(transfer(length, e, m), length, e)
-    assert np.max(np.abs(thick - plain)) < 1e-13 * np.max(np.abs(plain))
-
-
-@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_two_parts_in_a_row_are_one(theory: str) -> None:
-    length, e, s, m, r = samples()
-
-    def of(part: float) -> Array:
-        if theory == "timoshenko":
-            return square(shear_transfer(part * length, e, s, m, r))
-        return square(transfer(part * length, e, m))
-
-    size = np.abs(of(0.63)) @ np.abs(of(0.37))
-    assert np.max(np.abs(of(0.63) @ of(0.37) - of(1.0)) / size) < 1e-13
-
-
-def test_no_length_is_nothing() -> None:
-    _, e, s, m, r = samples(3)
-    for found in (transfer(0.0 * e, e, m), shear_transfer(0.0 * e, e, s, m, r)):
-        np.testing.assert_array_equal(square(found), np.broadcast_to(np.eye(4), (3, 4, 4)))
-
-
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
 def test_derivative_by_length_meets_the_equations(theory: str) -> None:
     """Carried along by `Dual`: dT / dl = A T."""

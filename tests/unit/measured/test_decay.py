@@ -112,27 +112,37 @@ def notes(record: eq.measured.Record) -> str:
     return "\n".join(eq.measured.identify_decay(record).notes)
 
 
-def test_a_good_record_has_no_note() -> None:
-    assert notes(simulated(duration=2.6, noise=0.005)) == ""
+NOTED: dict[str, tuple[dict[str, float], str, str]] = {
+    "good": ({"duration": 2.6}, "", " "),
+    "no friction": (
+        {"duration": 2.6, "coulomb": 0.0},
+        "Coulomb friction cannot be told from noise: its interval (whole record)",
+        "viscous",
+    ),
+    "no damping": (
+        {"duration": 2.6, "ratio": 0.0},
+        "viscous damping cannot be told from noise",
+        "Coulomb",
+    ),
+    "neither from the other": (
+        {"duration": 1.3, "ratio": 0.01, "coulomb": 0.005, "noise": 0.04},
+        "this record does not tell viscous damping from Coulomb friction",
+        "negative",
+    ),
+    "not by the line": (
+        {"duration": 1.3, "ratio": 0.01, "coulomb": 0.005, "noise": 0.01},
+        "the line alone cannot tell",
+        "negative",
+    ),
+}
 
 
-def test_terms_that_cannot_be_told_from_noise() -> None:
-    told = notes(simulated(duration=2.6, coulomb=0.0, noise=0.005))
-    assert "Coulomb friction cannot be told from noise: its interval (whole record)" in told
-    assert "viscous" not in told
-    told = notes(simulated(duration=2.6, ratio=0.0, noise=0.005))
-    assert "viscous damping cannot be told from noise" in told
-    assert "Coulomb" not in told
-
-
-def test_terms_that_cannot_be_told_from_each_other() -> None:
-    told = notes(simulated(duration=1.3, ratio=0.01, coulomb=0.005, noise=0.04))
-    assert "this record does not tell viscous damping from Coulomb friction" in told
-
-
-def test_a_term_that_only_the_line_misses() -> None:
-    told = notes(simulated(duration=1.3, ratio=0.01, coulomb=0.005, noise=0.01))
-    assert "the line alone cannot tell" in told
+@pytest.mark.parametrize(("values", "said", "unsaid"), NOTED.values(), ids=NOTED)
+def test_terms_that_cannot_be_told(values: dict[str, float], said: str, unsaid: str) -> None:
+    """Where a term is lost in the noise it is told, and a good record has no note at all."""
+    told = notes(simulated(**{"noise": 0.005, **values}))
+    assert said in told
+    assert unsaid not in told
 
 
 def test_parts_that_are_left_out() -> None:
@@ -200,13 +210,10 @@ def test_methods_that_contradict_each_other() -> None:
         ({"spring_arm": 1.0}, "spring_arm: belongs to a stiffness; give both"),
         ({"stiffness": 1.0, "spring_arm": 1.0}, "spring_arm: belongs to a record of angles"),
         ({"stiffness": 1.0, "arm": 1.0, "spring_arm": 0.0}, "spring_arm: got 0; give a number"),
+        ({"kind": "angle", "arm": 1.0}, "arm: the record is one of angles, which need no"),
     ],
 )
 def test_arguments_that_cannot_be_used(arguments: dict[str, Any], said: str) -> None:
+    record = simulated(kind=arguments.pop("kind", "length"))
     with pytest.raises(eq.EquipoiseError, match=said):
-        eq.measured.identify_decay(simulated(), **arguments)
-
-
-def test_angles_need_no_arm() -> None:
-    with pytest.raises(eq.EquipoiseError, match="arm: the record is one of angles, which need no"):
-        eq.measured.identify_decay(simulated(kind="angle"), arm=1.0)
+        eq.measured.identify_decay(record, **arguments)

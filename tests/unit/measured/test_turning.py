@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import pi, sqrt
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ import equipoise as eq
 from equipoise.measured.turning import Turns, find_turns
 from unit.measured.samples import OMEGA, held, integrated, noisy, simulated
 
+Array = np.ndarray[Any, Any]
 HALF = pi / (OMEGA * sqrt(1 - 0.03**2))
 TIME = np.linspace(0.0, 6.0, 3000)
 
@@ -35,16 +37,26 @@ def test_a_clean_record() -> None:
     assert turns.noise < 1e-4
 
 
-@pytest.mark.parametrize("release", [0.01, 0.4, 1.234, 2.5])
-def test_a_record_that_begins_before_the_release(release: float) -> None:
+LONG = np.linspace(0.0, 30.0, 15000)
+UNEVEN = np.sort(np.random.default_rng(2).uniform(0.0, 6.0, 2500))
+GAPPY = UNEVEN[(UNEVEN < 2.0) | (UNEVEN > 2.15)]
+SLOW = np.sin(np.clip(TIME / 0.8, 0, 1) * pi / 2)
+RECORDS = {
+    **{
+        f"held until {release} s": (TIME, held(TIME, release), release, 0.0125)
+        for release in (0.01, 0.4, 1.234, 2.5)
+    },
+    "pushed and held": (TIME, np.where(TIME < 1.4, SLOW, held(TIME, 1.4)), 1.4, 0.0125),
+    "long at rest": (LONG, held(LONG, 0.5), 0.5, 0.0125),
+    "uneven, with a gap": (GAPPY, held(GAPPY, 0.5), 0.5, 0.02),
+}
+
+
+@pytest.mark.parametrize("record", RECORDS.values(), ids=RECORDS)
+def test_records_as_they_come(record: tuple[Array, Array, float, float]) -> None:
     """To 0.0125, four standard errors of the first turning point and six of the others."""
-    check(find_turns(noisy(TIME, held(TIME, release))), release, (12, 13), 0.0125)
-
-
-def test_pushed_by_hand_held_and_released() -> None:
-    slow = np.sin(np.clip(TIME / 0.8, 0, 1) * pi / 2)
-    turns = find_turns(noisy(TIME, np.where(TIME < 1.4, slow, held(TIME, 1.4))))
-    check(turns, 1.4, (12, 13), 0.0125)
+    time, values, release, tolerance = record
+    check(find_turns(noisy(time, values)), release, (12, 13), tolerance)
 
 
 def test_struck_at_rest() -> None:
@@ -55,11 +67,6 @@ def test_struck_at_rest() -> None:
     turns = find_turns(noisy(TIME, moved))
     assert turns.time[0] == pytest.approx(1.3 + HALF / 2, abs=0.02)
     assert len(turns.heights) == 12
-
-
-def test_nothing_after_the_stop_is_a_swing() -> None:
-    time = np.linspace(0.0, 30.0, 15000)
-    check(find_turns(noisy(time, held(time, 0.5))), 0.5, (12, 13), 0.0125)
 
 
 def test_a_stop_is_a_turning_point() -> None:
@@ -74,12 +81,6 @@ def test_an_offset_costs_nothing() -> None:
     values = held(TIME, 0.5)
     near, far = (find_turns(noisy(TIME, values + offset)) for offset in (0.0, 1000.0))
     np.testing.assert_allclose(near.heights, far.heights, atol=1e-9)
-
-
-def test_irregular_sampling_with_gaps() -> None:
-    time = np.sort(np.random.default_rng(2).uniform(0.0, 6.0, 2500))
-    time = time[(time < 2.0) | (time > 2.15)]
-    check(find_turns(noisy(time, held(time, 0.5))), 0.5, (12, 13), 0.02)
 
 
 def test_a_gap_that_hides_turning_points_ends_the_decay() -> None:
@@ -116,19 +117,15 @@ REFUSED = {
     "growing": (np.exp(0.2 * TIME) * np.sin(OMEGA * TIME), "the swings grow from the first to the"),
     "one swing": (integrated(TIME, OMEGA, 0.6, 0.02, 1.0, 0.0), "found [12] of at least 3 free"),
     "noise": (noisy(TIME, np.zeros(3000)).displacement, "swings that stand out of the noise"),
+    "few samples": (held(np.linspace(0, 6, 100), 0), "about 4 samples each; take 6 or more"),
 }
 
 
 @pytest.mark.parametrize(("values", "said"), REFUSED.values(), ids=REFUSED)
-def test_what_is_no_free_decay(values: np.ndarray, said: str) -> None:
+def test_what_is_no_free_decay(values: Array, said: str) -> None:
+    time = np.linspace(0.0, 6.0, len(values))
     with pytest.raises(eq.EquipoiseError, match=said):
-        find_turns(eq.measured.Record(TIME, values))
-
-
-def test_too_few_samples_in_a_half_swing() -> None:
-    time = np.linspace(0.0, 6.0, 100)
-    with pytest.raises(eq.EquipoiseError, match="about 4 samples each; take 6 or more"):
-        find_turns(eq.measured.Record(time, held(time, 0.0)))
+        find_turns(eq.measured.Record(time, values))
 
 
 def test_two_half_swings_are_too_few() -> None:

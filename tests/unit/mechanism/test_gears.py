@@ -50,13 +50,16 @@ def test_start_is_the_angle_at_crank_angle_0() -> None:
     np.testing.assert_allclose(motion.links["wheel"].angle, want, atol=1e-14)
 
 
-def test_a_train_closes_when_all_of_it_has() -> None:
-    train = machine(
+def train(*gears: eq.Gear) -> eq.Machine:
+    return machine(
         {"A": ORIGIN, "E": (0.5, 0.0), "F": (1.0, 0.0)},
         {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN), "last": heavy(F=ORIGIN)},
-        gears=(teeth(20, 30), eq.Gear("wheel", "last", teeth=(20, 50))),
+        gears=gears,
     )
-    motion = eq.move(train, 24)
+
+
+def test_a_train_closes_when_all_of_it_has() -> None:
+    motion = eq.move(train(teeth(20, 30), eq.Gear("wheel", "last", teeth=(20, 50))), 24)
     assert motion.turns == 15
     assert motion.linkage.cycle.windings["last"] == 4
 
@@ -76,13 +79,9 @@ def test_a_ratio_that_closes_too_late() -> None:
 
 
 def test_a_train_that_closes_too_late() -> None:
-    train = machine(
-        {"A": ORIGIN, "E": (0.5, 0.0), "F": (1.0, 0.0)},
-        {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN), "last": heavy(F=ORIGIN)},
-        gears=(teeth(36, 37), eq.Gear("wheel", "last", teeth=(40, 41))),
-    )
+    given = train(teeth(36, 37), eq.Gear("wheel", "last", teeth=(40, 41)))
     with pytest.raises(MotionError, match="only after 1517 turns of the crank"):
-        eq.move(train, 4)
+        eq.move(given, 4)
 
 
 @pytest.mark.parametrize("ratio", [-0.47, -pi, sqrt(2), 1 / 7])

@@ -75,14 +75,18 @@ def test_three_free_motions() -> None:
     assert message.endswith("the drive leaves 'one', 'two', 'three' and 'four' undetermined")
 
 
+def tied(**more: eq.Link) -> eq.Machine:
+    """A four-bar whose coupler has a third link to the frame."""
+    four = crank_rocker()
+    points = {**four.links["coupler"].points, "P": (1.0, 1.0)}
+    four = four.with_link("coupler", points=points)
+    frame = {**four.frame, "E": (0.5, -1.0)}
+    return linked(replace(four, frame=frame), tie=body(E=ORIGIN, P=(1.0, 0.0)), **more)
+
+
 def test_no_free_motion() -> None:
     """A four-bar whose coupler is held by a third link to the frame."""
-    four = crank_rocker()
-    tied = replace(
-        linked(four, tie=body(E=ORIGIN, P=(1.0, 0.0))), frame={**four.frame, "E": (0.5, -1.0)}
-    )
-    coupler = replace(four.links["coupler"], points={**four.links["coupler"].points, "P": (1, 1)})
-    assert refused(linked(tied, coupler=coupler)) == (
+    assert refused(tied()) == (
         "the linkage has no free motion (count 0: 4 moving links, 6 pins, 0 sliding joints and "
         "0 gears); too many joints hold 'coupler', 'rocker' and 'tie'"
     )
@@ -96,14 +100,7 @@ def test_a_single_link_that_is_held() -> None:
 
 def test_held_here_and_free_there() -> None:
     """The count is one for the whole, but one part has none and another has two."""
-    four = crank_rocker()
-    coupler = replace(four.links["coupler"], points={**four.links["coupler"].points, "P": (1, 1)})
-    tied = replace(
-        linked(four, coupler=coupler, tie=body(E=ORIGIN, P=(1.0, 0.0)),
-               pendulum=body(E=ORIGIN, Q=(1.0, 0.0))),
-        frame={**four.frame, "E": (0.5, -1.0)},
-    )  # fmt: skip
-    message = refused(tied)
+    message = refused(tied(pendulum=body(E=ORIGIN, Q=(1.0, 0.0))))
     assert "hold tie, while other links are free to move" in message
     assert "one free motion, but no drive can command it" in message
 

@@ -16,7 +16,7 @@ from equipoise.mechanism.newton import LoopGroup
 from laws.subjects import family_of, is_force, outputs, sizes
 from laws.transforms import shifted, turned
 from support.machines import make
-from unit.mechanism.build import ORIGIN, body, crank_rocker, heavy, machine
+from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, refused, two_gears
 
 TRIAD = eq.load("class-three")
 ANGLES = np.linspace(0.1, 6.2, 18)
@@ -140,11 +140,14 @@ def test_angles_in_any_order_lie_on_one_branch() -> None:
         np.testing.assert_allclose(again.points[name].place, want, rtol=0, atol=1e-13)
 
 
+def places_of(motion: eq.mechanism.Motion, names: str) -> dict[str, tuple[float, float]]:
+    points = {name: motion.points[name] for name in names}
+    return {name: (float(point.x[0]), float(point.y[0])) for name, point in points.items()}
+
+
 @pytest.mark.parametrize("angle", [0.3, -2.0, 3.0])
 def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
-    whole = eq.move(TRIAD, [angle])
-    points = {name: (float(whole.points[name].x[0]), float(whole.points[name].y[0]))
-              for name in "BCPQ"}  # fmt: skip
+    points = places_of(eq.move(TRIAD, [angle]), "BCPQ")
     moved = replace(TRIAD, position=eq.mechanism.Position(angle, points))
     np.testing.assert_allclose(
         eq.move(moved, 24).points["Q"].place, eq.move(TRIAD, 24).points["Q"].place, atol=1e-13
@@ -153,8 +156,7 @@ def test_the_triad_may_be_told_at_another_angle(angle: float) -> None:
 
 def test_the_position_may_be_told_by_angles() -> None:
     at_zero = eq.move(TRIAD, [0.0])
-    points = {name: (float(at_zero.points[name].x[0]), float(at_zero.points[name].y[0]))
-              for name in "PQ"}  # fmt: skip
+    points = places_of(at_zero, "PQ")
     angles = {name: float(at_zero.links[name].angle[0]) for name in TRIAD.links}
     told = replace(TRIAD, position=eq.mechanism.Position(0.0, points, angles))
     np.testing.assert_allclose(
@@ -189,10 +191,8 @@ def test_far_from_the_origin() -> None:
 
 
 def test_position_missing() -> None:
-    with pytest.raises(ModelError) as caught:
-        eq.mechanism.assemble(replace(TRIAD, position=None))
-    assert caught.value.where == "position"
-    assert "no dyad solves rod, plate, front-link, rear-link" in caught.value.what
+    words = "no dyad solves rod, plate, front-link, rear-link..."
+    refused("position", words, lambda: eq.mechanism.assemble(replace(TRIAD, position=None)))
 
 
 @pytest.mark.parametrize(("missing", "link"), [("C", "rod"), ("P", "front-link"), ("Q", "rear")])
@@ -244,13 +244,7 @@ def test_a_triad_that_cannot_turn_tells_the_angle() -> None:
 def test_the_angle_told_is_where_it_ends() -> None:
     """A four-bar that only swings, as a loop group: its end is known in closed form."""
     limit = np.arccos((1 + 0.9**2 - 1.05**2) / 1.8)
-    given = machine(
-        {"A": ORIGIN, "D": (1.0, 0.0)},
-        {"crank": heavy(A=ORIGIN, B=(0.9, 0.0)), "coupler": heavy(B=ORIGIN, C=(0.5, 0.0)),
-         "rocker": heavy(D=ORIGIN, C=(0.55, 0.0))},
-        assembly={"C": "left"},
-    )  # fmt: skip
-    rough = with_position(given)
+    rough = with_position(four_bar(1.0, 0.9, 0.5, 0.55))
     past = "cannot be moved past crank angle"
     with only_loops(), pytest.raises(MotionError, match=past) as caught:
         eq.move(rough, 36)
@@ -258,25 +252,16 @@ def test_the_angle_told_is_where_it_ends() -> None:
     assert told == pytest.approx(degrees(limit), abs=1.0)
 
 
+def geared_loop(gear: eq.Gear, at: float = 0.0) -> eq.Machine:
+    place = eq.mechanism.Position(at, {"E": (0.5, 0.0)}, {"wheel": 0.0})
+    return two_gears(gear, position=place)
+
+
 def test_gears_need_the_position_at_0() -> None:
-    given = machine(
-        {"A": ORIGIN, "E": (0.5, 0.0)},
-        {"crank": body(A=ORIGIN), "wheel": body(E=ORIGIN)},
-        gears=(eq.Gear("crank", "wheel", ratio=-1.0),),
-        position=eq.mechanism.Position(0.2, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
-    )
+    given = geared_loop(eq.Gear("crank", "wheel", ratio=-1.0), at=0.2)
     with only_loops(), pytest.raises(ModelError) as caught:
         eq.mechanism.assemble(given)
     assert caught.value.where == "position.crank_angle"
-
-
-def geared_loop(gear: eq.Gear) -> eq.Machine:
-    return machine(
-        {"A": ORIGIN, "E": (0.5, 0.0)},
-        {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN)},
-        gears=(gear,),
-        position=eq.mechanism.Position(0.0, {"E": (0.5, 0.0)}, {"wheel": 0.0}),
-    )
 
 
 def test_a_loop_that_closes_after_several_turns() -> None:
@@ -293,15 +278,9 @@ def test_a_loop_that_never_closes() -> None:
 
 def test_the_driver_comes_first() -> None:
     """A gear pair whose `driven` gear is the one that moves already."""
-    given = machine(
-        {"A": ORIGIN, "E": (0.5, 0.0)},
-        {"crank": body(A=ORIGIN), "wheel": body(E=ORIGIN)},
-        gears=(eq.Gear("wheel", "crank", ratio=-1.0),),
-    )
-    with pytest.raises(ModelError) as caught:
-        eq.mechanism.assemble(given)
-    assert caught.value.where == "gears[1]"
-    assert "name the gear that is moved already first in between" in caught.value.what
+    given = two_gears(eq.Gear("wheel", "crank", ratio=-1.0))
+    words = "name the gear that is moved already first in between..."
+    refused("gears[1]", words, lambda: eq.mechanism.assemble(given))
 
 
 def test_split_and_regressor_go_through_loops() -> None:

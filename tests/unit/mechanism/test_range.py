@@ -25,6 +25,13 @@ def opposite(one: float, other: float, side: float) -> float:
     return acos((one**2 + other**2 - side**2) / (2 * one * other))
 
 
+def leaning(given: eq.Machine, lean: float) -> eq.Machine:
+    """A four-bar whose frame is turned about the drive's pivot, rad."""
+    (length, _) = given.frame["D"]
+    place = (length * np.cos(lean), length * np.sin(lean))
+    return replace(given, frame={**given.frame, "D": place})
+
+
 def same_angles(got: object, want: object) -> None:
     np.testing.assert_allclose(np.degrees(got), np.degrees(want), rtol=0, atol=1e-6)
 
@@ -47,9 +54,9 @@ def test_a_double_rocker_has_two_ranges() -> None:
 
 def test_the_frame_turned_turns_the_range() -> None:
     limit, lean = opposite(1.0, 0.9, 0.5 + 0.55), 2.5
-    given = four_bar(1.0, 0.9, 0.5, 0.55)
-    turned = replace(given, frame={"A": ORIGIN, "D": (np.cos(lean), np.sin(lean))})
-    same_angles(limits_of(turned), [(lean - limit, lean + limit)])
+    same_angles(
+        limits_of(leaning(four_bar(1.0, 0.9, 0.5, 0.55), lean)), [(lean - limit, lean + limit)]
+    )
 
 
 @pytest.mark.parametrize("end", [-1, 1])
@@ -58,9 +65,7 @@ def test_a_range_that_ends_beside_crank_angle_0(end: int, beside: float) -> None
     """The end lies between the last point of the grid and its first."""
     limit = opposite(1.0, 0.9, 0.5 + 0.55)
     lean = float(np.radians(beside)) - end * limit
-    given = four_bar(1.0, 0.9, 0.5, 0.55)
-    turned = replace(given, frame={"A": ORIGIN, "D": (np.cos(lean), np.sin(lean))})
-    (found,) = limits_of(turned)
+    (found,) = limits_of(leaning(four_bar(1.0, 0.9, 0.5, 0.55), lean))
     turns = round((found[0] - lean + limit) / (2 * pi))
     same_angles(np.array(found) - 2 * pi * turns, (lean - limit, lean + limit))
 
@@ -102,10 +107,7 @@ def test_a_narrow_gap(gap: float, lean: float) -> None:
     """Stretched, the dyad falls short only within a small angle, wherever the frame points."""
     a, b, c = 1.0, 0.3, 0.7
     d = a + b - c - gap
-    given = four_bar(a, b, c, d)
-    angle = np.radians(lean)
-    given = replace(given, frame={"A": ORIGIN, "D": (np.cos(angle), np.sin(angle))})
-    found = limits_of(given)
+    found = limits_of(leaning(four_bar(a, b, c, d), float(np.radians(lean))))
     limit = opposite(a, b, c + d)
     same_angles(np.diff(found[0]), 2 * limit)
     assert len(found) == 1
@@ -151,10 +153,9 @@ def test_angles_of_links_outside_a_cycle_are_continuous() -> None:
 
 def geared(lean: float) -> eq.Machine:
     """Turn the frame of the rocking four-bar and gear a weight to its rocker."""
-    place = (np.cos(lean), np.sin(lean))
     return replace(
         ROCKING,
-        frame={"A": ORIGIN, "D": place, "E": (3.0, 1.0)},
+        frame={**leaning(ROCKING, lean).frame, "E": (3.0, 1.0)},
         links={**ROCKING.links, "weight": heavy(E=ORIGIN)},
         gears=(eq.Gear("rocker", "weight", ratio=-0.5, start=0.2),),
     )
@@ -189,11 +190,8 @@ def test_a_gear_whose_start_is_out_of_reach() -> None:
 )
 @pytest.mark.parametrize("lean", [0.0, 0.7, -2.1])
 def test_change_points(lengths: tuple[float, ...], angle: float, lean: float) -> None:
-    given = four_bar(*lengths)
-    a = lengths[0]
-    turned = replace(given, frame={"A": ORIGIN, "D": (a * np.cos(lean), a * np.sin(lean))})
     with pytest.raises(ChangePointError) as caught:
-        eq.move(turned)
+        eq.move(leaning(four_bar(*lengths), lean))
     apart = (caught.value.crank_angle - angle - lean + pi) % (2 * pi) - pi
     wanted = [0.0, pi] if lengths[0] == lengths[2] else [0.0]
     assert min(abs(abs(apart) - w) for w in wanted) < 1e-4

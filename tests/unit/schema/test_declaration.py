@@ -30,11 +30,12 @@ from equipoise.mechanism.model import Frame, Machine, Position
 from equipoise.schema import finding, models, schemas
 from equipoise.schema.documents import dumps, loads
 from equipoise.schema.reading import Context, read_table
-from equipoise.schema.schemas import json_schema, key_table
+from equipoise.schema.schemas import json_schema
 from equipoise.schema.template import Template
 from equipoise.schema.writing import Writer, toml_text
 from equipoise.web.design import Design
 from equipoise.web.fields import fields_of
+from unit.schema.key_tables import key_table
 from unit.schema.samples import FOUR_BAR
 
 PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"

@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.errors import ModelError
 from equipoise.planting.goals import Goal, figure_names
-from equipoise.schema.targets import Targets, read_targets
+from equipoise.schema.targets import SearchTable, Targets, read_targets
 
 KNOWN = figure_names(eq.load("kim-chung-a"))
 
@@ -58,8 +58,7 @@ def read(tmp_path: Path, text: str) -> Targets:
 
 def test_everything(tmp_path: Path) -> None:
     targets = read(tmp_path, WHOLE)
-    assert (targets.seed, targets.generations, targets.population) == (7, 20, 30)
-    assert targets.sense == "either"
+    assert targets.search == SearchTable(7, 20, 30, "either")
     assert targets.vary == {
         "crank": (0.02, 0.06),
         "ground_angle": pytest.approx((radians(-180), radians(180))),
@@ -76,7 +75,9 @@ def test_everything(tmp_path: Path) -> None:
 
 def test_what_may_be_left_out(tmp_path: Path) -> None:
     targets = read(tmp_path, f'{GOAL}target = "25 cm"\n')
-    assert targets == Targets((Goal("curve.height", target=0.25),), None, "as given", 1, 300, 120)
+    assert targets == Targets(
+        (Goal("curve.height", target=0.25),), None, SearchTable(1, 300, 120, "as given")
+    )
 
 
 @pytest.mark.parametrize(
@@ -101,6 +102,8 @@ def test_what_may_be_left_out(tmp_path: Path) -> None:
         ),
         (f'{GOAL}target = "1 cm"\n[vary]\ncrank = "2 cm"\n', "vary.crank: give two limits"),
         (f'{GOAL}target = "1 cm"\n[vary]\ncrank = [1, 2]\n', "vary.crank: got the bare number 1"),
+        (f'vary = 3\n{GOAL}target = "1 cm"\n', "vary: got the number 3; give a table"),
+        ('schema = 1\n[[goals]]\nfigure = "ratio.coupler.min"\ntarget = [1]\n', "got a list of 1"),
         (f'{GOAL}target = "1 cm"\n[search]\nseed = -1\n', "search.seed"),
         (f'{GOAL}target = "1 cm"\n[search]\ncrank = "left"\n', "search.crank"),
         (f'{GOAL}target = "1 cm"\n[serch]\nseed = 1\n', "did you mean 'search'"),

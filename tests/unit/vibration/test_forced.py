@@ -21,19 +21,30 @@ from unit.vibration.build import SPEED, Mount, block, cart, rig, springs
 LINE = Motor(26.0, 6.0)
 BARE = eq.load("yamashita-1")
 DRIVEN = BARE.with_drive(motor=LINE)
+GROUND = ModelError(
+    "support",
+    "the machine stands on solid ground; add a table [support] with its mass, mounts and gauges",
+)
+MOTORLESS = ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")
 SPACE = (
     "the model {} is for motion in the plane of the drawing; leave out sway and roll and yaw, or "
     "choose moment"
 )
 
 
-def test_the_usual_model() -> None:
+@pytest.mark.parametrize(
+    ("machine", "drive", "model"),
+    [
+        (rig(), False, "linear"),
+        (springs(), False, "moment"),
+        (cart(), False, "moment"),
+        (rig().with_drive(motor=LINE), True, "exact"),
+        (DRIVEN, True, "exact"),
+    ],
+)
+def test_the_usual_model(machine: eq.Machine, drive: bool, model: str) -> None:
     """The paper's own, (59), for its own rig; all of the moment where that is not all."""
-    assert chosen_model(rig(), None, False) == "linear"
-    assert chosen_model(springs(), None, False) == "moment"
-    assert chosen_model(cart(), None, False) == "moment"
-    assert chosen_model(rig().with_drive(motor=LINE), None, True) == "exact"
-    assert chosen_model(DRIVEN, None, True) == "exact"
+    assert chosen_model(machine, None, drive) == model
 
 
 def test_the_linear_step_beside_a_model() -> None:
@@ -48,27 +59,15 @@ def test_the_model_asked_for(model: str) -> None:
         assert chosen_model(machine, model, False) == model
 
 
-def refused(error: EquipoiseError, machine: eq.Machine, model: str | None, drive: bool) -> None:
-    with pytest.raises(type(error)) as caught:
-        respond(machine, SPEED, model, drive)  # type: ignore[arg-type]
-    assert str(caught.value) == str(error)
-
-
 @pytest.mark.parametrize(
     ("machine", "model", "drive", "error"),
     [
         (rig(), "whole", False,
          UsageError("got the model 'whole'; give one of linear, torque, moment, coupled, exact")),
-        (BARE, None, False,
-         ModelError("support", "the machine stands on solid ground; add a table [support] with its "
-                    "mass, mounts and gauges")),
-        (DRIVEN, "exact", False,
-         ModelError("support", "the machine stands on solid ground; add a table [support] with its "
-                    "mass, mounts and gauges")),
-        (rig(), None, True,
-         ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")),
-        (BARE, None, True,
-         ModelError("drive.motor", "missing; give its no_load_speed and stall_torque")),
+        (BARE, None, False, GROUND),
+        (DRIVEN, "exact", False, GROUND),
+        (rig(), None, True, MOTORLESS),
+        (BARE, None, True, MOTORLESS),
         (rig().with_drive(motor=LINE), "linear", True,
          UsageError("the speed follows from the motor in the model exact, not in linear")),
         (cart(), "exact", False, ModelError("support.freedoms", SPACE.format("exact"))),
@@ -80,7 +79,9 @@ def refused(error: EquipoiseError, machine: eq.Machine, model: str | None, drive
 def test_refusals(
     machine: eq.Machine, model: str | None, drive: bool, error: EquipoiseError
 ) -> None:
-    refused(error, machine, model, drive)
+    with pytest.raises(type(error)) as caught:
+        respond(machine, SPEED, model, drive)  # type: ignore[arg-type]
+    assert str(caught.value) == str(error)
 
 
 @pytest.mark.parametrize("model", MODELS)

@@ -20,28 +20,29 @@ def torque(motor: Motor, speed: float | list[float], shift: float = 0.0, sense: 
     return found(np.atleast_1d(np.array(speed, float)), np.array(shift))
 
 
-def test_line() -> None:
-    """Stall torque at rest, none at no load, less than none beyond; more when driven backwards."""
-    found = torque(LINE, [0.0, 50.0, 100.0, 120.0, -20.0])
-    assert found == pytest.approx([5, 2.5, 0, -1, 6])
-
-
-def test_table() -> None:
-    """Straight between its rows and on beyond them."""
-    speeds = [0.0, 25.0, 50.0, 75.0, 100.0, 105.0, 110.0, 120.0, -10.0]
-    assert torque(HUMP, speeds) == pytest.approx([2, 4, 6, 5, 4, 1.5, -1, -6, 1.2])
+@pytest.mark.parametrize(
+    ("motor", "curve"),
+    [
+        (LINE, {0.0: 5, 50.0: 2.5, 100.0: 0, 120.0: -1, -20.0: 6}),
+        (
+            HUMP,
+            {0.0: 2, 25.0: 4, 50.0: 6, 75.0: 5, 100.0: 4, 105.0: 1.5, 110.0: -1, 120.0: -6}
+            | {-10.0: 1.2},
+        ),
+        (Motor(100.0, 5.0, ratio=4.0), {0.0: 20, 12.5: 10, 25.0: 0}),
+    ],
+    ids=["line", "table", "geared"],
+)
+def test_torque_over_speed(motor: Motor, curve: dict[float, float]) -> None:
+    """Straight between the rows and on beyond them; a gear turns the motor faster than the crank,
+    and its torque acts as many times."""
+    assert torque(motor, [*curve]) == pytest.approx([*curve.values()])
 
 
 def test_a_table_of_two_rows_is_a_line() -> None:
     table = Motor(table=MotorTable((0.0, 100.0), (5.0, 0.0)))
     speeds = np.linspace(-50, 150, 21).tolist()
     np.testing.assert_allclose(torque(table, speeds), torque(LINE, speeds))
-
-
-def test_ratio() -> None:
-    """The motor turns 4 times as fast as the crank, and its torque acts 4 times on it."""
-    geared = Motor(100.0, 5.0, ratio=4.0)
-    assert torque(geared, [0.0, 12.5, 25.0]) == pytest.approx([20, 10, 0])
 
 
 def test_power_is_the_same_on_both_sides_of_the_gear() -> None:

@@ -7,18 +7,100 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures.linkage import clear_angle
+from equipoise.mechanism import kernels
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces
-from equipoise.symbols.scene import Scene
+from equipoise.symbols.scene import Scene, hull
 from equipoise.symbols.shapes import Shape
 
 NAMES = sorted(eq.examples("linkage"))
 COUNT = 48
 
 
+def moved(name: str) -> tuple[eq.Machine, eq.mechanism.Motion, Scene]:
+    machine = eq.load(name)
+    motion = eq.move(machine, COUNT)
+    return machine, motion, Scene.of(motion)
+
+
 def scene_of(machine: eq.Machine | str) -> Scene:
     machine = eq.load(machine) if isinstance(machine, str) else machine
     return Scene.of(eq.move(machine, COUNT))
+
+
+# -- what there is to draw -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_links_keep_their_lengths_and_everything_is_in_the_box(name):
+    machine, _, scene = moved(name)
+    low, high = scene.box
+    for body in scene.bodies:
+        own = machine.links[body.name].points
+        for one in body.points:
+            for other in body.points:
+                apart = abs(complex(*own[one]) - complex(*own[other]))
+                found = abs(scene.places[one] - scene.places[other])
+                np.testing.assert_allclose(found, apart, rtol=0, atol=1e-12)
+    for place in (*scene.places.values(), *scene.mass_centers.values()):
+        assert np.all((low.real <= place.real) & (place.real <= high.real))
+        assert np.all((low.imag <= place.imag) & (place.imag <= high.imag))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_outlines_hold_all_points_of_a_link(name):
+    machine, _, scene = moved(name)
+    for body in scene.bodies:
+        around = [complex(*machine.links[body.name].points[point]) for point in body.outline]
+        for place in machine.links[body.name].points.values():
+            for one, other in zip(around, [*around[1:], around[0]], strict=True):
+                if len(around) > 2:
+                    assert kernels.cross(other - one, complex(*place) - one) >= -1e-12
+
+
+@pytest.mark.parametrize("name", ["geared-counterweight", "planetary-planting-arm"])
+def test_pitch_circles_touch_and_roll(name):
+    machine, motion, scene = moved(name)
+    pairs = zip(scene.wheels[::2], scene.wheels[1::2], strict=True)
+    for gear, (driver, driven) in zip(machine.gears, pairs, strict=True):
+        one, other = scene.places[driver.center], scene.places[driven.center]
+        if gear.speed_ratio < 0:
+            np.testing.assert_allclose(abs(one - other), driver.radius + driven.radius)
+            touch = one + (other - one) * driver.radius / (driver.radius + driven.radius)
+        else:
+            np.testing.assert_allclose(abs(one - other), abs(driver.radius - driven.radius))
+            touch = one + (other - one) * driver.radius / (driver.radius - driven.radius)
+        for axis in (np.real, np.imag):
+            speeds = [
+                axis(
+                    motion.points[wheel.center].velocity
+                    + 1j * spin(motion, wheel.link) * (touch - scene.places[wheel.center])
+                )
+                for wheel in (driver, driven)
+            ]
+            np.testing.assert_allclose(speeds[0], speeds[1], atol=1e-12)
+
+
+def spin(motion, link):
+    return 0.0 if link == "frame" else motion.links[link].angular_velocity
+
+
+def test_springs_and_frame_are_named():
+    machine, _, scene = moved("spring-balanced-crank")
+    assert scene.springs == tuple((s.point, s.to) for s in machine.springs) != ()
+    assert scene.frame == tuple(machine.frame)
+    assert all(np.ptp(abs(scene.places[name])) == 0 for name in scene.frame)
+
+
+def test_hull_leaves_out_what_lies_inside():
+    square = np.array([0, 1, 1 + 1j, 1j, 0.5 + 0.5j, 0.5, 1j])
+    assert list(hull(square)) == [0, 1, 1 + 1j, 1j]
+    assert list(hull(np.array([1j, 0, 0.5j]))) == [0, 1j]
+    assert list(hull(np.array([0, 0.5 + 0.5j, 1 + 1j]))) == [0, 1 + 1j]
+    assert list(hull(np.array([2.0, 2.0]))) == [2]
+
+
+# -- signs -----------------------------------------------------------------------------------------
 
 
 def placed(scene: Scene, piece: Piece, shape: Shape, offsets: float = 0.0) -> np.ndarray:
@@ -114,8 +196,11 @@ def test_springs_are_zigzags_between_their_ends(role: str) -> None:
 @pytest.mark.parametrize("name", ["quick-return", "scotch-yoke", "slider-crank-engine"])
 def test_blocks_keep_to_their_lines(name: str) -> None:
     """A line stands still in the axes of its body, as long as the block's way on it."""
-    machine, scene = eq.load(name), scene_of(name)
-    for guide in scene.guides:
+    machine, _, scene = moved(name)
+    for slider, guide in zip(machine.sliders, scene.guides, strict=True):
+        assert (guide.name, guide.point) == (slider.name, slider.point)
+        away = scene.places[slider.point] - scene.places[slider.through]
+        np.testing.assert_allclose(kernels.cross(guide.way, away), 0, atol=1e-12)
         place = scene.places[guide.point]
         ends = place - guide.way * guide.behind, place + guide.way * guide.ahead
         if guide.on != "frame":
