@@ -195,7 +195,7 @@ def _visits(page: Page) -> Iterator[Block]:
 
 
 def _loops(page: Page) -> Iterator[Block]:
-    rows = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             page.turned(loop.first),
             page.turned(loop.second),
