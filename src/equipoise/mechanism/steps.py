@@ -15,7 +15,7 @@ Names of values in a state
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any, Literal, Protocol
@@ -258,8 +258,14 @@ class Builder:
         return planar(points[point]) - planar(points[origin])
 
     def size(self) -> Any:
-        """Size of the largest body, m; 1 where all are points."""
-        return size_of_bodies(self.machine)
+        """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
+        sizes = []
+        for points in self.machine.bodies.values():
+            xs, ys = zip(*points.values(), strict=True)
+            spans = (reduce(np.maximum, v) - reduce(np.minimum, v) for v in (xs, ys))
+            sizes.append(np.hypot(*spans))
+        size = reduce(np.maximum, sizes)
+        return size + (size == 0)
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -304,20 +310,6 @@ def planar(place: Vector) -> complex:
     """A vector as a complex number; of columns, a column of them."""
     x, y = place
     return x + 1j * y
-
-
-def size_of_bodies(machine: Machine) -> Any:
-    """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
-    bodies = [machine.frame, *(link.points for link in machine.links.values())]
-    size = reduce(np.maximum, map(_size, bodies))
-    return size + (size == 0)
-
-
-def _size(points: Mapping[str, Vector]) -> Any:
-    """Diagonal of the rectangle around some points, m, as `model.size_of`; of columns too."""
-    xs, ys = zip(*points.values(), strict=True)
-    spans = (reduce(np.maximum, values) - reduce(np.minimum, values) for values in (xs, ys))
-    return np.hypot(*spans)
 
 
 def demand_names(link: str) -> tuple[str, str]:
