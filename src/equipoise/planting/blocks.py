@@ -5,11 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import pi
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named
-from equipoise.planting.goals import dimension_of
+from equipoise.planting.names import (
+    EXTREMES,
+    INSTANTS,
+    OF_AN_INSTANT,
+    PATH,
+    SOIL,
+    Named,
+    dimension_of,
+)
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
@@ -17,57 +25,6 @@ from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Va
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
 
-INSTANTS = {
-    "pick_up": to_say("pick-up"),
-    "entry": to_say("entry"),
-    "lowest": to_say("lowest point"),
-    "release": to_say("release"),
-    "exit": to_say("exit"),
-    "highest": to_say("highest point"),
-}
-"""Columns of the table of instants; it begins with the first that there is."""
-OF_AN_INSTANT = {
-    "x": to_say("x"),
-    "y": to_say("y"),
-    "velocity.x": to_say("velocity x"),
-    "velocity.y": to_say("velocity y"),
-    "velocity.size": to_say("velocity"),
-    "velocity.direction": to_say("direction of velocity"),
-    "acceleration.x": to_say("acceleration x"),
-    "acceleration.y": to_say("acceleration y"),
-    "acceleration.size": to_say("acceleration"),
-    "acceleration.direction": to_say("direction of acceleration"),
-    "ground_velocity.x": to_say("over ground: velocity x"),
-    "ground_velocity.size": to_say("over ground: velocity"),
-    "ground_velocity.direction": to_say("over ground: direction"),
-    "attitude": to_say("attitude of the finger"),
-}
-PATH = {
-    "curve.height": to_say("height of the curve"),
-    "curve.width": to_say("width of the curve"),
-    "curve.length": to_say("length of the curve"),
-    "curve.lift": to_say("rise above the soil"),
-    "curve.smallest_radius.value": to_say("smallest radius of the curve"),
-    "ground.smallest_radius.value": to_say("smallest radius over ground"),
-    "hill_spacing": to_say("distance of hills"),
-    "planting_frequency": to_say("planting frequency"),
-}
-SOIL = {
-    "soil.depth": to_say("depth in the soil"),
-    "soil.crank_travel": to_say("crank travel in the soil"),
-    "soil.time": to_say("time in the soil"),
-    "soil.path_length_ground": to_say("path in the soil over ground"),
-    "soil.path_length_machine": to_say("path in the soil relative to the machine"),
-    "soil.ground_distance": to_say("ground distance from entry to exit"),
-    "soil.hole_length": to_say("length of the hole at the surface"),
-    "soil.max_acceleration.value": to_say("largest acceleration in the soil"),
-}
-EXTREMES = {
-    "max_speed": to_say("largest velocity of the tip"),
-    "min_speed": to_say("smallest velocity of the tip"),
-    "max_acceleration": to_say("largest acceleration of the tip"),
-    "min_acceleration": to_say("smallest acceleration of the tip"),
-}
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
 DRIVEN = (
     to_say(
@@ -117,7 +74,7 @@ def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
     """A figure with its dimension, by its name."""
     if value is None:
         return None
-    kind = cast("Dimension | None", dimension_of(name))
+    kind = dimension_of(name)
     after = 2 if kind == "angle" else None
     unit = None if kind is None else UNITS.get(kind)
     return Value(value, scale, after=after, dimension=kind, unit=unit)
@@ -166,15 +123,15 @@ def _instants(page: Page) -> Table:
     names = _in_time(page, names)
     angles = (page.turned(page.get(f"{name}.crank_angle")) for name in names)
     rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
-    for key, label in OF_AN_INSTANT.items():
+    for key, one in OF_AN_INSTANT.items():
         still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
-        if still or page.get(f"entry.{key}") is None:
+        if key == "crank_angle" or still or page.get(f"entry.{key}") is None:
             continue
         size = key.partition(".")[0]
         height = page.figures["curve.height"] if key in ("x", "y") else 0.0
         scales = [page.get(f"{name}.{size}.size") or height for name in names]
         pairs = zip(names, scales, strict=True)
-        rows.append((say(label), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
+        rows.append((say(one.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
     title = say("Instants; relative to the machine where nothing else is said, directions from x")
     columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
     return Table(title, columns, tuple(rows))
@@ -188,10 +145,10 @@ def _in_time(page: Page, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
-def _values(title: str, labels: dict[str, str], page: Page) -> Table:
+def _values(title: str, figures: dict[str, Named], page: Page) -> Table:
     rows = tuple(
-        (say(label), page.cell(name))
-        for name, label in labels.items()
+        (say(one.words), page.cell(name))
+        for name, one in figures.items()
         if page.get(name) is not None
     )
     return Table(title, (Column(""), Column(say("value"))), rows)
@@ -200,11 +157,11 @@ def _values(title: str, labels: dict[str, str], page: Page) -> Table:
 def _extremes(page: Page) -> Table:
     rows = tuple(
         (
-            say(label),
+            say(one.words),
             page.at(f"{name}.value", f"{name}.crank_angle"),
             page.cell(f"{name}.direction"),
         )
-        for name, label in EXTREMES.items()
+        for name, one in EXTREMES.items()
     )
     columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
     return Table(say("Extremes relative to the machine, at crank angle"), columns, rows)

@@ -9,15 +9,8 @@ from typing import TYPE_CHECKING, Any
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.linkage import assemble
-from equipoise.planting.blocks import (
-    EXTREMES,
-    INSTANTS,
-    OF_AN_INSTANT,
-    PATH,
-    SOIL,
-    UNITS,
-    cell,
-)
+from equipoise.planting.blocks import UNITS, cell
+from equipoise.planting.names import FIGURES, INSTANTS, LINKAGE, OF_AN_INSTANT
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
@@ -27,21 +20,19 @@ if TYPE_CHECKING:
 OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
 OTHERS = (
     *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
-    "transmission.min",
+    *LINKAGE,
 )
 
 
 def figure_named(name: str) -> str:
     """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
-    labels = {**PATH, **SOIL, **{f"{key}.value": label for key, label in EXTREMES.items()}}
-    if name in labels:
-        return say(labels[name])
-    if name == "transmission.min":
-        return say("smallest transmission angle")
+    known = FIGURES | LINKAGE
+    if name in known:
+        return say(known[name].words)
     instant, _, key = name.partition(".")
-    what = say("crank angle") if key == "crank_angle" else say(OF_AN_INSTANT.get(key, ""))
-    if not what or instant not in INSTANTS:
+    if instant not in INSTANTS or key not in OF_AN_INSTANT:
         return name
+    what = say(OF_AN_INSTANT[key].words)
     return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
 
 
@@ -113,7 +104,7 @@ def _changes(fit: Fit) -> Table:
 def _figures(fit: Fit) -> Table:
     asked = {goal.figure for goal in fit.goals}
     rows: list[tuple[Cell, ...]] = []
-    for name in (*PATH, *SOIL, *(f"{name}.value" for name in EXTREMES), *OTHERS):
+    for name in (*FIGURES, *OTHERS):
         known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
         if name not in asked and known:
             rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
