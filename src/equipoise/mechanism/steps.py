@@ -258,14 +258,8 @@ class Builder:
         return planar(points[point]) - planar(points[origin])
 
     def size(self) -> Any:
-        """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
-        sizes = []
-        for points in self.machine.bodies.values():
-            xs, ys = zip(*points.values(), strict=True)
-            spans = (reduce(np.maximum, v) - reduce(np.minimum, v) for v in (xs, ys))
-            sizes.append(np.hypot(*spans))
-        size = reduce(np.maximum, sizes)
-        return size + (size == 0)
+        """Size of the largest body, m; 1 where all are points."""
+        return size_of_bodies(self.machine)
 
     def reach(self, body: str, point: str) -> list[Step]:
         """Calls that make a point of a known body available."""
@@ -310,6 +304,17 @@ def planar(place: Vector) -> complex:
     """A vector as a complex number; of columns, a column of them."""
     x, y = place
     return x + 1j * y
+
+
+def size_of_bodies(machine: Machine) -> Any:
+    """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
+    sizes = []
+    for points in machine.bodies.values():
+        xs, ys = zip(*points.values(), strict=True)
+        spans = (reduce(np.maximum, v) - reduce(np.minimum, v) for v in (xs, ys))
+        sizes.append(np.hypot(*spans))
+    size = reduce(np.maximum, sizes)
+    return size + (size == 0)
 
 
 def demand_names(link: str) -> tuple[str, str]:
