@@ -7,12 +7,11 @@ share their names and files, as a reader types them one after the other.
 
 from __future__ import annotations
 
+import io
 import os
 import signal
-import subprocess
-import sys
 from collections.abc import Iterator
-from contextlib import chdir
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from doctest import ELLIPSIS, NORMALIZE_WHITESPACE, OutputChecker
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -36,13 +35,15 @@ FLAGS = ELLIPSIS | NORMALIZE_WHITESPACE
 
 def run_commands(example: Example) -> str | None:
     """Run the commands of a console block; tell the first whose output is not what is shown."""
+    from equipoise.cli import run
+
     for part in f"\n{example.parsed}".split("\n$ equipoise ")[1:]:
         command, _, shown = part.partition("\n")
-        words = [sys.executable, "-m", "equipoise", *command.split()]
-        utf8 = {**os.environ, "PYTHONUTF8": "1"}
-        done = subprocess.run(words, capture_output=True, encoding="utf-8", env=utf8, check=False)
-        if not OutputChecker().check_output(shown, done.stdout, FLAGS):
-            return f"equipoise {command} printed\n{done.stdout}{done.stderr}"
+        out, err = io.StringIO(), io.StringIO()
+        with redirect_stdout(out), redirect_stderr(err):
+            run(command.split())
+        if not OutputChecker().check_output(shown, out.getvalue(), FLAGS):
+            return f"equipoise {command} printed\n{out.getvalue()}{err.getvalue()}"
     return None
 
 

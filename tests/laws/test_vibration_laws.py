@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from functools import cache
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -317,32 +318,37 @@ def test_rows_apart_exchange_heave_for_roll() -> None:
 # -- the same described otherwise ------------------------------------------------------------------
 
 
+Map = Callable[[tuple[float, ...]], tuple[float, ...]]
+
+
+def mapped(support: Support, place: Map, along: Map = tuple) -> Support:
+    """The support with all of its places and directions told otherwise."""
+
+    def item(one: Any) -> Any:
+        if one.point is None:
+            return one
+        return replace(one, point=place(one.point), direction=along(unit_vector(one.direction)))
+
+    return replace(
+        support,
+        center_of_mass=place(support.center_of_mass),
+        pivot=None if support.pivot is None else place(support.pivot),
+        mounts={name: item(mount) for name, mount in support.mounts.items()},
+        gauges={name: item(gauge) for name, gauge in support.gauges.items()},
+    )
+
+
 def mirrored(machine: eq.Machine) -> eq.Machine:
     """The image in the x axis, support, rows and all."""
 
-    def flipped(item: Mount | Gauge) -> Mount | Gauge:
-        if item.point is None:
-            return item
-        x, y, z = item.point
-        along = unit_vector(item.direction)
-        return replace(item, point=(x, -y, z), direction=(along[0], -along[1], along[2]))
+    def flipped(vector: tuple[float, ...]) -> tuple[float, ...]:
+        return (vector[0], -vector[1], *vector[2:])
 
-    support = machine.support
-    assert support is not None
-    x, y, z = support.center_of_mass
-    image = mirrored_in_x(replace(machine, support=None, rows=()))
+    assert machine.support is not None
     return replace(
-        image,
-        rows=tuple(
-            Row(-row.phase, row.lateral, (row.offset[0], -row.offset[1])) for row in machine.rows
-        ),
-        support=replace(
-            support,
-            center_of_mass=(x, -y, z),
-            pivot=None if support.pivot is None else (support.pivot[0], -support.pivot[1]),
-            mounts={name: flipped(mount) for name, mount in support.mounts.items()},
-            gauges={name: flipped(gauge) for name, gauge in support.gauges.items()},
-        ),
+        mirrored_in_x(replace(machine, support=None, rows=())),
+        rows=tuple(Row(-row.phase, row.lateral, flipped(row.offset)) for row in machine.rows),
+        support=mapped(machine.support, flipped, flipped),
     )
 
 
@@ -390,25 +396,12 @@ def test_mirror_image_with_a_motor() -> None:
 
 def moved(machine: eq.Machine, shift: complex) -> eq.Machine:
     """The machine with its support, told from another origin."""
-    support = machine.support
-    assert support is not None
 
     def away(place: tuple[float, ...]) -> tuple[float, ...]:
         return (place[0] + shift.real, place[1] + shift.imag, *place[2:])
 
-    def item(one: Mount | Gauge) -> Mount | Gauge:
-        return one if one.point is None else replace(one, point=away(one.point))  # type: ignore[arg-type]
-
-    return replace(
-        shifted(machine, shift),
-        support=replace(
-            support,
-            center_of_mass=away(support.center_of_mass),
-            pivot=None if support.pivot is None else away(support.pivot),
-            mounts={name: item(mount) for name, mount in support.mounts.items()},
-            gauges={name: item(gauge) for name, gauge in support.gauges.items()},
-        ),
-    )
+    assert machine.support is not None
+    return replace(shifted(machine, shift), support=mapped(machine.support, away))
 
 
 @every_model

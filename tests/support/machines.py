@@ -84,6 +84,12 @@ class Draft:
             mass, inertia = 0.0, 0.0
         self.links[name] = Link(local, mass, _pair(center), inertia)
 
+    def add_shuffled(self, **bodies: dict[str, Array | Vector]) -> None:
+        """Add links with their points in any order."""
+        names = list(bodies)
+        for number in self.rng.permutation(len(names)):
+            self.add(names[number], **bodies[names[number]])
+
     def line(self, body: str, angle: float) -> float:
         """Return an angle of a link's easy axes in its true ones."""
         return angle + self.turns.get(body, 0.0)
@@ -274,13 +280,11 @@ def _four_bar(
     draft.ground("D", pivot)
     more = {} if coupler_point is None else {"P": np.array(coupler_point) * a}
     rock = {} if rocker_point is None else {"Q": np.array(rocker_point) * a}
-    bodies = [
-        ("crank", {"A": (0, 0), "B": (a, 0)}),
-        ("coupler", {"B": (0, 0), "C": (b, 0), **more}),
-        ("rocker", {"D": (0, 0), "C": (c, 0), **rock}),
-    ]
-    for number in rng.permutation(3):
-        draft.add(bodies[number][0], **bodies[number][1])
+    draft.add_shuffled(
+        crank={"A": (0, 0), "B": (a, 0)},
+        coupler={"B": (0, 0), "C": (b, 0), **more},
+        rocker={"D": (0, 0), "C": (c, 0), **rock},
+    )
     order = list(draft.links)
     ends = [("coupler", "B"), ("rocker", "D")]
     ends.sort(key=lambda end: order.index(end[0]))
@@ -414,13 +418,11 @@ def slider_crank(rng: np.random.Generator) -> Case:
     along = _unit(guide)
     across = np.array([-along[1], along[0]])
     draft.ground("H", offset * across + rng.normal() * a * along)
-    bodies = [
-        ("crank", {"A": (0, 0), "B": (a, 0)}),
-        ("rod", {"B": (0, 0), "C": (rod, 0), "P": _scaled(rng, draft)}),
-        ("block", {"C": (0, 0)}),
-    ]
-    for number in rng.permutation(3):
-        draft.add(bodies[number][0], **bodies[number][1])
+    draft.add_shuffled(
+        crank={"A": (0, 0), "B": (a, 0)},
+        rod={"B": (0, 0), "C": (rod, 0), "P": _scaled(rng, draft)},
+        block={"C": (0, 0)},
+    )
     draft.slide("block", "C", FRAME, "H", guide)
     draft.ahead("C", ("rod", "C"), ("crank", "B"), (FRAME, guide))
     return draft.case()
@@ -552,13 +554,11 @@ def quick_return(rng: np.random.Generator) -> Case:
     offset = gap * float(rng.uniform(-0.85, 0.85)) * bool(rng.random() < 0.7)
     draft.ground("A", (0, 0))
     draft.ground("D", distance * _unit(rng.uniform(-np.pi, np.pi)))
-    bodies = [
-        ("crank", {"A": (0, 0), "B": (a, 0)}),
-        ("block", {"B": (0, 0)}),
-        ("rocker", {"D": (0, 0), "H": (rng.normal() * a, offset), "P": _scaled(rng, draft)}),
-    ]
-    for number in rng.permutation(3):
-        draft.add(bodies[number][0], **bodies[number][1])
+    draft.add_shuffled(
+        crank={"A": (0, 0), "B": (a, 0)},
+        block={"B": (0, 0)},
+        rocker={"D": (0, 0), "H": (rng.normal() * a, offset), "P": _scaled(rng, draft)},
+    )
     straight = offset == 0
     draft.slide("block", "B", "rocker", "D" if straight else "H")
     draft.ahead("B", ("crank", "B"), (FRAME, "D"), ("rocker", 0.0))
@@ -588,13 +588,11 @@ def scotch_yoke(rng: np.random.Generator) -> Case:
     slot = float(rng.uniform(0.3, np.pi - 0.3)) if rng.random() < 0.5 else np.pi / 2
     draft.ground("A", (0, 0))
     draft.ground("H", rng.normal(size=2) * a)
-    bodies = [
-        ("crank", {"A": (0, 0), "B": (a, 0)}),
-        ("block", {"B": (0, 0)}),
-        ("yoke", {"Y": (0, 0), "S": _scaled(rng, draft)}),
-    ]
-    for number in rng.permutation(3):
-        draft.add(bodies[number][0], **bodies[number][1])
+    draft.add_shuffled(
+        crank={"A": (0, 0), "B": (a, 0)},
+        block={"B": (0, 0)},
+        yoke={"Y": (0, 0), "S": _scaled(rng, draft)},
+    )
     draft.slide("block", "B", "yoke", "S", slot)
     draft.slide("yoke", "Y", FRAME, "H", guide, level=True)
     return draft.case()
@@ -670,14 +668,14 @@ def geared_five_bar(rng: np.random.Generator) -> Case:
     total, difference = high * rng.uniform(1.1, 1.6), low * rng.uniform(-0.8, 0.8)
     draft.ground("A", (0, 0))
     draft.ground("E", distance * _unit(rng.uniform(-np.pi, np.pi)))
-    bodies = [
-        ("crank", {"A": (0, 0), "B": (a, 0)}),
-        ("follower", {"E": (0, 0), "D": (second, 0)}),
-        ("left arm", {"B": (0, 0), "C": ((total + difference) / 2, 0), "P": _scaled(rng, draft)}),
-        ("right arm", {"D": (0, 0), "C": ((total - difference) / 2, 0)}),
-    ]
-    for number in rng.permutation(4):
-        draft.add(bodies[number][0], **bodies[number][1])
+    draft.add_shuffled(
+        **{
+            "crank": {"A": (0, 0), "B": (a, 0)},
+            "follower": {"E": (0, 0), "D": (second, 0)},
+            "left arm": {"B": (0, 0), "C": ((total + difference) / 2, 0), "P": _scaled(rng, draft)},
+            "right arm": {"D": (0, 0), "C": ((total - difference) / 2, 0)},
+        }
+    )
     ends = [("left arm", "B"), ("right arm", "D")]
     ends.sort(key=lambda end: list(draft.links).index(end[0]))
     draft.side("C", ends[0], ends[1], ("left arm", "C"))
@@ -690,13 +688,12 @@ def planetary_arm(rng: np.random.Generator) -> Case:
     draft = _draft(rng)
     a = draft.size
     draft.ground("A", (0, 0))
-    bodies = [
-        ("arm", {"A": (0, 0), "B": (a, 0), "C": np.array([2 * a, 0]) + rng.normal(size=2) * a / 3}),
-        ("idler", {"B": (0, 0)}),
-        ("planet", {"C": (0, 0), "P": _scaled(rng, draft)}),
-    ]
-    for number in rng.permutation(3):
-        draft.add(bodies[number][0], **bodies[number][1])
+    far = np.array([2 * a, 0]) + rng.normal(size=2) * a / 3
+    draft.add_shuffled(
+        arm={"A": (0, 0), "B": (a, 0), "C": far},
+        idler={"B": (0, 0)},
+        planet={"C": (0, 0), "P": _scaled(rng, draft)},
+    )
     sun = _mesh(rng, FRAME, "idler", "arm")
     draft.gears.append(sun if rng.random() < 0.5 else _with_teeth(sun, rng))
     draft.gears.append(_mesh(rng, "idler", "planet", "arm"))

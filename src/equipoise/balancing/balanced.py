@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import cached_property
+from itertools import chain
 from math import isclose, sqrt
 from typing import Any
 
@@ -150,7 +151,7 @@ class Balanced(Result):
             motion = move(machine, angles, acceleration=0.0)
             columns += [
                 (f"{one.name}.{name}", one.unit, one.values)
-                for one in Outputs.of(Analysis(motion, forces(motion))).ordered
+                for one in Outputs(Analysis(motion, forces(motion))).ordered
                 if one.declared.compared
             ]
         return columns
@@ -183,13 +184,13 @@ class Balanced(Result):
         wanted : keys that are needed of those that take time; None for all.
         """
         asked = wanted is None or "sensitivities" in wanted
+        pairs = {
+            name: {"before": old, "after": new} for name, (old, new) in self.objectives.items()
+        }
         return {
             "title": self.original.title,
             "speed": self.original.drive.speed,
-            "objectives": {
-                name: {"before": before, "after": after}
-                for name, (before, after) in self.objectives.items()
-            },
+            "objectives": pairs,
             "method": str(self.method),
             "cost": self.cost,
             "bound": self.bound,
@@ -210,17 +211,15 @@ class Balanced(Result):
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
     """The result, with what was asked read off the new machine."""
-    problem, new, best = found.problem, found.machine, found.best
-    pairs = zip(problem.parts, found.numbers, strict=True)
-    changes = (*found.meshes, *(change for part, own in pairs for change in part.changes(own)))
+    problem, old, new, best = found.problem, found.problem.before, found.machine, found.best
+    each = (part.changes(own) for part, own in problem.with_numbers(found.numbers))
     return Balanced(
         machine=new,
         original=machine,
         plan=plan,
-        changes=changes,
+        changes=(*found.meshes, *chain.from_iterable(each)),
         objectives={
-            one.name: (problem.before[one.name], problem.value_of(new, one))
-            for one in plan.objectives
+            one.name: (old[one.name], problem.value_of(new, one)) for one in plan.objectives
         },
         cost=problem.cost_of(new),
         bound=best.bound,
@@ -235,10 +234,9 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
 def _scope(found: Solution) -> Iterator[Note]:
     """Of what the bound is proved, where that is not all that the plan allows."""
     problem = found.problem
-    pairs = zip(problem.parts, found.numbers, strict=True)
     if problem.reads_gauges and problem.supports_more:
         yield Note("for small changes about it")
-    if any(part.stopped(own) for part, own in pairs):
+    if any(part.stopped(own) for part, own in problem.with_numbers(found.numbers)):
         yield Note("within where it was stopped")
     if problem.flips:
         yield Note("for the flanks of gears in contact here")
@@ -268,12 +266,12 @@ def _prices(found: Solution) -> dict[str, Price]:
         used = problem.value_of(found.machine, limit.objective)
         si_unit = unit_of(limit.objective, problem.machine)
         add(Bound(limit.name, at_most, used, si_unit), scale, scale)
-    pairs = [*zip(problem.parts, found.numbers, strict=True)]
-    for part, own in pairs:
+    weights = 0.0
+    for part, own in problem.with_numbers(found.numbers):
+        weights += 0.0 if part.mass_place is None else float(own @ part.effect[:, 0])
         for bound in part.bounds(own):
             add(bound, 1.0, bound.at_most)
     if plan.added_mass is not None:
-        weights = sum(float(own @ part.effect[:, 0]) for part, own in pairs if part.mass_place == 0)
         add(Bound(ADDED, plan.added_mass, weights, "kg"), 1.0, plan.added_mass)
     return prices
 
@@ -288,8 +286,8 @@ def _notes(found: Solution) -> Iterator[Note]:
             "added mass makes the support heavier, which bends what is linear "
             "otherwise: the bound is that of small changes about this result"
         )
-    pairs = zip(problem.parts, found.numbers, strict=True)
-    yield from filter(None, (part.stopped(own) for part, own in pairs))
+    each = problem.with_numbers(found.numbers)
+    yield from filter(None, (part.stopped(own) for part, own in each))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield Note("masses are those of one row; the machine has {rows}", rows=rows)
     if found.ties > 1:
@@ -315,7 +313,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     """
     motion = move(machine, ANGLES, acceleration=0.0)
     figures = {"mass": machine.mass}
-    for one in Outputs.of(Analysis(motion, forces(motion))):
+    for one in Outputs(Analysis(motion, forces(motion))):
         for measure in one.declared.compared if one.declared.needs == "masses" else ():
             figures[f"{one.name}.{measure}"] = measured(one.component, measure)
     return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
@@ -333,7 +331,6 @@ def _of_rows(machine: Machine) -> dict[str, float]:
 
 
 def _of_support(machine: Machine) -> dict[str, float]:
-    """Figures of gauges, by the model that is usual for the support."""
     figures: dict[str, float] = {}
     if machine.support is not None:
         for name, gauge in respond(machine, model=usual_step(machine)).gauges.items():

@@ -129,8 +129,7 @@ def minimise(
     ------
     NoSolutionError : the constraints cannot be met.
     """
-    search = _Search(program, squares, scale)
-    return search.run(progress, above)
+    return _Search(program, squares, scale).run(progress, above)
 
 
 class _Search:
@@ -145,7 +144,8 @@ class _Search:
         self.nodes += 1
         intervals = tuple((square.low, square.high) for square in self.squares)
         root = _Node(intervals, self.program.solve())  # which keeps to these intervals already
-        if self._exact(root) or root.solved.bound > above:
+        exact = all(square.missed(root.solved.x) < MISSED for square in self.squares)
+        if exact or root.solved.bound > above:
             return self._as_best(root.solved, self.program, root.solved.bound)
         if any(not isfinite(s.high - s.low) for s in self.squares):
             root = self._node(tuple(_finite(s) for s in self.squares))
@@ -188,22 +188,23 @@ class _Search:
             square.keep_between(program, low, high)
         return _Node(intervals, program.solve())
 
-    def _exact(self, node: _Node) -> bool:
-        return all(square.missed(node.solved.x) < MISSED for square in self.squares)
-
     def _as_best(self, solved: Solved, program: Program, bound: float) -> Best:
         return Best(solved.x, solved.value, bound, solved.prices, program, self.nodes)
 
     def _try(self, node: _Node) -> None:
         """Look for a better solution from where a node's lies."""
-        ratios = [square.ratio(node.solved.x) for square in self.squares]
+        ratios = self._ratios(node.solved.x)
         self._hold(ratios)
         for width in TANGENT_WIDTHS:
-            moved = self._along_tangent(ratios, width)
-            if moved is None:
+            try:
+                moved = self._ratios(self._tangent(ratios, width).solve().x)
+            except NoSolutionError:
                 return
             if self._hold(moved):
                 ratios = moved
+
+    def _ratios(self, x: Array) -> list[float]:
+        return [square.ratio(x) for square in self.squares]
 
     def _hold(self, ratios: list[float]) -> bool:
         """Solve with the ratios held; whether that is better than the best so far."""
@@ -219,14 +220,6 @@ class _Search:
         self.best = self._as_best(solved, program, -inf)
         return True
 
-    def _along_tangent(self, ratios: list[float], width: float) -> list[float] | None:
-        """Ratios of the solution with every square replaced by its tangent there."""
-        try:
-            found = self._tangent(ratios, width).solve()
-        except NoSolutionError:
-            return None
-        return [square.ratio(found.x) for square in self.squares]
-
     def _tangent(self, ratios: list[float], width: float) -> Program:
         """The program with every square replaced by its tangent at a ratio."""
         program = self.program.without_squares({square.lift for square in self.squares})
@@ -237,9 +230,8 @@ class _Search:
 
     def _prices(self, best: Best) -> dict[str, float]:
         """Prices where ratios are free to follow a limit, as they are not while they are held."""
-        ratios = [square.ratio(best.x) for square in self.squares]
         try:
-            return self._tangent(ratios, TANGENT_WIDTHS[-1]).solve().prices
+            return self._tangent(self._ratios(best.x), TANGENT_WIDTHS[-1]).solve().prices
         except NoSolutionError:
             return best.prices
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 from math import hypot, inf
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
-from equipoise.mechanism.model import Machine, Vector
+from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import spring_columns
 from equipoise.signals import Array
@@ -127,9 +126,9 @@ class MovedCenter(DesignVariables):
         return np.array([[0, first, 0, 0], [0, 0, first, 0], [0, 0, 0, second], [0, 0, 0, second]])
 
     def constrain(self, program: Program, places: Array) -> list[Square]:
-        boxes = [self._box(axis) for axis in (0, 1)]
         squares = []
-        for k, (low, high) in enumerate(boxes):
+        for k in (0, 1):
+            low, high = self._box(k)
             square = Square(int(places[2 + k]), int(places[k]), None, low, high)
             square.keep_above(program)
             square.keep_between(program, low, high)
@@ -147,8 +146,7 @@ class MovedCenter(DesignVariables):
         if given is not None:
             return given[0] / self.length, given[1] / self.length
         if self.move.center is not None and self.move.radius is not None:
-            middle = self.move.center[axis]
-            reach = self.move.radius
+            middle, reach = self.move.center[axis], self.move.radius
             return (middle - reach) / self.length, (middle + reach) / self.length
         return -inf, inf
 
@@ -168,9 +166,8 @@ class MovedCenter(DesignVariables):
         return [Bound(self._room, self.move.radius, float(away), "m")]
 
     def changes(self, numbers: Array) -> list[Change]:
-        found = numbers[:2] * self.length
-        center: Vector = (float(found[0]), float(found[1]))
-        values = {"from": self.before, "to": center, "mass": self.mass}
+        x, y = (numbers[:2] * self.length).tolist()
+        values = {"from": self.before, "to": (x, y), "mass": self.mass}
         return [Change("center of mass", self.link, values)]
 
 
@@ -252,7 +249,7 @@ class FreeSpring(DesignVariables):
 
     def changes(self, numbers: Array) -> list[Change]:
         spring = self.spring(numbers)
-        values: dict[str, Any] = {"point": self.choice.point, "to": self.choice.to}
-        values["stiffness"] = 0.0 if spring is None else spring.stiffness
-        values["free_length"] = 0.0 if spring is None else spring.free_length
-        return [Change("spring", self.link, values)]
+        sizes = (0.0, 0.0) if spring is None else (spring.stiffness, spring.free_length)
+        values = {"point": self.choice.point, "to": self.choice.to}
+        sized = {"stiffness": sizes[0], "free_length": sizes[1]}
+        return [Change("spring", self.link, values | sized)]

@@ -50,8 +50,7 @@ class Affine:
 
     def at(self, x: Array) -> Array:
         """Values (R,) of the rows for numbers x."""
-        found: Array = self.factors @ x[self.columns] + self.constant
-        return found
+        return np.asarray(self.factors @ x[self.columns] + self.constant)
 
     def of_rows(self, places: Array) -> Affine:
         """Some of the rows."""
@@ -261,13 +260,8 @@ class Program:
                 raise NoSolutionError(f"the cone program is {found.status}")
         if str(found.status) not in {"Solved", "AlmostSolved"}:
             raise StalledError(f"the solver ended with {found.status}")
-        bound = min(found.obj_val, found.obj_val_dual)
-        return Solved(
-            np.array(found.x),
-            found.obj_val,
-            bound,
-            self._prices(np.array(found.x), np.array(found.z)),
-        )
+        x, bound = np.array(found.x), min(found.obj_val, found.obj_val_dual)
+        return Solved(x, found.obj_val, bound, self._prices(x, np.array(found.z)))
 
     def feasible(self, stalled: bool = True) -> bool:
         """Whether any numbers meet the constraints.

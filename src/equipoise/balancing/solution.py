@@ -67,12 +67,14 @@ def solve_problem(
     bent = problem.reads_gauges and problem.supports_more
     if not bent and not problem.flips:
         return found
-    cost = problem.cost_of(found.machine)
+    cost, limits_gauges = problem.cost_of(found.machine), bool(_gauged(problem))
     for _ in range(ROUNDS):
         near = problem.near(found.numbers)
         towards = _solve_once(near, progress)
-        if _limits_gauges(problem):  # which are kept where they are read, not a step before
-            better = towards if _apart(found, towards) > SETTLED else None
+        if limits_gauges:  # which are kept where they are read, not a step before
+            pairs = zip(found.numbers, towards.numbers, strict=True)
+            apart = max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
+            better = towards if apart > SETTLED else None
         else:
             better = _on_the_way(near, found, towards, cost)
         if better is None:
@@ -81,28 +83,23 @@ def solve_problem(
     return found
 
 
-def _limits_gauges(problem: Problem) -> bool:
-    return any(one.objective.output.startswith("gauges.") for one in problem.plan.limits)
-
-
-def _apart(one: Solution, other: Solution) -> float:
-    """The largest difference of any number, scaled."""
-    pairs = zip(one.numbers, other.numbers, strict=True)
-    return max(float(np.max(np.abs(a - b), initial=0.0)) for a, b in pairs)
-
-
 def _begun(problem: Problem) -> Problem:
     """The problem, read near a machine that keeps the limits of gauges as far as can be.
 
     Near the machine as it is, with a lighter support, they may look as if they could not be kept.
     """
-    gauged = [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
+    gauged = _gauged(problem)
     if not gauged or not problem.supports_more:
         return problem
     others = tuple(one for one in problem.plan.limits if one not in gauged)
     objectives = tuple(one.objective for one in gauged)
     first = replace(problem, plan=replace(problem.plan, objectives=objectives, limits=others))
     return problem.near(solve_problem(first).numbers)
+
+
+def _gauged(problem: Problem) -> list[Limit]:
+    """Limits of what gauges read."""
+    return [one for one in problem.plan.limits if one.objective.output.startswith("gauges.")]
 
 
 def _on_the_way(
@@ -260,7 +257,7 @@ def _limit_in_words(problem: Problem, name: str) -> str:
         return f"{name} at most {1e3 * most:.4g} g" if name == ADDED and most else name
     if limit.ratio is not None:
         return f"{name} at most {limit.ratio * 100:.4g} % of before"
-    return f"{name} at most {limit.at_most:.4g} {_unit(problem, limit)}"
+    return f"{name} at most {limit.at_most:.4g} {unit_of(limit.objective, problem.machine)}"
 
 
 def _way_out(problem: Problem, clash: list[str]) -> str:
@@ -279,8 +276,5 @@ def _way_out(problem: Problem, clash: list[str]) -> str:
     least /= limit.objective.weight
     kept = "the other is kept" if len(clash) == 2 else "the others are kept"
     where = f" while {kept}" if len(clash) > 1 else ""
-    return f"{limit.name} can become {least:.4g} {_unit(problem, limit)} at the least{where}"
-
-
-def _unit(problem: Problem, limit: Limit) -> str:
-    return unit_of(limit.objective, problem.machine)
+    unit = unit_of(limit.objective, problem.machine)
+    return f"{limit.name} can become {least:.4g} {unit} at the least{where}"

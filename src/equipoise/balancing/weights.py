@@ -14,7 +14,7 @@ the moment of inertia about the centre of the room of radius R:
 from __future__ import annotations
 
 from dataclasses import replace
-from math import asin, cos, isfinite, pi, sin, sqrt
+from math import asin, cos, hypot, isfinite, pi, sin, sqrt
 
 import numpy as np
 
@@ -121,11 +121,8 @@ class AddedWeight(DesignVariables):
             found.append(Bound(self.name, self.weight.at_most, mass, "kg"))
         if self.weight.shape in {"any", "point"} and isfinite(self.weight.radius) and mass:
             _, sx, sy, inertia = self._about_center(numbers)
-            used = (
-                sqrt(max(inertia / mass, 0.0))
-                if self.weight.shape == "any"
-                else np.hypot(sx, sy) / mass
-            )
+            spread = sqrt(max(inertia / mass, 0.0))
+            used = spread if self.weight.shape == "any" else hypot(sx, sy) / mass
             found.append(Bound(self._radius_name, self.weight.radius, used, "m"))
         return found
 
@@ -149,16 +146,16 @@ class AddedWeight(DesignVariables):
     def effect(self) -> Array:
         unit, reach, r = self.mass_unit, self.reach, self.center
         inner = self.weight.inner_radius
+        turning = {
+            "ring": inner**2,
+            "sector": (reach**2 + inner**2) / 2,
+        }  # inertia of a unit of mass
         about = {
-            "m": (unit, 0.0, 0.0, 0.0),
+            "m": (unit, 0.0, 0.0, unit * turning.get(self.weight.shape, 0.0)),
             "x": (0.0, unit * reach, 0.0, 0.0),
             "y": (0.0, 0.0, unit * reach, 0.0),
             **dict.fromkeys(("i", "qx", "qy"), (0.0, 0.0, 0.0, unit * reach**2)),
         }
-        if self.weight.shape == "ring":
-            about["m"] = (unit, 0.0, 0.0, unit * inner**2)
-        if self.weight.shape == "sector":
-            about["m"] = (unit, 0.0, 0.0, unit * (reach**2 + inner**2) / 2)
         if "own" in self.names:
             about["own"] = (0.0, 0.0, 0.0, unit**2 / (2 * pi * self._plate))
         rows = []
@@ -211,8 +208,10 @@ class AddedWeight(DesignVariables):
         mass = Affine.of(at["m"], 1.0)
         if self.weight.shape == "any":
             program.rotated(Affine.of(at["i"], 1.0), mass, moment)
-            if isfinite(self._room):
-                self._limit_inertia(program, at)
+            if isfinite(self._room):  # nothing is farther out than the room's edge
+                rows = Affine.of([at["m"], at["i"]], [self._room**2, -1.0])
+                slope = Affine.of(at["m"], 2 * self._room / self.reach)
+                program.nonnegative(rows, self._radius_name, slope)
         elif self.weight.shape == "sector":
             for k in range(TANGENTS):
                 self._add_tangent(program, at["m"], moment, (k + 0.5) / TANGENTS * self._full)
@@ -224,21 +223,13 @@ class AddedWeight(DesignVariables):
             slope = stacked(1 / self.reach * mass, Affine.fixed([0.0, 0.0]))
             program.cones(stacked(self._room * mass, moment), 3, self._radius_name, slope)
 
-    def _limit_inertia(self, program: Program, at: dict[str, int]) -> None:
-        """Nothing is farther out than the room's edge."""
-        columns = [at["m"], at["i"]]
-        slope = Affine.of(at["m"], 2 * self._room / self.reach)
-        rows = Affine.of(columns, [self._room**2, -1.0])
-        program.nonnegative(rows, self._radius_name, slope)
-
     def _fit_disc(self, program: Program, at: dict[str, int], moment: Affine) -> None:
         """|s| + m^(3/2) / sqrt(pi rho t) <= R m, the power by two cones: m^2 <= w u, u^2 <= m."""
-        w, u = program.numbers(2)
-        one = Affine.fixed(1.0)
+        w, u = (Affine.of(int(place), 1.0) for place in program.numbers(2))
         mass = Affine.of(at["m"], 1.0)
-        program.rotated(Affine.of(int(w), 1.0), Affine.of(int(u), 1.0), mass)
-        program.rotated(mass, one, Affine.of(int(u), 1.0))
-        rest = self._room * mass - self._disc_radius * Affine.of(int(w), 1.0)
+        program.rotated(w, u, mass)
+        program.rotated(mass, Affine.fixed(1.0), u)
+        rest = self._room * mass - self._disc_radius * w
         program.cones(stacked(rest, moment), 3)
 
     @property

@@ -174,8 +174,8 @@ def landscape(
     format
         Kind of the pictures.
     """
-    from equipoise.figures.objectives import landscape as drawn_map
-    from equipoise.figures.objectives import told_best
+    from equipoise.figures.studies import landscape as drawn_map
+    from equipoise.figures.studies import told_best
     from equipoise.schema.template import Template
     from equipoise.studies import objective_map as studies
 

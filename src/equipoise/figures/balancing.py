@@ -1,4 +1,4 @@
-"""The charts of balancing: before and after, orders, rows and their phases."""
+"""The charts of balancing: before and after, orders, rows and their phases, trade-offs."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ import numpy as np
 
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.multi_row import Rows
+from equipoise.balancing.problem import Problem
 from equipoise.figures.analysis import rounding, settled
+from equipoise.figures.changes import grams
 from equipoise.figures.forces import Read, last_order, order_panel
 from equipoise.figures.shared import (
     by_name,
@@ -27,7 +29,7 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
-from equipoise.quantities import Dimension
+from equipoise.quantities import Dimension, in_unit
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.results.outputs import objective_named
@@ -35,6 +37,7 @@ from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
+    from equipoise.balancing.pareto import Front
     from equipoise.mechanism.model import Drive, Machine
 
 Pair = Mapping[str, Array]
@@ -52,12 +55,8 @@ SIGNALS = {
 """Picture -> column, title, and label of the axis."""
 SAMPLES, SAMPLES_OF_ROWS = 360, 720
 """Crank angles in a turn from which it is told what is rounding, and of rows together."""
-SHORT = 16
-"""Signs that a link's name may have beside other words."""
-NOTHING = 1e-9
-"""Over the largest value before: what is left after is rounding."""
-ALIKE = 1e-6
-"""Over the largest value: what differs by less is unchanged."""
+NOTHING, ALIKE = 1e-9, 1e-6
+"""Over the largest value before: what is left after is rounding; what differs is unchanged."""
 NEAR = 0.015
 """Over the size of a hodograph: numbers after that are nearer to those before are left out."""
 MOST_PANELS, IN_LINE = 4, 6
@@ -84,11 +83,6 @@ def row_charts(original: Machine | None, machine: Machine) -> dict[str, Chart]:
 
 
 # -- before and after ------------------------------------------------------------------------------
-
-
-def rounding_of(machine: Machine) -> tuple[float, float]:
-    """Force (N) and moment (N m) of a machine that are rounding."""
-    return rounding(analyze(machine, SAMPLES))
 
 
 def paired(before: Array, after: Array, least: float) -> Pair:
@@ -124,7 +118,7 @@ def compare(
     told : whether the crank angles of the extremes are told, which takes room.
     """
     period = float(angles[-1] + angles[1] - angles[0])
-    axis = crank_axis(short(drive.link, SHORT), drive.speed, round(period / (2 * np.pi)))
+    axis = crank_axis(short(drive.link, 16), drive.speed, round(period / (2 * np.pi)))
     drawn = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
     return compared(axis, label, dimension, drawn, told)
 
@@ -133,8 +127,8 @@ def signals(found: Balanced) -> dict[str, Chart]:
     """``force``, ``polar``, ``moment`` and ``torque``, before and after."""
     columns = {name: values for name, _, values in found.columns()}
     angles, drive = columns["crank_angle"], found.original.drive
-    least_force, least_moment = rounding_of(found.original)
-    title = found.original.title
+    least_force, least_moment = rounding(analyze(found.original, SAMPLES))
+    title, when = found.original.title, _told(found)
 
     def pair_of(output: str, least: float) -> Pair:
         return paired(columns[f"{output}.before"], columns[f"{output}.after"], least)
@@ -144,7 +138,7 @@ def signals(found: Balanced) -> dict[str, Chart]:
         compare(drive, angles, pair, say("along {axis}", axis=axis), "force")
         for axis, pair in force.items()
     )
-    what = f"{say('Shaking force')}, {_told(found)}"
+    what = f"{say('Shaking force')}, {when}"
     drawn = {
         "force": Chart("force", title, what, panels, keys=keys(*force.values())),
         "polar": polar(found, angles, force),
@@ -152,8 +146,7 @@ def signals(found: Balanced) -> dict[str, Chart]:
     for name, (output, told, label) in SIGNALS.items():
         pair = pair_of(output, least_moment)
         panel = compare(drive, angles, pair, say(label), "torque", told=True)
-        what = f"{say(told)}, {_told(found)}"
-        drawn[name] = Chart(name, title, what, (panel,), keys=keys(pair))
+        drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
     return drawn
 
 
@@ -195,13 +188,12 @@ def orders(found: Balanced) -> Iterator[Chart]:
         for one in found.plan.objectives
         if (with_rows if one.output in OF_ROWS else not one.output.startswith(GAUGES))
     }
-    every = list(drawn)
+    every, speed = list(drawn), told_speed(found.original.drive.speed)
     both = {"bar before": found.original, "bar after": found.machine}
     for suffix, names in groups(every, MOST_PANELS):
         what = say("Amplitude of each order") + continued(names, every)
         if len(found.original.rows) > 1:
             what += ", " + (say("all rows") if with_rows else say("of one row"))
-        speed = told_speed(found.original.drive.speed)
         what += ", " + say("before and after, at {speed}", speed=speed)
         read = {
             name: {role: amplitudes(one, drawn[name], with_rows) for role, one in both.items()}
@@ -231,8 +223,7 @@ def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tu
         read = Rows(machine).signals(objective)
         total = read.total(np.array([row.phase for row in machine.rows]))[0]
         return read.orders, np.linalg.norm(np.abs(total), axis=0)
-    signal = Effects(machine, ()).signal(objective.output, objective.about)
-    signal = signal.kept(objective.orders)
+    signal = Effects(machine, ()).signal(objective.output, objective.about).kept(objective.orders)
     values = signal.start
     parts = np.array([values.real, values.imag] if np.iscomplexobj(values) else [values])
     periodic = Periodic.of(parts, signal.turns)
@@ -244,8 +235,7 @@ def amplitudes(machine: Machine, objective: Objective, rows: bool = False) -> tu
 
 def phases(original: Machine | None, machine: Machine) -> Chart:
     """A dial for each row in the order of their places, with a hand for its crank."""
-    count = len(machine.rows)
-    order = sorted(range(count), key=lambda k: machine.rows[k].lateral)
+    order = sorted(range(len(machine.rows)), key=lambda k: machine.rows[k].lateral)
     hands = {"after": machine} if original is None else {"before": original, "after": machine}
     panels = tuple(_dial(hands, machine, k) for k in order)
     what = say("Direction of {link} in each row at one instant", link=short(machine.drive.link))
@@ -281,11 +271,10 @@ def _dial(hands: Mapping[str, Machine], machine: Machine, k: int) -> Panel:
 def together(original: Machine | None, machine: Machine) -> Chart:
     """Components of the shaking force of all rows together over crank angle."""
     told = {"count": len(machine.rows), "speed": told_speed(machine.drive.speed)}
-    if original is None:
-        what = say("Shaking force of {count} rows together, at {speed}", **told)
-    else:
+    what = say("Shaking force of {count} rows together, at {speed}", **told)
+    if original is not None:
         what = say("Shaking force of {count} rows together, before and after, at {speed}", **told)
-    least, _ = rounding_of(machine)
+    least, _ = rounding(analyze(machine, SAMPLES))
     pairs: list[Pair] = []
     panels = []
     for axis in ("x", "y"):
@@ -305,3 +294,51 @@ def summed(machine: Machine, axis: str) -> tuple[Array, Array]:
     count = SAMPLES_OF_ROWS * read.turns
     found = Periodic(total, read.turns)
     return np.arange(count) * (found.period / count), found.samples(count)
+
+
+# -- trade-offs ------------------------------------------------------------------------------------
+
+SENSIBLE, MARGIN = 3.0, 0.12
+"""Times the size of a trade-off: how far off the machine as it is may be for it to be drawn, so
+that the curve does not get small; free at each side, over what is drawn."""
+
+
+def front(found: Front) -> Chart:
+    """The second objective against the first, each point as good as any can be."""
+    values = found.values
+    both = (found.first, found.second)
+    before = np.array([Problem.value_of(found.original, which) for which in both])
+    names = [objective_named(one, len(found.original.rows)) for one in both]
+    low, high = np.min(values, axis=0), np.max(values, axis=0)
+    room = SENSIBLE * (high - low)
+    seen = bool(np.all((before <= high + room) & (before >= low - room)))
+    held = np.vstack([values, before]) if seen else values
+    x, y = (
+        _objective_axis(short(name, most), unit, column)
+        for name, most, (_, unit, _), column in zip(
+            names, (60, 46), found.columns()[:2], held.T, strict=True
+        )
+    )
+    told = f"{x.quantity(before[0])}, {y.quantity(before[1])}"
+    marks, remark = [], say("as it is, far off: {places}", places=told)
+    if seen:
+        text, remark = say("as it is: {places}", places=told), ""
+        marks.append(Mark.of(complex(*before), text, "own", 90.0))
+    for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
+        text = f"{x.quantity(values[k, 0])}, {y.quantity(values[k, 1])}"
+        if (added := found.points[k].added_mass) > 1e-9:
+            text += "\n" + say("with {mass} more", mass=grams(added))
+        marks.append(Mark.of(complex(*values[k]), text, "best", wish, sign=False))
+    curve = Curve(values[:, 0], values[:, 1], "", "best")
+    panel = Panel(x, y, (curve,), tuple(marks), remark=remark, height=250.0)
+    speed = told_speed(found.original.drive.speed)
+    title = say("Trade-off: the least of one for every value of the other")
+    return Chart("front", found.original.title, f"{title}, at {speed}", (panel,))
+
+
+def _objective_axis(label: str, unit: str, values: Array) -> Axis:
+    """An axis with room on which a displacement is told in mm or mrad, anything else as it is."""
+    shown_in = {"m": "mm", "rad": "mrad"}.get(unit, unit)
+    low, high = float(np.min(values)), float(np.max(values))
+    room = MARGIN * (high - low if high > low else max(abs(high), 1e-12))
+    return Axis(label, in_unit(shown_in), low=low - room, high=high + room)

@@ -31,7 +31,7 @@ CHARTS = {
     "ToolExposure": "tool_speeds:exposure_charts",
     "ToolDesign": "tool_designs:design",
     "Variation": "tool_designs:variation_charts",
-    "Landscape": "objectives:landscape",
+    "Landscape": "studies:landscape",
 }
 """Kind of result that needs nothing else for its charts -> module here, and the function."""
 
@@ -112,11 +112,10 @@ def balance_pictures(
     from equipoise.balancing.pareto import Front
     from equipoise.balancing.phase_search import Phasing
     from equipoise.figures import balancing as view
-    from equipoise.figures import objectives
     from equipoise.figures.changes import changes
 
     if isinstance(found, Front):
-        return {"front": objectives.front(found)}
+        return {"front": view.front(found)}
     if isinstance(found, Phasing):
         return {**view.row_charts(original, found.machine)}
     pictures: Pictures = {**view.charts(found)}

@@ -1,4 +1,4 @@
-"""The charts of studies: designs against each other, scatter, and what causes it.
+"""The charts of studies: designs against each other, scatter and what causes it, maps.
 
 Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 """
@@ -8,19 +8,32 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, zip_longest
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from equipoise.figures.shared import by_name, continued, groups
+from equipoise.figures.shared import by_name, continued, groups, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.quantities import Display
-from equipoise.results.charts import Array, Axis, Bars, Chart, Curve, Line, Mark, Panel, shown
+from equipoise.quantities import Dimension, Display, display, in_unit, typeset
+from equipoise.results.charts import (
+    Array,
+    Axis,
+    Bars,
+    Chart,
+    Curve,
+    Line,
+    Mark,
+    Panel,
+    Surface,
+    shown,
+)
+from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Unit
     from equipoise.studies.design_space import Make
+    from equipoise.studies.objective_map import Landscape
     from equipoise.studies.search import Searched
     from equipoise.studies.selection import Best
     from equipoise.studies.tolerances import Cause, Tolerances
@@ -269,3 +282,68 @@ def joined(names: Sequence[str]) -> str:
     same = next(k for k, column in enumerate(zip_longest(*parts)) if len({*column}) > 1)
     ends = [".".join(part[same:]) for part in parts]
     return ".".join([*parts[0][:same], " + ".join(ends)])
+
+
+# -- an objective over two numbers of a model -----------------------------------------------------
+
+HANDY = {"mass": "g", "inertia": "kg mm^2", "angular speed": "rpm", "stiffness": "N/mm"}
+"""Units of numbers of a model beside the usual ones."""
+
+
+def number_unit(dimension: str | None) -> Display:
+    """The unit in which a number of the model is told."""
+    if dimension is None:
+        return Display("", 1.0)
+    if dimension in HANDY:
+        return in_unit(HANDY[dimension])
+    return display(cast(Dimension, dimension))
+
+
+def told_best(found: Landscape) -> str:
+    """The best place in a sentence."""
+    places = (
+        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        for path, value in zip(found.paths, found.best, strict=True)
+    )
+    value = f"{shown(found.least)} {typeset(found.unit)}"
+    return f"least {found.objective.name}: {value}, at {' and '.join(places)}"
+
+
+def landscape(found: Landscape) -> Chart:
+    """Lines of equal value with their values, the least of all, and the model as it is."""
+    x, y = (
+        Axis(
+            short(path, 60),
+            number_unit(found.dimensions[path]),
+            low=float(values[0]),
+            high=float(values[-1]),
+        )
+        for path, values in zip(found.paths, (found.x, found.y), strict=True)
+    )
+    unit = typeset(found.unit)
+    told = f"{x.quantity(found.best[0])}, {y.quantity(found.best[1])}"
+    places = {"least": (found.best, f"{shown(found.least)} {unit}\n{told}", say("least"))}
+    if found.start is not None and not np.isnan(found.before):
+        inside = (
+            values[0] <= one <= values[-1]
+            for values, one in zip((found.x, found.y), found.start, strict=True)
+        )
+        if all(inside):
+            places["own"] = (found.start, f"{shown(found.before)} {unit}", say("as it is"))
+    marks = [
+        Mark(*at, text, role, bold=True, label=name) for role, (at, text, name) in places.items()
+    ]
+    lacking = say("cannot turn") if np.any(np.isnan(found.values)) else ""
+    surface = Surface(found.x, found.y, found.values, Axis("", Display(found.unit, 1.0)), lacking)
+    panel = Panel(x, y, marks=tuple(marks), surface=surface, height=330.0, zero=False, grid=False)
+    values = {
+        "objective": objective_named(found.objective, len(found.machine.rows)),
+        "unit": unit,
+        "speed": told_speed(found.machine.drive.speed),
+    }
+    others = [
+        f"{path} = {Axis(path, number_unit(found.dimensions[path])).quantity(value)}"
+        for path, value in found.given.items()
+    ]
+    what = "; ".join([say("{objective}, {unit}, at {speed}", **values), *others])
+    return Chart("landscape", found.machine.title, what, (panel,))

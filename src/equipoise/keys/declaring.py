@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from functools import cache, reduce
+from functools import cache
 from math import inf, isfinite
-from operator import and_, ge, gt, lt
 from types import MappingProxyType
 from typing import Any, ClassVar, TypeVar, dataclass_transform
 
@@ -32,6 +31,7 @@ Result = TypeVar("Result")
 
 # -- declaring -------------------------------------------------------------------------------------
 
+XYZ = ("x", "y", "z")
 REQUIRED = object()
 """Default of a key that has to be given."""
 _KEY = "equipoise key"
@@ -69,9 +69,14 @@ class Key:
 
     def allows(self, value: Any) -> Any:
         """Whether a number, or each of an array, is within the limits."""
-        limits = ((ge, self.at_least), (gt, self.above), (lt, self.below))
-        held = [within(value, limit) for within, limit in limits if limit is not None]
-        return reduce(and_, held, True)
+        right: Any = True
+        if self.at_least is not None:
+            right = right & (value >= self.at_least)
+        if self.above is not None:
+            right = right & (value > self.above)
+        if self.below is not None:
+            right = right & (value < self.below)
+        return right
 
     @property
     def unit(self) -> str:
@@ -256,9 +261,6 @@ def declarations(cls: type[Frozen]) -> tuple[Key, ...]:
     )
 
 
-Value = TypeVar("Value")
-XYZ = ("x", "y", "z")
-
 # -- values ----------------------------------------------------------------------------------------
 
 
@@ -276,12 +278,10 @@ def wrong_values(where: str, value: Any) -> Iterator[ModelError]:
             text = f"{leaf:g} in SI units"
             yield ModelError(place, f"got {text}, which no machine can have").about(leaf, text)
     for place, leaf, one in leaves:
-        if one is None:
-            continue
-        names = getattr(innermost(one.kind), "names", ())
+        names = () if one is None else getattr(innermost(one.kind), "names", ())
         if names and leaf not in names:
             yield ModelError(place, f"got {leaf!r}; give {choice(names)}")
-        elif not isinstance(leaf, str) and not one.allows(leaf):
+        elif one is not None and not isinstance(leaf, str) and not one.allows(leaf):
             text = f"{leaf:g}{one.unit}"
             yield ModelError(place, f"got {text}; {one.right(leaf)}").about(leaf, text)
 

@@ -18,9 +18,8 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
-from equipoise.web.charts import charts_of, least_of
 from equipoise.web.edits import Solved, movable
-from equipoise.web.figures import figures_of, signals_of
+from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 
 Array = np.ndarray[Any, Any]
 Values = dict[str, Any]

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.balancing.weights import AddedWeight
 from equipoise.mechanism.balance import Shape, Weight
-from equipoise.mechanism.model import Link, Machine
+from equipoise.mechanism.model import Machine
 from unit.mechanism.build import crank_rocker
 
 Array = np.ndarray[Any, Any]
@@ -29,16 +29,7 @@ RADII, TURNS = np.polynomial.legendre.leggauss(6), np.polynomial.legendre.leggau
 def machine_with_a_room() -> Machine:
     """A crank-rocker whose crank has a point R off its axes' origin."""
     machine = crank_rocker()
-    points = {**machine.links["crank"].points, "R": (0.11, -0.07)}
-    link = machine.links["crank"]
-    crank = Link(points, link.mass, link.center_of_mass, link.inertia)
-    return Machine(
-        title="test",
-        frame=machine.frame,
-        links={**machine.links, "crank": crank},
-        drive=machine.drive,
-        assembly=machine.assembly,
-    )
+    return machine.with_link("crank", points={**machine.links["crank"].points, "R": (0.11, -0.07)})
 
 
 def part_of(weight: Weight, at: str = "R") -> AddedWeight:

@@ -164,10 +164,6 @@ def test_columns_before_and_after() -> None:
     assert len(columns) == 9
 
 
-def test_a_gap_of_nothing_proved() -> None:
-    assert replace(FOUND, bound=None).gap is None
-
-
 def test_equivalent_speed_of_what_is_gone() -> None:
     before = {"shaking_force.rms": 4.0, "shaking_moment.rms": 1.0, "drive_torque.rms": 2.0}
     after = {"shaking_force.rms": 1.0, "shaking_moment.rms": 1e-17, "drive_torque.rms": 1.0}

@@ -4,6 +4,8 @@ A spring that may be set, against springs that are, and a search over stiffness 
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.optimize import minimize
@@ -13,7 +15,6 @@ from equipoise.balancing.branch_and_bound import Square
 from equipoise.balancing.design_variables import FreeSpring, with_parameters
 from equipoise.balancing.objectives import measured
 from equipoise.balancing.program import Affine, NoSolutionError, Program
-from equipoise.balancing.workshop import Change
 from equipoise.mechanism.balance import Balance, Objective, SpringChoice
 from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.parameters import parameter_values
@@ -125,26 +126,13 @@ def test_rounding_leaves_no_negative_inertia_or_mass() -> None:
     assert gone.links["coupler"].mass == 0.0
 
 
-def test_a_change_as_a_dictionary() -> None:
-    change = Change("spring", "rocker", {"stiffness": 3.0})
-    assert change.to_dict() == {"kind": "spring", "link": "rocker", "stiffness": 3.0}
-
-
 MACHINE = crank_rocker(drive=eq.Drive("crank", 3.0))
 FREE = SpringChoice("rocker", "C", "A", 200.0)
 RIPPLE = Objective("drive_torque", "ripple")
 
 
 def torque_with(stiffness: float, free_length: float) -> np.ndarray:
-    spring = Spring("rocker", "C", "A", stiffness, free_length)
-    machine = eq.Machine(
-        title="test",
-        frame=MACHINE.frame,
-        links=MACHINE.links,
-        drive=MACHINE.drive,
-        assembly=MACHINE.assembly,
-        springs=(spring,),
-    )
+    machine = replace(MACHINE, springs=(Spring("rocker", "C", "A", stiffness, free_length),))
     return np.asarray(eq.forces(eq.move(machine, 720, acceleration=0.0)).drive_torque)
 
 
@@ -223,10 +211,7 @@ def test_numbers_stand_for_stiffness_and_pull() -> None:
     assert spring.stiffness == pytest.approx(80.0)
     without = eq.forces(motion).drive_torque
     found = numbers @ part.columns(motion, "drive_torque")
-    machine = eq.Machine(
-        title="", frame=MACHINE.frame, links=MACHINE.links, drive=MACHINE.drive,
-        assembly=MACHINE.assembly, springs=(spring,),
-    )  # fmt: skip
+    machine = replace(MACHINE, springs=(spring,))
     with_it = eq.forces(eq.move(machine, 90, acceleration=0.0)).drive_torque
     assert found == pytest.approx(with_it - without, abs=1e-10 * np.max(np.abs(with_it)))
     assert np.max(np.abs(found)) > 0

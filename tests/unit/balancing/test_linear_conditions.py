@@ -1,4 +1,4 @@
-"""Conditions of balance: their words, their refusals, and machines with a known answer."""
+"""Conditions of balance, the least moments that meet them, sensitivities, and what each shows."""
 
 from __future__ import annotations
 
@@ -8,8 +8,17 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.linear_conditions import conditions, joint_length, reading
+from equipoise.balancing.least_norm import least_moments
+from equipoise.balancing.linear_conditions import (
+    conditions,
+    conditions_blocks,
+    joint_length,
+    reading,
+)
+from equipoise.balancing.physical_consistency import feasibility
+from equipoise.balancing.sensitivity import known_outputs, sensitivities
 from equipoise.errors import MassError, RangeError, UsageError
+from support.printing import words
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
 
@@ -143,3 +152,160 @@ def test_length_between_joints() -> None:
     assert joint_length(given, "coupler") == pytest.approx(0.0715)
     assert joint_length(lone(), "crank") == pytest.approx(0.3)
     assert joint_length(slider_crank(), "piston") == pytest.approx(1.0)
+
+
+def test_slider_crank_needs_rod_and_crank() -> None:
+    given = slider_crank()
+    found = least_moments(given, ["crank", "rod"])
+    assert found.totals["rod"] == pytest.approx((-0.5, 0.0))
+    assert found.totals["crank"] == pytest.approx((-0.3, 0.0))
+    assert np.max(eq.analyze(found.machine).forces.shaking_force.size) < 1e-11
+    with pytest.raises(UsageError, match=r"moments of crank cannot meet rod\.moment_x"):
+        least_moments(given, ["crank"])
+    with pytest.raises(UsageError, match="moments of no link cannot meet"):
+        least_moments(given, [])
+
+
+def test_a_balanced_machine_needs_nothing() -> None:
+    balanced = least_moments(crank_rocker(), ["crank", "rocker"]).machine
+    again = least_moments(balanced, ["crank", "coupler", "rocker"])
+    assert again.cost < 1e-15
+
+
+def test_free_links_alone() -> None:
+    found = least_moments(crank_rocker(), [], ["crank", "rocker"])
+    assert found.cost == 0
+    priced = least_moments(crank_rocker(), ["crank", "rocker"])
+    for link, moment in found.moments.items():
+        assert moment == pytest.approx(priced.moments[link])
+
+
+def test_least_moments_as_plain_data() -> None:
+    found = least_moments(crank_rocker(), ["crank", "rocker"])
+    data = json.loads(json.dumps(found.to_dict()))
+    assert list(data) == ["added", "total", "center_of_mass", "cost"]
+    for link in ("crank", "rocker"):
+        assert 0.5 * np.array(data["center_of_mass"][link]) == pytest.approx(data["total"][link])
+
+
+def test_refusals_of_least_moments() -> None:
+    given = crank_rocker()
+    with pytest.raises(UsageError, match="did you mean 'crank'"):
+        least_moments(given, ["cranks"])
+    with pytest.raises(UsageError, match="crank is named twice"):
+        least_moments(given, ["crank"], ["crank"])
+    with pytest.raises(UsageError, match="rocker has mass 0"):
+        least_moments(given.with_link("rocker", mass=0.0, inertia=0.0), ["crank", "rocker"])
+    bare = given.with_link("crank", mass=None, center_of_mass=None, inertia=None)
+    with pytest.raises(MassError):
+        least_moments(bare, ["crank"])
+
+
+def test_sensitivities_of_a_lone_crank() -> None:
+    """At 10 rad/s the force is 100 m r, and its height that times a sine."""
+    found = sensitivities(lone(), angles=36)
+    theta = found.crank_angle
+    np.testing.assert_allclose(found["crank.center_x"].values, 50 * np.sin(theta), atol=1e-12)
+    np.testing.assert_allclose(found["crank.center_y"].values, 50 * np.cos(theta), atol=1e-12)
+    assert found["crank.center_x"].rms == pytest.approx(50 / 2**0.5)
+    assert found["crank.center_x"].percent == pytest.approx(0.003 * 50 / 2**0.5)
+    np.testing.assert_allclose(found["crank.center_x"].no_effect_at, [0, np.pi], atol=1e-12)
+    half = [np.pi / 2, 3 * np.pi / 2]
+    np.testing.assert_allclose(found["crank.center_y"].no_effect_at, half, atol=1e-12)
+    assert not found["crank.inertia"].has_effect
+    assert found["crank.inertia"].no_effect_at.size == 0
+    assert [one.name for one in found.ranked][-1] == "crank.mass"
+
+
+def test_torque_of_a_lone_crank_is_weight() -> None:
+    found = sensitivities(lone(), "drive_torque", 36)
+    wanted = 0.5 * 9.80665 * np.cos(found.crank_angle)
+    np.testing.assert_allclose(found["crank.center_x"].values, wanted, atol=1e-12)
+    assert not found["crank.inertia"].has_effect
+
+
+def test_acceleration_of_the_drive_does_not_count() -> None:
+    given = crank_rocker()
+    starting = given.with_drive(acceleration=50.0)
+    for output in ("shaking_moment", "drive_torque"):
+        one, two = (sensitivities(m, output, 24) for m in (given, starting))
+        for name in one.by_name:
+            np.testing.assert_array_equal(one[name].values, two[name].values)
+
+
+def test_number_of_crank_angles_does_not_move_the_zeros() -> None:
+    few, many = (sensitivities(crank_rocker(), angles=n) for n in (180, 1440))
+    for name, one in few.by_name.items():
+        np.testing.assert_allclose(one.no_effect_at, many[name].no_effect_at, atol=1e-9)
+
+
+def test_a_machine_at_rest_has_none() -> None:
+    found = sensitivities(crank_rocker(drive=eq.Drive("crank", 0.0)), angles=24)
+    assert found.ranked == ()
+
+
+def test_a_cycle_of_many_turns() -> None:
+    found = sensitivities(eq.load("planetary-planting-arm"), angles=72)
+    assert len(found.crank_angle) == 72 * found.turns
+    for one in found.ranked:
+        assert np.all(np.diff(one.no_effect_at) > 0)
+        assert np.all(one.no_effect_at < 2 * np.pi * found.turns)
+
+
+def test_sensitivities_as_plain_data() -> None:
+    found = sensitivities(lone(), angles=36).to_dict()
+    assert found["output"] == "shaking_force.y"
+    assert found["crank_angle"].shape == (36,)
+    one = found["sensitivities"]["crank.center_x"]
+    assert list(one) == ["values", "rms", "percent", "has_effect", "no_effect_at"]
+
+
+def test_refusals_of_sensitivities() -> None:
+    with pytest.raises(UsageError, match="did you mean 'shaking_force"):
+        sensitivities(lone(), "shaking_force")
+    for angles in (3, True, 36.0, "36"):
+        with pytest.raises(UsageError, match="at least 8"):
+            sensitivities(lone(), angles=angles)  # type: ignore[arg-type]
+    with pytest.raises(UsageError, match=r"did you mean 'crank\.center_x'"):
+        sensitivities(lone(), angles=36)["crank.centre_x"]
+    bare = lone().with_link("crank", mass=None, center_of_mass=None, inertia=None)
+    with pytest.raises(MassError):
+        sensitivities(bare)
+
+
+def test_conditions() -> None:
+    given = eq.load("yamashita-1")
+    found = conditions(given), conditions(given, "sine")
+    text = words(
+        conditions_blocks(*found, verdict=[one.reason for one in feasibility(given).answers])
+    )
+    assert "Conditions for shaking force to be zero" in text
+    assert "Conditions for shaking force to be a pure sine of the crank angle" in text
+    assert "coupler.moment_x / 71.5 mm + rocker.moment_x / 80 mm = 0 -0.3768 kg" in text
+    assert "The shaking force can be made zero, with every mass as it is." in text
+
+
+def test_nothing_to_meet() -> None:
+    yoke = eq.load("scotch-yoke")
+    text = words(conditions_blocks(conditions(yoke, "sine"), conditions(yoke)))
+    assert "none, it always is" in text
+    assert "crank.moment_y = 0 0 kg mm" in text
+    assert "yoke.mass = 0 1.200 kg" in text
+
+
+def test_added() -> None:
+    text = words(least_moments(eq.load("yamashita-1"), ["crank", "rocker"]).blocks())
+    assert "rocker 30.15 15.37 38.43 15.37 148.4 59.36" in text
+
+
+def test_sensitivities() -> None:
+    text = words(sensitivities(eq.load("yamashita-2")).blocks(zero=np.radians(-100)))
+    assert "coupler.center_y 0.1200 mm 0.2801 27.9, 214.7, 319.4, 330.6" in text
+    assert "No effect at any crank angle: crank.inertia, coupler.inertia, rocker.inertia" in text
+    assert "crank angle from -100.0 deg" in text
+
+
+@pytest.mark.parametrize("output", known_outputs())
+def test_every_output_has_a_title(output: str) -> None:
+    found = sensitivities(eq.load("yamashita-1"), output, 36)
+    assert "effect of each parameter" in words(found.blocks())

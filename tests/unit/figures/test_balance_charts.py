@@ -9,7 +9,6 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures import balancing as view
-from equipoise.figures import objectives
 from equipoise.figures.forces import order_panel
 from equipoise.figures.layout import lay_out
 from equipoise.mechanism.objectives import Objective
@@ -123,4 +122,4 @@ def test_the_front_goes_through_its_points() -> None:
     told = words(pictures("front")["front"])
     assert "as it is" in told
     far = replace(front(), values=1e-6 * front().values)
-    assert "as it is, far off" in words(objectives.front(far))
+    assert "as it is, far off" in words(view.front(far))

@@ -16,7 +16,7 @@ import equipoise as eq
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
-from equipoise.figures import figure, measured, objectives, plot, render, studies
+from equipoise.figures import figure, measured, plot, render, studies
 from equipoise.figures import measured as of_decay
 from equipoise.figures.curves import levels_of
 from equipoise.figures.view import Scale, ends_of, ticks_of
@@ -249,11 +249,11 @@ def broken() -> Landscape:
 
 def test_the_least_and_the_model_are_marked_where_they_are() -> None:
     found = smooth()
-    chart = objectives.landscape(found)
+    chart = studies.landscape(found)
     marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
     assert marks == {"least": found.best, "own": found.start}
     assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
-    assert f"least {found.objective.name}: {found.least:.4g} N" in objectives.told_best(found)
+    assert f"least {found.objective.name}: {found.least:.4g} N" in studies.told_best(found)
     spline = RectBivariateSpline(found.y, found.x, found.values)
     assert float(spline(found.best[1], found.best[0])[0, 0]) == pytest.approx(found.least, rel=0.05)
     levels = levels_of(found.values)
@@ -261,12 +261,12 @@ def test_the_least_and_the_model_are_marked_where_they_are() -> None:
 
 
 def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
-    chart = objectives.landscape(broken())
+    chart = studies.landscape(broken())
     told = words(chart)
     assert "cannot turn" in told and "counterweights.crank.mass = 300 g" in told
-    assert "cannot turn" not in words(objectives.landscape(smooth()))
+    assert "cannot turn" not in words(studies.landscape(smooth()))
     level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
-    for one in (chart, objectives.landscape(smooth()), objectives.landscape(level)):
+    for one in (chart, studies.landscape(smooth()), studies.landscape(level)):
         check(one)
         assert render(one) == render(one)
 

@@ -141,32 +141,34 @@ def refusal(machine: eq.Machine) -> ModelError:
     return caught.value
 
 
-def test_a_tip_that_never_reaches_the_soil() -> None:
-    error = refusal(spinner(depth=None, surface=-0.12))
-    assert error.where == "planting.surface"
-    assert error.what == (
-        "got -120 mm; the tip P never reaches the soil, its lowest point is at -100 mm; give a "
-        "surface above that"
-    )
+REFUSED = (
+    (
+        {"depth": None, "surface": -0.12},
+        "surface: got -120 mm; the tip P never reaches the soil, its lowest point is at -100 mm; "
+        "give a surface above that",
+    ),
+    (
+        {"depth": 0.25},
+        "depth: got 250 mm; the tip P never leaves the soil, its path is 200 mm high; give a depth "
+        "below that",
+    ),
+    (
+        {"depth": None, "surface": 0.13},
+        "surface: got 130 mm; the tip P never leaves the soil, it is at 100 mm at most; give a "
+        "surface below that",
+    ),
+)
+
+
+@pytest.mark.parametrize(("planting", "sentence"), REFUSED)
+def test_a_tip_that_never_reaches_or_leaves_the_soil(
+    planting: dict[str, Any], sentence: str
+) -> None:
+    assert str(refusal(spinner(**planting))) == f"planting.{sentence}"
+
+
+def test_a_tip_that_comes_down_to_the_surface_does_not_reach_it() -> None:
     assert refusal(spinner(depth=None, surface=-0.1 - 1e-9)).where == "planting.surface"
-
-
-def test_a_tip_that_never_leaves_the_soil_by_depth() -> None:
-    error = refusal(spinner(depth=0.25))
-    assert error.where == "planting.depth"
-    assert error.what == (
-        "got 250 mm; the tip P never leaves the soil, its path is 200 mm high; give a depth below "
-        "that"
-    )
-
-
-def test_a_tip_that_never_leaves_the_soil_by_surface() -> None:
-    error = refusal(spinner(depth=None, surface=0.13))
-    assert error.where == "planting.surface"
-    assert error.what == (
-        "got 130 mm; the tip P never leaves the soil, it is at 100 mm at most; give a surface "
-        "below that"
-    )
 
 
 @pytest.mark.parametrize("planting", [{"depth": 0.2}, {"depth": None, "surface": 0.1}])

@@ -76,6 +76,15 @@ def move(point: str, to: complex, at: int) -> Content:
     return {"move": point, "to": [to.real, to.imag], "at": at}
 
 
+def counterweight(*texts: str) -> list[Content]:
+    """The edits that give the crank a counterweight."""
+    keys = ("mass", "radius", "direction")
+    return [
+        {"set": f"counterweights.crank.{key}", "text": text}
+        for key, text in zip(keys, texts, strict=True)
+    ]
+
+
 def unpacked(data: bytes) -> tuple[Content, bytes]:
     """Header and block of a message of the server."""
     (length,) = struct.unpack_from("<I", data)

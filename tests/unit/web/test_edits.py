@@ -10,7 +10,7 @@ import pytest
 import equipoise as eq
 from equipoise.quantities import format_exact
 from equipoise.web.edits import movable
-from unit.web.pages import ask, edit, move, opened, refusal
+from unit.web.pages import ask, counterweight, edit, move, opened, refusal
 
 ROUNDED = 1e-6
 """Of the size of the machine: places travel as 32-bit floats."""
@@ -75,12 +75,7 @@ def test_links_of_one_point_are_not_dragged() -> None:
 
 def test_a_dragged_centre_of_mass_counts_its_counterweight() -> None:
     session, before = opened("yamashita-1")
-    edit(
-        session,
-        {"set": "counterweights.crank.mass", "text": "150 g"},
-        {"set": "counterweights.crank.radius", "text": "40 mm"},
-        {"set": "counterweights.crank.direction", "text": "150 deg"},
-    )
+    edit(session, *counterweight("150 g", "40 mm", "150 deg"))
     goal = before.place("A")[90] + (0.004 - 0.003j)
     after = edit(session, {"move_mass": "crank", "to": [goal.real, goal.imag], "at": 90})
     assert abs(after.vector("mass_center.crank")[90] - goal) < 1e-8

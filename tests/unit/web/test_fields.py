@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 import equipoise as eq
+from equipoise.web.design import Design
 from equipoise.web.fields import Scale, fields_of
 from equipoise.web.session import opened_example
 from unit.web.pages import edit, opened
@@ -40,10 +43,6 @@ def test_a_number_keeps_its_unit() -> None:
 def test_names_with_dots_are_names() -> None:
     machine = eq.load("yamashita-1")
     links = {f"{name}.x": link for name, link in machine.links.items()}
-    from dataclasses import replace
-
-    from equipoise.web.design import Design
-
     dotted = replace(machine, links=links, drive=replace(machine.drive, link="crank.x"))
     field = fields_of(Design("dotted", dotted))["links.crank.x.points.B.x"]
     assert field.put(Design("", dotted), 0.04).own.links["crank.x"].points["B"] == (0.04, 0.0)

@@ -77,20 +77,16 @@ def test_random_edits(name: str, data: st.DataObject) -> None:
         field = draw(st.sampled_from(shown["fields"]))["path"]
         to = [draw(st.sampled_from(NUMBERS)), draw(st.sampled_from(NUMBERS))]
         at = draw(st.sampled_from((0, 100, 719, 720)))
-        change = draw(
-            st.sampled_from(
-                [
-                    {"set": field, "value": to[0]},
-                    {"set": field, "text": draw(st.sampled_from(TEXTS))},
-                    {"move": draw(st.sampled_from(shown["scene"]["movable"])), "to": to, "at": at},
-                    {
-                        "move_mass": draw(st.sampled_from(shown["scene"]["mass_centers"])),
-                        "to": to,
-                        "at": at,
-                    },
-                ]
-            )
+        point, link = (
+            draw(st.sampled_from(shown["scene"][kind])) for kind in ("movable", "mass_centers")
         )
+        changes = [
+            {"set": field, "value": to[0]},
+            {"set": field, "text": draw(st.sampled_from(TEXTS))},
+            {"move": point, "to": to, "at": at},
+            {"move_mass": link, "to": to, "at": at},
+        ]
+        change = draw(st.sampled_from(changes))
         edit = {"type": "edit", "commit": draw(st.booleans()), "edits": [change]}
         replies = answered(session, json.dumps(edit))
         assert replies[0]["type"] in {"state", "refused"}

@@ -6,7 +6,7 @@ import json
 import socket
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -143,12 +143,7 @@ def test_there_is_nothing_else(here: Here, path: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("query", "options"),
-    [
-        ("token=wrong", {}),
-        ("", {"origin": FOREIGN}),
-        ("", {"origin": None}),
-    ],
+    ("query", "options"), [("token=wrong", {}), ("", {"origin": FOREIGN}), ("", {"origin": None})]
 )
 def test_strange_pages_get_no_socket(here: Here, query: str, options: Any) -> None:
     with pytest.raises(InvalidStatus) as caught, here.page(query, **options):
@@ -208,8 +203,6 @@ def test_dragging_goes_on_while_something_takes_long(
 
 
 def test_there_is_an_end_to_pages_and_messages(here: Here) -> None:
-    from contextlib import ExitStack
-
     with ExitStack() as stack:
         for _ in range(MOST_PAGES):
             assert hear(stack.enter_context(here.page()))["type"] == "hello"

@@ -9,8 +9,9 @@ import pytest
 
 import equipoise as eq
 from equipoise.web.design import Design
+from equipoise.web.messages import message_of
 from equipoise.web.session import Session
-from unit.web.pages import ask, edit, opened, refusal, state
+from unit.web.pages import ask, counterweight, edit, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
 STUCK = eq.dumps(eq.load("yamashita-1")).replace('"33.5 mm"', '"200 mm"')
@@ -59,12 +60,7 @@ def test_a_drag_that_ends_where_nothing_can_be_keeps_its_last_good_place() -> No
 def test_a_counterweight_is_a_point_mass_on_the_link() -> None:
     """Beside the force of a mass that turns in a circle, and the file that is downloaded."""
     session, before = opened("yamashita-1")
-    after = edit(
-        session,
-        {"set": "counterweights.crank.mass", "text": "80 g"},
-        {"set": "counterweights.crank.radius", "text": "45 mm"},
-        {"set": "counterweights.crank.direction", "text": "170 deg"},
-    )
+    after = edit(session, *counterweight("80 g", "45 mm", "170 deg"))
     added = after.vector("shaking_force") - before.vector("shaking_force")
     turning = 0.08 * 0.045 * before.content["speed"] ** 2
     assert abs(added) == pytest.approx(turning, rel=1e-4)
@@ -165,8 +161,6 @@ def test_what_sliders_cannot_show_goes_into_the_links() -> None:
 
 def test_a_change_while_it_is_balanced_is_not_lost() -> None:
     session, _ = opened("balance-crank")
-    from equipoise.web.messages import message_of
-
     balancing = session.receive(message_of({"type": "balance", "seq": 1}))
     assert next(balancing).content["type"] == "busy"
     edit(session, MASS)

@@ -7,6 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.quantities import change, display_rules, number, typeset
+from surface.running import massless
 from unit.web.pages import ask, edit, opened
 
 
@@ -78,13 +79,7 @@ def test_a_machine_on_a_support_tells_its_response() -> None:
 
 def test_a_machine_without_masses_moves() -> None:
     session, _ = opened("yamashita-1")
-    text = eq.dumps(eq.load("yamashita-1"))
-    bare = "\n".join(
-        line
-        for line in text.splitlines()
-        if not line.startswith(("mass ", "center_of_mass", "inertia"))
-    )
-    shown = ask(session, "open", name="bare.toml", text=bare)[0].content
+    shown = ask(session, "open", name="bare.toml", text=massless())[0].content
     assert not shown["has_forces"]
     assert shown["missing"] == ["crank", "coupler", "rocker"]
     assert "shaking_force" not in shown["arrays"]
