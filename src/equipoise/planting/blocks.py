@@ -7,22 +7,28 @@ from dataclasses import dataclass, replace
 from math import pi
 from typing import TYPE_CHECKING, Any
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.outputs import joint_named
 from equipoise.planting.names import (
     EXTREMES,
+    FIGURES,
     INSTANTS,
     OF_AN_INSTANT,
+    OTHERS,
     PATH,
     SOIL,
     Named,
     dimension_of,
+    figure_named,
 )
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
+    from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
 
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
@@ -50,10 +56,8 @@ class Page:
         """A figure with its dimension; None where there is none."""
         return cell(self.get(name), name, scale)
 
-    def turned(self, value: float | None) -> Value | None:
+    def turned(self, value: float) -> Value:
         """A crank angle, from `zero` on."""
-        if value is None:
-            return None
         return Value(self.from_zero(value), after=2, dimension="angle")
 
     def from_zero(self, value: float) -> float:
@@ -72,12 +76,13 @@ class Page:
 
 def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
     """A figure with its dimension, by its name."""
-    if value is None:
-        return None
-    kind = dimension_of(name)
-    after = 2 if kind == "angle" else None
+    return None if value is None else quantity(value, dimension_of(name), scale)
+
+
+def quantity(value: float, kind: Dimension | None, scale: float = 0.0) -> Value:
+    """A number of some dimension, in the unit in which it is told."""
     unit = None if kind is None else UNITS.get(kind)
-    return Value(value, scale, after=after, dimension=kind, unit=unit)
+    return Value(value, scale, after=2 if kind == "angle" else None, dimension=kind, unit=unit)
 
 
 def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Block]:
@@ -121,7 +126,7 @@ def _instants(page: Page) -> Table:
     if page.figures.planting.release is None:
         names.remove("release")
     names = _in_time(page, names)
-    angles = (page.turned(page.get(f"{name}.crank_angle")) for name in names)
+    angles = (page.turned(page.figures[f"{name}.crank_angle"]) for name in names)
     rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
     for key, one in OF_AN_INSTANT.items():
         still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
@@ -266,4 +271,79 @@ def _forces(page: Page) -> Iterator[Block]:
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks}
+# -- a search of geometry --------------------------------------------------------------------------
+
+
+def fit_blocks(fit: Fit) -> Iterator[Block]:
+    """Goals, what was changed for them, and the figures before and after."""
+    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
+    yield _goals(fit)
+    yield _changes(fit)
+    yield _figures(fit)
+    missed = [figure_named(name) for name, met in fit.met.items() if not met]
+    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
+    if missed:
+        template = to_say(
+            "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
+        )
+        notes.append(Note(template, names=", ".join(missed)))
+    if notes:
+        yield Notes(tuple(notes))
+
+
+def _told(figures: PlantingFigures | None, name: str) -> Cell:
+    value = None if figures is None else figures.figures.get(name)
+    return say("none") if value is None else _figure(value, name)
+
+
+def _figure(value: float, name: str) -> Value:
+    kind = dimension_of(name)
+    return Value(value, after=4) if kind is None else quantity(value, kind)
+
+
+def _goals(fit: Fit) -> Table:
+    words = {True: say("yes"), False: say("no"), None: ""}
+    rows: list[tuple[Cell, ...]] = []
+    for goal in fit.goals:
+        name, met = goal.figure, fit.met.get(goal.figure)
+        limits = (goal.target, goal.at_least, goal.at_most)
+        wanted = (None if value is None else _figure(value, name) for value in limits)
+        before, after = _told(fit.before, name), _told(fit.after, name)
+        if met is False and isinstance(after, Value):  # stands out
+            after = replace(after, broken=True)
+        rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
+    labels = (
+        *("", say("make"), say("wanted"), say("at least"), say("at most")),
+        *(say("before"), say("after"), say("met")),
+    )
+    filled = [any(row[k] not in (None, "") for row in rows) for k in range(len(labels))]
+    kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
+    columns = tuple(Column(labels[k]) for k in kept)
+    return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
+
+
+def _changes(fit: Fit) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for one in fit.designs.variables:
+        values = (one.start, fit.values[one.name], one.low, one.high)
+        rows.append((one.name, *(quantity(value, one.dimension) for value in values)))
+    old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
+    if old != new:
+        pair = (quantity(speed, "angular speed") for speed in (old, new))
+        rows.append((say("crank speed"), *pair, None, None))
+    labels = ("", say("before"), say("after"), say("lowest allowed"), say("highest allowed"))
+    return Table(say("Changes"), tuple(map(Column, labels)), tuple(rows))
+
+
+def _figures(fit: Fit) -> Table:
+    asked = {goal.figure for goal in fit.goals}
+    rows: list[tuple[Cell, ...]] = []
+    for name in (*FIGURES, *OTHERS):
+        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
+        if name not in asked and known:
+            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
+    columns = (Column(""), Column(say("before")), Column(say("after")))
+    return Table(say("Other figures"), columns, tuple(rows))
+
+
+SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks, "Fit": fit_blocks}

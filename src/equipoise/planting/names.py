@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from equipoise.i18n import to_say
+from equipoise.i18n import say, to_say
 from equipoise.quantities import Dimension
 
 
@@ -75,6 +75,12 @@ FIGURES = {
     **{f"{name}.value": one for name, one in EXTREMES.items()},
 }
 LINKAGE = {"transmission.min": Named(to_say("smallest transmission angle"), "angle")}
+OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
+OTHERS = (
+    *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
+    *LINKAGE,
+)
+"""Further ones that a search tells before and after."""
 DIMENSIONS: dict[str, Dimension] = {
     **dict.fromkeys(("surface", "soil.ground_advance"), "length"),
     **dict.fromkeys(("visits.depth", "loops.y", "loops.height", "loops.width"), "length"),
@@ -103,3 +109,15 @@ def dimension_of(figure: str) -> Dimension | None:
     if known is not None:
         return known.dimension
     return DIMENSIONS.get(last if first == "limits" else figure)
+
+
+def figure_named(name: str) -> str:
+    """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
+    known = FIGURES | LINKAGE
+    if name in known:
+        return say(known[name].words)
+    instant, _, key = name.partition(".")
+    if instant not in INSTANTS or key not in OF_AN_INSTANT:
+        return name
+    what = say(OF_AN_INSTANT[key].words)
+    return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
