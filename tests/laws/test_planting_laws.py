@@ -16,7 +16,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.field import Planting, Soil, SoilTable
 from equipoise.mechanism.reactions import soil_force
-from equipoise.planting.goals import TURNING, dimension_of
+from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.summary import PlantingFigures, plant, table
 from laws import transforms
 from laws.subjects import along, gravity_power, kinetic_power, load_power, spring_power

@@ -360,46 +360,47 @@ def test_random_arguments(arguments: list[str]) -> None:
     checked(equipoise(*arguments))
 
 
-PAIRS = (
-    ("--angles", ("3", "1e29 deg", "-1e17 deg", "1e-29 rad", "0 deg, 0 deg", "1e12 turn")),
-    ("--speed", ("1e29 rad/s", "-1e-29 rad/s", "0 rpm")),
-    ("--acceleration", ("1e29 rad/s^2", "-1e-29 rad/s^2")),
-    ("--about", ("1e29 m, 1e29 m", "1e-29 m, 0 m")),
-)
+def some_of(options: dict[str, tuple[str, ...]]) -> st.SearchStrategy[list[str]]:
+    """Any of some options, each with one of its values."""
+    drawn = (
+        st.just([]) | st.sampled_from([[option, value] for value in values])
+        for option, values in options.items()
+    )
+    return st.tuples(*drawn).map(lambda parts: [word for part in parts for word in part])
+
+
+EXTREME = {
+    "--angles": ("3", "1e29 deg", "-1e17 deg", "1e-29 rad", "0 deg, 0 deg", "1e12 turn"),
+    "--speed": ("1e29 rad/s", "-1e-29 rad/s", "0 rpm"),
+    "--acceleration": ("1e29 rad/s^2", "-1e-29 rad/s^2"),
+    "--about": ("1e29 m, 1e29 m", "1e-29 m, 0 m"),
+}
 
 
 @given(
     st.sampled_from(EXAMPLES),
-    st.tuples(*(st.none() | st.sampled_from(values) for _, values in PAIRS)),
+    some_of(EXTREME),
     st.sampled_from(((), ("--json",), ("--json", "--split"))),
 )
 @fuzz(100)
-def test_extreme_arguments(
-    name: str, chosen: tuple[str | None, ...], output: tuple[str, ...]
-) -> None:
-    pairs = ((key, value) for (key, _), value in zip(PAIRS, chosen, strict=True) if value)
-    words = [word for pair in pairs for word in pair]
+def test_extreme_arguments(name: str, words: list[str], output: tuple[str, ...]) -> None:
     checked(equipoise("analyze", name, *words, *output), bool(output))
 
 
-RESPOND = (
-    ("--speed", ("1e29 rpm", "-1e-29 rpm", "0 rpm", "1e-29:1e29 rpm", "-3:-300 rpm", "9:8 rpm",
-                 "1:2:3 rpm", "5:6", ":", "x")),
-    ("--speeds", ("0", "2", "-1", "9", "1e9", "20001", "x")),
-    ("--model", ("linear", "torque", "moment", "best", "")),
-    ("--units", ("", "um, rad/s", "kg", ",", "mm, mm", "[bold]")),
-    ("--csv", ("result.csv", "", ".")),
-)  # fmt: skip
+SPEEDS = {
+    "--speed": ("1e29 rpm", "-1e-29 rpm", "0 rpm", "1e-29:1e29 rpm", "-3:-300 rpm", "9:8 rpm",
+                "1:2:3 rpm", "5:6", ":", "x", ""),
+    "--speeds": ("0", "2", "-1", "9", "1e9", "20001", "x"),
+    "--model": ("linear", "torque", "moment", "best", ""),
+    "--units": ("", "um, rad/s", "kg", ",", "mm, mm", "[bold]"),
+    "--csv": ("result.csv", "", "."),
+}  # fmt: skip
+CARRIED_ONES = ("yamashita-rig", "walking-transplanter", "riding-transplanter", "lee-kim-a")
 
 
-@given(
-    st.sampled_from(("yamashita-rig", "walking-transplanter", "riding-transplanter", "lee-kim-a")),
-    st.tuples(*(st.none() | st.sampled_from(values) for _, values in RESPOND)),
-)
+@given(st.sampled_from(CARRIED_ONES), some_of(SPEEDS))
 @fuzz(60)
-def test_extreme_speeds(name: str, chosen: tuple[str | None, ...]) -> None:
-    pairs = ((key, value) for (key, _), value in zip(RESPOND, chosen, strict=True) if value)
-    words = [word for pair in pairs for word in pair]
+def test_extreme_speeds(name: str, words: list[str]) -> None:
     result = equipoise("respond", name, *words, "--json")
     if result.err != "wrote result.csv\n":
         checked(result, True)

@@ -151,7 +151,7 @@ class Balanced(Result):
             motion = move(machine, angles, acceleration=0.0)
             columns += [
                 (f"{one.name}.{name}", one.unit, one.values)
-                for one in Outputs.of(Analysis(motion, forces(motion))).ordered
+                for one in Outputs(Analysis(motion, forces(motion))).ordered
                 if one.declared.compared
             ]
         return columns
@@ -313,7 +313,7 @@ def figures_of(machine: Machine) -> dict[str, float]:
     """
     motion = move(machine, ANGLES, acceleration=0.0)
     figures = {"mass": machine.mass}
-    for one in Outputs.of(Analysis(motion, forces(motion))):
+    for one in Outputs(Analysis(motion, forces(motion))):
         for measure in one.declared.compared if one.declared.needs == "masses" else ():
             figures[f"{one.name}.{measure}"] = measured(one.component, measure)
     return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)

@@ -30,9 +30,9 @@ MODULES = {
     "files": ["check", "examples", "new", "schema", "serve"],
     "handheld:app": ["tool"],
     "linkage": ["analyze", "modes", "respond", "simulate"],
+    "linkage:planting": ["plant"],
     "measured": ["decay", "exposure"],
     "pictures:app": ["plot"],
-    "planting:app": ["plant"],
     "reports": ["animate", "report"],
     "sweep": ["resume", "sweep", "tolerance"],
 }

@@ -1,20 +1,25 @@
-"""The commands `analyze`, and `modes`, `respond` and `simulate` of a machine on its support."""
+"""Commands of a linkage: `analyze`; `modes`, `respond`, `simulate` on its support; `plant`."""
 
 from __future__ import annotations
 
 import re
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
-from cyclopts import Parameter
+from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
     Angle,
+    CrankZero,
     File,
     Model,
+    Out,
+    PlantingFile,
     ShownIn,
     Speed,
     SupportFile,
     Text,
+    blaming,
     check_belonging,
     count,
     ends_of_range,
@@ -29,18 +34,21 @@ from equipoise.cli.outputs import (
     Drawn,
     Outputs,
     Printed,
+    check_new,
     check_result_file,
     sources_of,
+    write_model,
     write_text,
 )
-from equipoise.cli.progress import counted
+from equipoise.cli.progress import counted, generations
 from equipoise.errors import EquipoiseError, UsageError
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.vibration.response import Response
 
-MOST_ORDERS = 100
+planting = App(name="plant")
+MOST_ORDERS, MOST = 100, 999_999_999
 QUICK = 40
 """Free swings of the support in a turn, up to which the exact model answers in a moment."""
 
@@ -244,3 +252,93 @@ def simulate(
     with naming(file):
         found = transient.simulate(machine, duration, speed, drive)
     outputs.give(found, units)
+
+
+# -- planting --------------------------------------------------------------------------------------
+
+
+@planting.default
+def plant(
+    file: PlantingFile,
+    /,
+    *,
+    speed: Speed = None,
+    crank_zero: CrankZero = None,
+    angles: Annotated[int | None, count(0, MOST)] = None,
+    units: ShownIn = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """The path of a planting finger relative to machine and ground, and every figure of it.
+
+    Parameters
+    ----------
+    angles
+        With --csv: number of crank angles a turn, 360 if not given.
+    """
+    from equipoise.planting.summary import plant as read_off
+    from equipoise.planting.summary import table
+
+    check_belonging("--csv", outputs.csv is not None, angles=angles)
+    machine = linkage_of(file, speed)
+    outputs.check(sources_of(machine, file))
+    with naming(file):
+        figures = read_off(machine)
+        outputs.write(lambda: table(figures, 360 if angles is None else angles))
+    outputs.draw_result(figures)
+    outputs.show(figures, units, zero=crank_zero or 0.0)
+
+
+@planting.command
+def fit(
+    file: PlantingFile,
+    targets: Annotated[str, Parameter(name="TARGETS")],
+    /,
+    *,
+    out: Out = None,
+    seed: int | None = None,
+    speed: Speed = None,
+    units: ShownIn = None,
+    outputs: Outputs = Outputs(),
+) -> None:
+    """Look for the geometry that meets targets and limits, and write it as a new model file.
+
+    Parameters
+    ----------
+    targets
+        A TOML file with what is wanted, and what may change.
+    out
+        The new model file; FILE-fit.toml beside you if not given.
+    seed
+        Of the random numbers, instead of the target file's.
+    """
+    from equipoise.planting.goals import figure_names
+    from equipoise.planting.search import fit_planting
+    from equipoise.planting.summary import table
+    from equipoise.schema.files import printable
+    from equipoise.schema.targets import read_targets
+
+    if seed is not None and seed < 0:
+        raise UsageError(f"--seed: got {seed}; give 0 or more")
+    machine = linkage_of(file, speed)
+    new = out if out is not None else f"{Path(file).stem}-fit.toml"
+    check_new(machine, new)
+    outputs.check(sources_of(machine, file), [targets, new])
+    with naming(file):
+        known = figure_names(machine)
+    given = read_targets(targets, known)
+    with naming(file), generations() as progress, blaming(printable(targets)):
+        fitted = fit_planting(
+            machine,
+            given.goals,
+            given.vary,
+            given.search.crank,
+            seed=given.search.seed if seed is None else seed,
+            generations=given.search.generations,
+            population=given.search.population,
+            progress=progress,
+        )
+    origin = f"Geometry found by equipoise plant fit {Path(targets).name}, seed {fitted.seed}."
+    write_model(fitted.machine, new, ", fitted", origin)
+    outputs.write(lambda: table(fitted.after))
+    outputs.draw_result(fitted.after)
+    outputs.show(fitted, units)

@@ -87,8 +87,6 @@ class ToolExposure(Result):
     grips : by station.
     named : what a speed that the tool names is called, with its grips there.
     days : the day's exposure of each hand; empty where no work is told.
-    equivalents : idling and racing as one value by ISO 22867, m/s2, of each hand; empty where the
-        file does not tell both speeds.
     """
 
     shown_in = "handheld.hand_blocks"
@@ -97,7 +95,6 @@ class ToolExposure(Result):
     grips: Mapping[str, Grip]
     named: Mapping[str, Mapping[str, Grip]]
     days: Mapping[str, Exposure]
-    equivalents: Mapping[str, float]
 
     @property
     def speed(self) -> Array:
@@ -108,6 +105,14 @@ class ToolExposure(Result):
     def a_hv(self) -> Array:
         """Total value (S,) of the hand that gets most, m/s2."""
         return np.asarray(np.max([grip.a_hv for grip in self.grips.values()], axis=0))
+
+    @property
+    def equivalents(self) -> dict[str, float]:
+        """Idling and racing as one value by ISO 22867, m/s2, of each hand; of both, or none."""
+        if not {IDLING, RACING} <= set(self.named):
+            return {}
+        modes = self.named[IDLING], self.named[RACING]
+        return {name: equivalent(*(float(one[name].a_hv[0]) for one in modes)) for name in modes[0]}
 
     @property
     def worst(self) -> str | None:
@@ -139,7 +144,7 @@ class ToolExposure(Result):
                 for what, part in self.named.items()
             },
             "days": {name: day.to_dict() for name, day in self.days.items()},
-            "equivalents": dict(self.equivalents),
+            "equivalents": self.equivalents,
         }
 
 
@@ -158,13 +163,12 @@ def expose_tool(tool: Tool, speeds: Array, duration: float | None = None) -> Too
         if operation is None:
             raise ModelError("operation", NO_OPERATION)
         work = (Work("work", operation.speed, duration),)
-    named = {}
+    told = {}
     if operation is not None:
         told = {WORKING: operation.speed, IDLING: operation.idling, RACING: operation.racing}
-        for what, speed in told.items():
-            if speed is not None:
-                named[what] = grips(respond_tool(tool, speed))
-    return ToolExposure(response, grips(response), named, _days(tool, work), _equivalents(named))
+    at = ((what, speed) for what, speed in told.items() if speed is not None)
+    named = {what: grips(respond_tool(tool, speed)) for what, speed in at}
+    return ToolExposure(response, grips(response), named, _days(tool, work))
 
 
 def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
@@ -177,17 +181,6 @@ def _days(tool: Tool, work: tuple[Work, ...]) -> dict[str, Exposure]:
             for part, a_hv in zip(work, grip.a_hv, strict=True)
         )
         for name, grip in at.items()
-    }
-
-
-def _equivalents(named: Mapping[str, Mapping[str, Grip]]) -> dict[str, float]:
-    """Idling and racing as one value of each hand, where the tool names both."""
-    if IDLING not in named or RACING not in named:
-        return {}
-    idling, racing = named[IDLING], named[RACING]
-    return {
-        name: equivalent(float(idling[name].a_hv[0]), float(racing[name].a_hv[0]))
-        for name in idling
     }
 
 

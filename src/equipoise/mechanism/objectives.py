@@ -33,7 +33,11 @@ MEASURES: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak", "area"
 area under the absolute value over one turn of the crank."""
 MEASURED_IN: tuple[Dimension, ...] = ("force", "torque", "energy", "length", "angle")
 """What measures of outputs can be."""
-OF_ROWS = ("roll_moment", "yaw_moment")
+OF_ROWS = tuple(
+    name.removeprefix("rows.")
+    for name, one in DECLARED.items()
+    if one.needs == "rows" and name.removeprefix("rows.") not in DECLARED
+)
 """About x and y, from linkages side by side."""
 JOINTS, GAUGES = "joints.", "gauges."
 OF_NUMBERS = ("ripple", "peak_to_peak", "area")

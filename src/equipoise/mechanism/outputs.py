@@ -32,6 +32,8 @@ FORCE: tuple[Measure, ...] = ("rms", "peak")
 MOMENT: tuple[Measure, ...] = ("rms", "peak", "area")
 TORQUE: tuple[Measure, ...] = ("rms", "ripple", "peak", "peak_to_peak")
 """Measures that are told of an output before and after balancing."""
+XY, FORCES = (".x", ".y"), (".force_x", ".force_y")
+"""Components of vectors, behind their names."""
 
 
 # -- members of families ---------------------------------------------------------------------------
@@ -64,9 +66,6 @@ def joint_named(name: str) -> str:
     """A joint in words; a slider, such as ``ram on frame``, by its link and what it slides on."""
     link, _, on = name.partition(" on ")
     return say("{link} on {on}", link=link, on=body_named(on)) if on else name
-
-
-XY = (".x", ".y")
 
 
 def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
@@ -209,7 +208,6 @@ of_joint = _alike(
     lambda name, found, joint: _members(found.forces.joints, name, joint),
     spoken=joint_named,
 )
-FORCES = (".force_x", ".force_y")
 of_joint(
     "",
     "force",

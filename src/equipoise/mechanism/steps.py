@@ -15,7 +15,7 @@ Names of values in a state
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import reduce
 from typing import Any, Literal, Protocol
@@ -308,16 +308,13 @@ def planar(place: Vector) -> complex:
 
 def size_of_bodies(machine: Machine) -> Any:
     """Size of the largest body, m; 1 where all are points.  A column where some numbers are."""
-    bodies = [machine.frame, *(link.points for link in machine.links.values())]
-    size = reduce(np.maximum, map(_size, bodies))
+    sizes = []
+    for points in machine.bodies.values():
+        xs, ys = zip(*points.values(), strict=True)
+        spans = (reduce(np.maximum, v) - reduce(np.minimum, v) for v in (xs, ys))
+        sizes.append(np.hypot(*spans))
+    size = reduce(np.maximum, sizes)
     return size + (size == 0)
-
-
-def _size(points: Mapping[str, Vector]) -> Any:
-    """Diagonal of the rectangle around some points, m, as `model.size_of`; of columns too."""
-    xs, ys = zip(*points.values(), strict=True)
-    spans = (reduce(np.maximum, values) - reduce(np.minimum, values) for values in (xs, ys))
-    return np.hypot(*spans)
 
 
 def demand_names(link: str) -> tuple[str, str]:

@@ -5,69 +5,32 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from math import pi
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
-from equipoise.i18n import say, to_say
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.outputs import joint_named
-from equipoise.planting.goals import dimension_of
+from equipoise.planting.names import (
+    EXTREMES,
+    FIGURES,
+    INSTANTS,
+    OF_AN_INSTANT,
+    OTHERS,
+    PATH,
+    SOIL,
+    Named,
+    dimension_of,
+    figure_named,
+)
 from equipoise.planting.stroke import finger_base
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
+    from equipoise.planting.search import Fit
     from equipoise.planting.summary import PlantingFigures
 
-INSTANTS = {
-    "pick_up": to_say("pick-up"),
-    "entry": to_say("entry"),
-    "lowest": to_say("lowest point"),
-    "release": to_say("release"),
-    "exit": to_say("exit"),
-    "highest": to_say("highest point"),
-}
-"""Columns of the table of instants; it begins with the first that there is."""
-OF_AN_INSTANT = {
-    "x": to_say("x"),
-    "y": to_say("y"),
-    "velocity.x": to_say("velocity x"),
-    "velocity.y": to_say("velocity y"),
-    "velocity.size": to_say("velocity"),
-    "velocity.direction": to_say("direction of velocity"),
-    "acceleration.x": to_say("acceleration x"),
-    "acceleration.y": to_say("acceleration y"),
-    "acceleration.size": to_say("acceleration"),
-    "acceleration.direction": to_say("direction of acceleration"),
-    "ground_velocity.x": to_say("over ground: velocity x"),
-    "ground_velocity.size": to_say("over ground: velocity"),
-    "ground_velocity.direction": to_say("over ground: direction"),
-    "attitude": to_say("attitude of the finger"),
-}
-PATH = {
-    "curve.height": to_say("height of the curve"),
-    "curve.width": to_say("width of the curve"),
-    "curve.length": to_say("length of the curve"),
-    "curve.lift": to_say("rise above the soil"),
-    "curve.smallest_radius.value": to_say("smallest radius of the curve"),
-    "ground.smallest_radius.value": to_say("smallest radius over ground"),
-    "hill_spacing": to_say("distance of hills"),
-    "planting_frequency": to_say("planting frequency"),
-}
-SOIL = {
-    "soil.depth": to_say("depth in the soil"),
-    "soil.crank_travel": to_say("crank travel in the soil"),
-    "soil.time": to_say("time in the soil"),
-    "soil.path_length_ground": to_say("path in the soil over ground"),
-    "soil.path_length_machine": to_say("path in the soil relative to the machine"),
-    "soil.ground_distance": to_say("ground distance from entry to exit"),
-    "soil.hole_length": to_say("length of the hole at the surface"),
-    "soil.max_acceleration.value": to_say("largest acceleration in the soil"),
-}
-EXTREMES = {
-    "max_speed": to_say("largest velocity of the tip"),
-    "min_speed": to_say("smallest velocity of the tip"),
-    "max_acceleration": to_say("largest acceleration of the tip"),
-    "min_acceleration": to_say("smallest acceleration of the tip"),
-}
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
 DRIVEN = (
     to_say(
@@ -93,10 +56,8 @@ class Page:
         """A figure with its dimension; None where there is none."""
         return cell(self.get(name), name, scale)
 
-    def turned(self, value: float | None) -> Value | None:
+    def turned(self, value: float) -> Value:
         """A crank angle, from `zero` on."""
-        if value is None:
-            return None
         return Value(self.from_zero(value), after=2, dimension="angle")
 
     def from_zero(self, value: float) -> float:
@@ -115,12 +76,13 @@ class Page:
 
 def cell(value: float | None, name: str, scale: float = 0.0) -> Value | None:
     """A figure with its dimension, by its name."""
-    if value is None:
-        return None
-    kind = cast("Dimension | None", dimension_of(name))
-    after = 2 if kind == "angle" else None
+    return None if value is None else quantity(value, dimension_of(name), scale)
+
+
+def quantity(value: float, kind: Dimension | None, scale: float = 0.0) -> Value:
+    """A number of some dimension, in the unit in which it is told."""
     unit = None if kind is None else UNITS.get(kind)
-    return Value(value, scale, after=after, dimension=kind, unit=unit)
+    return Value(value, scale, after=2 if kind == "angle" else None, dimension=kind, unit=unit)
 
 
 def planting_blocks(figures: PlantingFigures, zero: float = 0.0) -> Iterator[Block]:
@@ -164,17 +126,17 @@ def _instants(page: Page) -> Table:
     if page.figures.planting.release is None:
         names.remove("release")
     names = _in_time(page, names)
-    angles = (page.turned(page.get(f"{name}.crank_angle")) for name in names)
+    angles = (page.turned(page.figures[f"{name}.crank_angle"]) for name in names)
     rows: list[tuple[Cell, ...]] = [(say("crank angle"), *angles)]
-    for key, label in OF_AN_INSTANT.items():
+    for key, one in OF_AN_INSTANT.items():
         still = key.startswith("ground_velocity") and not page.figures["forward_speed"]
-        if still or page.get(f"entry.{key}") is None:
+        if key == "crank_angle" or still or page.get(f"entry.{key}") is None:
             continue
         size = key.partition(".")[0]
         height = page.figures["curve.height"] if key in ("x", "y") else 0.0
         scales = [page.get(f"{name}.{size}.size") or height for name in names]
         pairs = zip(names, scales, strict=True)
-        rows.append((say(label), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
+        rows.append((say(one.words), *(page.cell(f"{name}.{key}", scale) for name, scale in pairs)))
     title = say("Instants; relative to the machine where nothing else is said, directions from x")
     columns = (Column(""), *(Column(say(INSTANTS[name])) for name in names))
     return Table(title, columns, tuple(rows))
@@ -188,10 +150,10 @@ def _in_time(page: Page, names: list[str]) -> list[str]:
     return sorted(names, key=lambda name: round(ways[name] - start, 9) % period)
 
 
-def _values(title: str, labels: dict[str, str], page: Page) -> Table:
+def _values(title: str, figures: dict[str, Named], page: Page) -> Table:
     rows = tuple(
-        (say(label), page.cell(name))
-        for name, label in labels.items()
+        (say(one.words), page.cell(name))
+        for name, one in figures.items()
         if page.get(name) is not None
     )
     return Table(title, (Column(""), Column(say("value"))), rows)
@@ -200,11 +162,11 @@ def _values(title: str, labels: dict[str, str], page: Page) -> Table:
 def _extremes(page: Page) -> Table:
     rows = tuple(
         (
-            say(label),
+            say(one.words),
             page.at(f"{name}.value", f"{name}.crank_angle"),
             page.cell(f"{name}.direction"),
         )
-        for name, label in EXTREMES.items()
+        for name, one in EXTREMES.items()
     )
     columns = (Column(""), Column(say("value")), Column(say("direction"), "angle"))
     return Table(say("Extremes relative to the machine, at crank angle"), columns, rows)
@@ -233,7 +195,7 @@ def _visits(page: Page) -> Iterator[Block]:
 
 
 def _loops(page: Page) -> Iterator[Block]:
-    rows = tuple(
+    rows: tuple[tuple[Cell, ...], ...] = tuple(
         (
             page.turned(loop.first),
             page.turned(loop.second),
@@ -309,4 +271,79 @@ def _forces(page: Page) -> Iterator[Block]:
     yield Table(title, tuple(map(Column, labels)), tuple(rows))
 
 
-SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks}
+# -- a search of geometry --------------------------------------------------------------------------
+
+
+def fit_blocks(fit: Fit) -> Iterator[Block]:
+    """Goals, what was changed for them, and the figures before and after."""
+    yield Text(say("{count} designs judged, seed {seed}", count=fit.judged, seed=fit.seed))
+    yield _goals(fit)
+    yield _changes(fit)
+    yield _figures(fit)
+    missed = [figure_named(name) for name, met in fit.met.items() if not met]
+    notes: list[Note | str] = [*fit.after.notes, *remarks(assemble(fit.machine))]
+    if missed:
+        template = to_say(
+            "not met: {names}; widen the limits of [vary], loosen the goals, or try another seed"
+        )
+        notes.append(Note(template, names=", ".join(missed)))
+    if notes:
+        yield Notes(tuple(notes))
+
+
+def _told(figures: PlantingFigures | None, name: str) -> Cell:
+    value = None if figures is None else figures.figures.get(name)
+    return say("none") if value is None else _figure(value, name)
+
+
+def _figure(value: float, name: str) -> Value:
+    kind = dimension_of(name)
+    return Value(value, after=4) if kind is None else quantity(value, kind)
+
+
+def _goals(fit: Fit) -> Table:
+    words = {True: say("yes"), False: say("no"), None: ""}
+    rows: list[tuple[Cell, ...]] = []
+    for goal in fit.goals:
+        name, met = goal.figure, fit.met.get(goal.figure)
+        limits = (goal.target, goal.at_least, goal.at_most)
+        wanted = (None if value is None else _figure(value, name) for value in limits)
+        before, after = _told(fit.before, name), _told(fit.after, name)
+        if met is False and isinstance(after, Value):  # stands out
+            after = replace(after, broken=True)
+        rows.append((figure_named(name), goal.make or "", *wanted, before, after, words[met]))
+    labels = (
+        *("", say("make"), say("wanted"), say("at least"), say("at most")),
+        *(say("before"), say("after"), say("met")),
+    )
+    filled = [any(row[k] not in (None, "") for row in rows) for k in range(len(labels))]
+    kept = [k for k, full in enumerate(filled) if full or k in (0, 5, 6, 7)]
+    columns = tuple(Column(labels[k]) for k in kept)
+    return Table(say("Goals"), columns, tuple(tuple(row[k] for k in kept) for row in rows))
+
+
+def _changes(fit: Fit) -> Table:
+    rows: list[tuple[Cell, ...]] = []
+    for one in fit.designs.variables:
+        values = (one.start, fit.values[one.name], one.low, one.high)
+        rows.append((one.name, *(quantity(value, one.dimension) for value in values)))
+    old, new = fit.designs.machine.drive.speed, fit.machine.drive.speed
+    if old != new:
+        pair = (quantity(speed, "angular speed") for speed in (old, new))
+        rows.append((say("crank speed"), *pair, None, None))
+    labels = ("", say("before"), say("after"), say("lowest allowed"), say("highest allowed"))
+    return Table(say("Changes"), tuple(map(Column, labels)), tuple(rows))
+
+
+def _figures(fit: Fit) -> Table:
+    asked = {goal.figure for goal in fit.goals}
+    rows: list[tuple[Cell, ...]] = []
+    for name in (*FIGURES, *OTHERS):
+        known = [f for f in (fit.before, fit.after) if f is not None and name in f.figures]
+        if name not in asked and known:
+            rows.append((figure_named(name), _told(fit.before, name), _told(fit.after, name)))
+    columns = (Column(""), Column(say("before")), Column(say("after")))
+    return Table(say("Other figures"), columns, tuple(rows))
+
+
+SHOWS: dict[str, Any] = {"PlantingFigures": planting_blocks, "Fit": fit_blocks}

@@ -55,8 +55,6 @@ class Fit(Result):
     judged : number of designs.  seed : of the random numbers.
     """
 
-    shown_in = "planting.search_blocks"
-
     machine: Machine
     before: PlantingFigures | None
     after: PlantingFigures

@@ -23,9 +23,7 @@ def show(
     units : that are chosen, by dimension, such as ``{"length": "cm"}``.
     options : of the result's `blocks`.
     """
-    from equipoise.present.terminal import print_blocks
-
-    print_blocks(result.title, result.blocks(**options), width, units)
+    show_blocks(result.title, result.blocks(**options), width, units)
 
 
 def show_blocks(
@@ -45,6 +43,6 @@ def show_blocks(
 
 def html_of(result: Result) -> str:
     """What a result shows as a part of a page; a notebook asks for it."""
-    from equipoise.present.pages import html_of as rendered
+    from equipoise.present import pages
 
-    return rendered(result)
+    return pages.html_of(result)

@@ -264,20 +264,15 @@ def read_units(text: str) -> dict[Dimension, str]:
     ------
     UsageError : there is no such unit, or there are two of a dimension.
     """
+    kinds = {unit: kind for kind in reversed(PRINTED) for unit in KINDS[kind].units}
     given: dict[Dimension, str] = {}
-    for unit in filter(None, (part.strip() for part in text.split(","))):
-        dimension = _dimension(unit)
-        if given.setdefault(dimension, unit) != unit:
+    for unit in filter(None, map(str.strip, text.split(","))):
+        if unit not in kinds:
+            known = ", ".join(unit for kind in PRINTED for unit in KINDS[kind].units)
+            raise UsageError(f"--units: got {unit!r}; choose among {known}")
+        kind = kinds[unit]
+        if given.setdefault(kind, unit) != unit:
             raise UsageError(
-                f"--units: got {given[dimension]!r} and {unit!r}, both units of {dimension}; "
-                "give one"
+                f"--units: got {given[kind]!r} and {unit!r}, both units of {kind}; give one"
             )
     return given
-
-
-def _dimension(unit: str) -> Dimension:
-    for dimension in PRINTED:
-        if unit in KINDS[dimension].units:
-            return dimension
-    known = (unit for dimension in PRINTED for unit in KINDS[dimension].units)
-    raise UsageError(f"--units: got {unit!r}; choose among {', '.join(known)}")

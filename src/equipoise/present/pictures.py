@@ -262,7 +262,9 @@ def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings
     together : whether a copy of this process may draw half of them, where there are two processors,
         Linux, and no other thread, which the copy would lack.
     """
-    other = _others(found) if together and _may_fork() else ()
+    processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
+    may_fork = together and processors > 1 and threading.active_count() == 1
+    other = _others(found) if may_fork else ()
     if not other:
         return _draw(found, SECTIONS)
     _ = found.notes  # everything that both need is computed once
@@ -284,11 +286,6 @@ def drawings(found: Findings | ToolFindings, together: bool = False) -> Drawings
     finally:
         helper.kill()
         helper.join()
-
-
-def _may_fork() -> bool:
-    processors = len(os.sched_getaffinity(0)) if sys.platform == "linux" else 1
-    return processors > 1 and threading.active_count() == 1
 
 
 def _others(found: Findings | ToolFindings) -> Collection[str]:

@@ -69,7 +69,7 @@ class Analysis(Result):
     @cached_property
     def outputs(self) -> Outputs:
         """Every output of motion and forces, by name."""
-        return Outputs.of(self)
+        return Outputs(self)
 
     @cached_property
     def summary(self) -> Mapping[str, Figures]:

@@ -103,11 +103,6 @@ class Outputs:
                     if item in items:
                         self._found[one.named(item)] = Output(one, item, analysis)
 
-    @classmethod
-    def of(cls, analysis: Any) -> Outputs:
-        """The outputs of an analysis."""
-        return cls(analysis)
-
     def __iter__(self) -> Iterator[Output]:
         return iter(self._found.values())
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from importlib import import_module
 from numbers import Number
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol, cast
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
@@ -20,6 +20,15 @@ if TYPE_CHECKING:
 
 Values = dict[str, Any]
 PLAIN = (str, int, float, np.ndarray)
+
+
+Along = tuple[tuple[str, ...], Array]
+"""Names of the axes of an array, and the array."""
+
+ABSCISSAE = {"time": "s", "crank_angle": "rad", "speed": "rad/s", "places": "m"}
+ABSCISSAE |= {"orders": "", "values": ""}
+"""What arrays are told along, and its SI unit; the first of them that an array has beside it, or
+beside what it stands in."""
 
 
 class Result:
@@ -69,12 +78,52 @@ class Result:
         }
 
     def to_dataset(self) -> xarray.Dataset:
-        """Its arrays as an `xarray.Dataset`, by dotted path; loads xarray."""
-        return dataset_of(self)
+        """Its arrays as an `xarray.Dataset`, by dotted path along their abscissae; loads xarray.
+
+        Everything else is told as attributes.
+        """
+        import xarray
+
+        arrays, attributes = _split(self)
+        columns = self.columns()
+        units = ABSCISSAE | {name: unit for name, unit, _ in columns}
+        if columns and columns[0][0] not in arrays and not self.records:
+            arrays |= {name: ((columns[0][0],), values) for name, _, values in columns}
+        found = {
+            path: (axes, values, {"units": units[path]} if units.get(path) else {})
+            for path, (axes, values) in arrays.items()
+        }
+        ticks = {path: found.pop(path) for path, (axes, _) in arrays.items() if axes == (path,)}
+        return xarray.Dataset(found, ticks, attrs=attributes)
 
     def to_frame(self) -> pandas.DataFrame:
-        """Its arrays as columns of a `pandas.DataFrame`; loads pandas."""
-        return frame_of(self)
+        """The columns of its CSV file where it has one, over the first of them; loads pandas.
+
+        Else a row for each of its records, or for each place along what all is told along, with
+        columns by dotted path, those of a table (N, K) by its path and a number.  What is told
+        along nothing gives one row.
+        """
+        import pandas
+
+        columns = self.columns()
+        if columns and not self.records:
+            (first, _, index), *rest = columns
+            frame = {name: values for name, _, values in rest}
+            return pandas.DataFrame(frame, pandas.Index(index, name=first))
+        arrays, attributes = _split(self)
+        along = self.records or next((name for name in ABSCISSAE if name in arrays), "")
+        flat = {
+            name: values
+            for path, (axes, table) in arrays.items()
+            if along in axes and path != along
+            for name, values in _flat(path, np.moveaxis(table, axes.index(along), 0))
+        }
+        if along in arrays:
+            return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=along))
+        if flat:
+            return pandas.DataFrame(flat)
+        row = {path: value for path, value in attributes.items() if not isinstance(value, list)}
+        return pandas.DataFrame([row])
 
     def plot(self, *names: str) -> Any:
         """Its pictures by name, all if none is named, as `matplotlib.figure.Figure`s."""
@@ -94,79 +143,6 @@ def _room(name: str) -> Any:
     return import_module(f"equipoise.{name}")
 
 
-Along = tuple[tuple[str, ...], Array]
-"""Names of the axes of an array, and the array."""
-
-ABSCISSAE = {
-    "time": "s",
-    "crank_angle": "rad",
-    "speed": "rad/s",
-    "places": "m",
-    "orders": "",
-    "values": "",
-}
-"""What arrays are told along, and its SI unit; the first of them that an array has beside it, or
-beside what it stands in."""
-
-
-class Tabular(Protocol):
-    """What a result has to have for tables of it; see `equipoise.results.result.Result`."""
-
-    @property
-    def records(self) -> str: ...
-
-    def to_dict(self) -> dict[str, Any]: ...
-
-    def columns(self) -> Sequence[tuple[str, str, Any]]: ...
-
-
-def dataset_of(result: Tabular) -> xarray.Dataset:
-    """Arrays by dotted path along their abscissae; everything else as attributes."""
-    import xarray
-
-    arrays, attributes = _split(result)
-    columns = result.columns()
-    units = ABSCISSAE | {name: unit for name, unit, _ in columns}
-    if columns and columns[0][0] not in arrays and not result.records:
-        arrays |= {name: ((columns[0][0],), values) for name, _, values in columns}
-    found = {
-        path: (axes, values, {"units": units[path]} if units.get(path) else {})
-        for path, (axes, values) in arrays.items()
-    }
-    ticks = {path: found.pop(path) for path, (axes, _) in arrays.items() if axes == (path,)}
-    return xarray.Dataset(found, ticks, attrs=attributes)
-
-
-def frame_of(result: Tabular) -> pandas.DataFrame:
-    """The columns of its CSV file where it has one, over the first of them.
-
-    Else a row for each of its records, or for each place along what all is told along, with columns
-    by dotted path, those of a table (N, K) by its path and a number.  What is told along nothing
-    gives one row.
-    """
-    import pandas
-
-    columns = result.columns()
-    if columns and not result.records:
-        (first, _, index), *rest = columns
-        frame = {name: values for name, _, values in rest}
-        return pandas.DataFrame(frame, pandas.Index(index, name=first))
-    arrays, attributes = _split(result)
-    along = result.records or next((name for name in ABSCISSAE if name in arrays), "")
-    flat = {
-        name: values
-        for path, (axes, table) in arrays.items()
-        if along in axes and path != along
-        for name, values in _flat(path, np.moveaxis(table, axes.index(along), 0))
-    }
-    if along in arrays:
-        return pandas.DataFrame(flat, pandas.Index(arrays[along][1], name=along))
-    if flat:
-        return pandas.DataFrame(flat)
-    row = {path: value for path, value in attributes.items() if not isinstance(value, list)}
-    return pandas.DataFrame([row])
-
-
 def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:
     """Columns (N,) of an array (N, ...), the last of whose axes may be several."""
     if values.ndim == 1:
@@ -179,7 +155,7 @@ def _flat(path: str, values: Array) -> Iterator[tuple[str, Array]]:
 # -- paths -----------------------------------------------------------------------------------------
 
 
-def _split(result: Tabular) -> tuple[dict[str, Along], dict[str, Any]]:
+def _split(result: Result) -> tuple[dict[str, Along], dict[str, Any]]:
     """Arrays with their axes, and what is no array, by dotted path."""
     arrays: dict[str, Array] = {}
     attributes: dict[str, Any] = {}
@@ -244,17 +220,11 @@ def _axes(
 ) -> tuple[str, ...]:
     """Names of the axes of an array; what stands nearest of an abscissa goes before others."""
     axes: list[str] = [] if record is None else [record]
-    for k in range(len(axes), values.ndim):
-        beside = (
-            f"{scope}{name}"
-            for name in ABSCISSAE
-            for scope in _scopes(path)
-            if f"{scope}{name}" not in axes
-        )
-        own = f"{path}.index_{k}"
-        size = values.shape[k]
+    beside = [f"{scope}{name}" for name in ABSCISSAE for scope in _scopes(path)]
+    for k, size in list(enumerate(values.shape))[len(axes) :]:
         fitting = (one for one in beside if one in single and len(single[one]) == size)
-        axes.append(next(fitting, own))
+        free = (one for one in fitting if one not in axes)
+        axes.append(next(free, f"{path}.index_{k}"))
     return tuple(axes)
 
 

@@ -26,7 +26,8 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.model import unknown
 from equipoise.planting.designs import Sense
-from equipoise.planting.goals import Goal, dimension_of
+from equipoise.planting.goals import Goal
+from equipoise.planting.names import dimension_of
 from equipoise.planting.search import GENERATIONS, POPULATION
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import si_value

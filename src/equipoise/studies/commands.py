@@ -146,22 +146,25 @@ class Request:
         return {str(one[0]) for one in self.steps} | along
 
 
-def find_outputs(study: Study, outputs: Sequence[Output]) -> tuple[Request, ...]:
-    """Find some outputs of a study once, on its model, before time is spent on designs.
+def find_outputs(study: Study, wanted: Sequence[int] | None = None) -> tuple[Request, ...]:
+    """Find outputs of a study once, on its model, before time is spent on designs.
+
+    wanted : numbers of the outputs, among which the columns count; None for all.
 
     Raises
     ------
     ModelError : an output leads to no number, or the model cannot be computed; `where` is the key
         of the study file.
     """
-    commands = dict.fromkeys(output.of for output in outputs)
-    return tuple(asked for command in commands for asked in _of_command(study, outputs, command))
+    numbers = range(len(study.outputs)) if wanted is None else wanted
+    commands = dict.fromkeys(study.outputs[number].of for number in numbers)
+    return tuple(asked for command in commands for asked in _of_command(study, numbers, command))
 
 
-def _of_command(study: Study, outputs: Sequence[Output], command: str) -> list[Request]:
+def _of_command(study: Study, numbers: Sequence[int], command: str) -> list[Request]:
     """The steps to all figures of a command, on the model or on one of the first designs."""
-    columns = tuple(k for k, output in enumerate(outputs) if output.of == command)
-    asked = [outputs[k] for k in columns]
+    columns = tuple(k for k, number in enumerate(numbers) if study.outputs[number].of == command)
+    asked = {1 + numbers[k]: study.outputs[numbers[k]] for k in columns}
     first: EquipoiseError | None = None
     for make in _models(study):
         try:
@@ -174,7 +177,7 @@ def _of_command(study: Study, outputs: Sequence[Output], command: str) -> list[R
             if isinstance(steps, ModelError):
                 raise steps
             return _parted(study, model, Request(command, columns, steps))
-    where = f"outputs[{1 + study.outputs.index(asked[0])}].of"
+    where = f"outputs[{min(asked)}].of"
     raise ModelError(where, f"equipoise {command} cannot compute the model: {first}") from first
 
 
@@ -219,24 +222,23 @@ def _models(study: Study) -> Iterator[Callable[[], Machine | Tool]]:
 
 
 def _steps(
-    study: Study, asked: Sequence[Output], model: Machine | Tool, command: str
+    study: Study, asked: Mapping[int, Output], model: Machine | Tool, command: str
 ) -> tuple[tuple[Step, ...], ...] | ModelError:
     """Steps to the figures that a command gives of one machine, or what leads nowhere."""
-    begins = {_FIRST.split(output.value, maxsplit=1)[0] for output in asked}
+    begins = {_FIRST.split(output.value, maxsplit=1)[0] for output in asked.values()}
     values = _values(study, model, command, begins)
     try:
-        return tuple(_resolved(study, values, output) for output in asked)
+        return tuple(_resolved(study, values, output) for output in asked.values())
     except UsageError:  # told again with all that there is
         values = _values(study, model, command, None)
     found = []
-    for output in asked:
+    for number, output in asked.items():
         try:
             found.append(_resolved(study, values, output))
         except UsageError as error:
-            where = f"outputs[{1 + study.outputs.index(output)}].value"
             missing = values.get("missing")
             told = f"got {output.value!r}; there are no forces, {missing}" if missing else error
-            return ModelError(where, str(told))
+            return ModelError(f"outputs[{number}].value", str(told))
     return tuple(found)
 
 

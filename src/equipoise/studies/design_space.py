@@ -65,6 +65,19 @@ class Range:
             )
         return levels
 
+    @property
+    def count(self) -> int:
+        """How many whole numbers there are; 0 where it is any number."""
+        return int(self.high - self.low) + 1 if self.whole else 0
+
+    def place(self, value: float) -> float | None:
+        """Where a value is, between 0 and 1; None where it is beyond the limits."""
+        if not self.low <= value <= self.high:
+            return None
+        if self.whole:
+            return float((value - self.low + 0.5) / (self.high - self.low + 1))
+        return float((value - self.low) / (self.high - self.low))
+
     def at(self, u: Array) -> Array:
         """Values (n,) at places u (n,) between 0 and 1."""
         if self.whole:
@@ -94,10 +107,18 @@ class Choices:
         """Values on a grid, (n,), in the order in which they are given."""
         return np.array(self.values)
 
+    @property
+    def count(self) -> int:
+        """How many values there are."""
+        return len(self.values)
+
+    def place(self, value: float) -> float | None:
+        """Where a value is, between 0 and 1; None where it is not in the list."""
+        return (self.values.index(value) + 0.5) / self.count if value in self.values else None
+
     def at(self, u: Array) -> Array:
         """Values (n,) at places u (n,) between 0 and 1."""
-        count = len(self.values)
-        place = np.minimum((np.asarray(u) * count).astype(np.intp), count - 1)
+        place = np.minimum((np.asarray(u) * self.count).astype(np.intp), self.count - 1)
         chosen: Array = self.levels[place]
         return chosen
 

@@ -8,7 +8,6 @@ of every command, at some milliseconds a design; the other routes take what they
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import isfinite, nan, remainder
 from typing import TYPE_CHECKING, Any, cast
 
@@ -36,7 +35,6 @@ from equipoise.studies.outcomes import Evaluator, Outcome
 
 if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
-    from equipoise.studies.design_space import Model, Output
     from equipoise.studies.study import Study
 
 Array = np.ndarray[Any, Any]
@@ -69,10 +67,7 @@ def evaluator(study: Study, threads: int | None = None) -> Evaluator:
     ModelError : an output cannot be computed of any design.
     """
     quick = _quick(study, threads)
-    if quick is None:
-        return one_by_one(study, study.outputs)
-    others = [output for k, output in enumerate(study.outputs) if k not in quick[1]]
-    return Routes(study, *quick, one_by_one(study, others) if others else None)
+    return OneByOne(study) if quick is None else Routes(study, *quick)
 
 
 class Routes:
@@ -81,11 +76,11 @@ class Routes:
     compiled : whether there is no rest, so that Python's lock is not held.
     """
 
-    def __init__(
-        self, study: Study, quick: Quick, columns: Sequence[int], rest: Evaluator | None
-    ) -> None:
-        self.study, self.quick, self.columns, self.rest = study, quick, list(columns), rest
-        self.compiled = rest is None
+    def __init__(self, study: Study, quick: Quick, columns: Sequence[int]) -> None:
+        self.study, self.quick, self.columns = study, quick, list(columns)
+        self.others = [k for k in range(len(study.outputs)) if k not in columns]
+        self.rest = OneByOne(study, self.others) if self.others else None
+        self.compiled = self.rest is None
 
     @property
     def engine(self) -> str:
@@ -98,12 +93,11 @@ class Routes:
         if self.rest is not None:  # what is left of the designs that are possible
             good = np.flatnonzero(reason == COMPUTED)
             outcome = self.rest(values[good])
-            others = np.setdiff1d(np.arange(found.shape[1]), self.columns)
-            found[good[:, None], others], reason[good] = outcome.figures, outcome.reason
+            found[good[:, None], self.others], reason[good] = outcome.figures, outcome.reason
             found[reason != COMPUTED] = np.nan
         strange = np.flatnonzero(reason == NOT_COMPUTED)
         if strange.size:  # too far from the model for a loop: other turns of a geared link
-            alone = one_by_one(self.study, self.study.outputs)(values[strange])
+            alone = OneByOne(self.study)(values[strange])
             found[strange], reason[strange] = alone.figures, alone.reason
         return Outcome(found, reason)
 
@@ -135,25 +129,20 @@ def _quick(study: Study, threads: int | None) -> tuple[Quick, list[int]] | None:
 # -- one by one ------------------------------------------------------------------------------------
 
 
-def one_by_one(study: Study, outputs: Sequence[Output]) -> Evaluator:
-    """The general route to some outputs of a study, in their order; errors as `find_outputs`."""
-    return _OneByOne(
-        study.model, study.paths, find_outputs(study, outputs), study.angles, study.tolerance
-    )
+class OneByOne:
+    """The general route to outputs of a study, or to those of some numbers, in their order.
 
+    Errors as `find_outputs`.
+    """
 
-@dataclass(frozen=True)
-class _OneByOne:
-    model: Model
-    paths: tuple[str, ...]
-    asked: tuple[Request, ...]
-    angles: int | None
-    tolerance: float
+    def __init__(self, study: Study, wanted: Sequence[int] | None = None) -> None:
+        self.study, self.asked = study, find_outputs(study, wanted)
+        self.width = sum(len(one.columns) for one in self.asked)
 
     def __call__(self, values: Array) -> Outcome:
         """Compute designs (P, d), some at a time."""
-        count = sum(len(one.columns) for one in self.asked)
-        outcome = Outcome(np.full((len(values), count), nan), np.zeros(len(values), np.uint8))
+        figures = np.full((len(values), self.width), nan)
+        outcome = Outcome(figures, np.zeros(len(values), np.uint8))
         with np.errstate(all="ignore"):
             for begin in range(0, len(values), AT_ONCE):
                 some = slice(begin, begin + AT_ONCE)
@@ -181,7 +170,7 @@ class _OneByOne:
     def made(self, row: Sequence[float]) -> Machine | Tool | int:
         """One design, or why it is none."""
         try:
-            model = self.model.machine(dict(zip(self.paths, row, strict=True)))
+            model = self.study.model.machine(dict(zip(self.study.paths, row, strict=True)))
         except EquipoiseError:
             return NO_MACHINE
         try:
@@ -194,7 +183,7 @@ class _OneByOne:
     def ask(self, model: Machine | Tool, asked: Request, figures: Array) -> int:
         """Fill the figures (m,) that one command gives; returns why some are missing."""
         try:
-            found, still = _figures_of(model, asked, self.angles, self.tolerance)
+            found, still = _figures_of(model, asked, self.study)
         except EquipoiseError as error:
             if isinstance(error, ModelError):  # of a machine that is one: it lacks what is asked
                 return NO_FIGURE if asked.command == "plant" else NOT_COMPUTED
@@ -239,10 +228,9 @@ def reason_of(error: EquipoiseError, model: Machine | Tool) -> int:
 # -- figures of one machine ------------------------------------------------------------------------
 
 
-def _figures_of(
-    model: Machine | Tool, asked: Request, angles: int | None, tolerance: float
-) -> tuple[list[float], bool]:
+def _figures_of(model: Machine | Tool, asked: Request, study: Study) -> tuple[list[float], bool]:
     """Figures, and whether they stand still."""
+    angles, tolerance = study.angles, study.tolerance
     if asked.command != "analyze":
         values = COMMANDS[asked.command](model, asked.wanted)
         return [read(values, steps) for steps in asked.steps], True

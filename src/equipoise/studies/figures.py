@@ -18,7 +18,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import declared
-from equipoise.planting.goals import dimension_of as of_planting
+from equipoise.planting.names import dimension_of as of_planting
 from equipoise.signals import figures
 
 if TYPE_CHECKING:

@@ -79,17 +79,18 @@ class Variants:
     model: Model
     given: Mapping[str, float]
 
-    def parameters(self, point: Mapping[str, float]) -> tuple[Machine, Array]:
-        """The machine without counterweights, and inertial parameters (links, 4) with them."""
+    def parameters(self, point: Mapping[str, float]) -> tuple[Machine, dict[str, Array]]:
+        """The machine without counterweights, and inertial parameters (4,) by link with them."""
         values = {**self.given, **point}
         own = {path: v for path, v in values.items() if not COUNTERWEIGHT.fullmatch(path)}
         machine = linkage_of(self.model.machine(own))
-        found = parameter_values(machine).reshape(-1, 4).copy()
+        rows = parameter_values(machine).reshape(-1, 4)
+        found = dict(zip(machine.links, rows, strict=True))
         for link, weight in _weights(values).items():
             pin = complex(*machine.links[link].points[pin_of(machine, link)])
             at = pin + rect(weight["radius"], weight["direction"])
             point_mass = np.array([1.0, at.real, at.imag, abs(at) ** 2])
-            found[[*machine.links].index(link)] += weight["mass"] * point_mass
+            found[link] = found[link] + weight["mass"] * point_mass
         return machine, found
 
     def machine(self, point: Mapping[str, float]) -> Machine:
@@ -99,7 +100,7 @@ class Variants:
             return linkage_of(self.model.machine({**self.given, **point}))
         machine, parameters = self.parameters(point)
         for link in weights:
-            machine = with_parameters(machine, link, parameters[[*machine.links].index(link)])
+            machine = with_parameters(machine, link, parameters[link])
         return machine
 
     def value(self, of: Objective, point: Mapping[str, float]) -> float:
@@ -133,7 +134,7 @@ def linear_value(
         if not _differ_in_masses(base, others, of):
             return None
         machine = base
-        for link, values in zip(base.links, start, strict=True):
+        for link, values in start.items():
             machine = with_parameters(machine, link, values)
         effects = Effects(machine, [LinkParameters(link) for link in base.links])
         (signal,) = signals_of(effects, of, Near(machine))
@@ -142,10 +143,11 @@ def linear_value(
 
     def value(point: Mapping[str, float]) -> float:
         try:
-            changed = maker.parameters(point)[1] - start
+            found = maker.parameters(point)[1]
         except EquipoiseError:
             return nan
-        return measured(signal.at(changed.ravel()), of.measure)
+        changed = np.concatenate([found[link] - own for link, own in start.items()])
+        return measured(signal.at(changed), of.measure)
 
     return value
 

@@ -163,6 +163,54 @@ def _limit(output: Output, unit: str) -> str:
     return f"{text} {unit}".strip()
 
 
+PATIENCE, STILL, MARGIN = 20, 1e-4, 0.1
+"""The search stands still if so many generations have added less than this share of the volume,
+which reaches by a margin beyond the worst of the front."""
+
+
+class Hypervolumes:
+    """How much the front has grown."""
+
+    def __init__(self) -> None:
+        self.fronts: list[Array] = []
+
+    def add(self, costs: Array) -> None:
+        self.fronts.append(costs)
+
+    @property
+    def still(self) -> bool:
+        """Whether the last generations have added next to nothing."""
+        if len(self.fronts) <= PATIENCE or not len(self.fronts[-1 - PATIENCE]):
+            return False
+        before, now = self.fronts[-1 - PATIENCE], self.fronts[-1]
+        if now.shape[1] == 1:
+            gained = float(before[0, 0] - now[0, 0])
+            return gained <= STILL * abs(float(now[0, 0]))
+        old, new = self.volume(before), self.volume(now)
+        return new - old <= STILL * new
+
+    def volume(self, costs: Array) -> float:
+        """Share of a box about the last front that costs (K, M) dominate."""
+        from pymoo.indicators.hv import HV
+
+        last = self.fronts[-1]
+        low, high = last.min(axis=0), last.max(axis=0)
+        wide = np.where(high > low, high - low, 1.0)
+        places = (costs - low) / wide
+        corner = 1 + MARGIN
+        inside = places[np.all(places < corner, axis=1)]
+        if not len(inside):
+            return 0.0
+        return float(HV(ref_point=np.full(len(low), corner))(inside)) / corner ** len(low)
+
+    @property
+    def all(self) -> Array:
+        """Of every generation; NaN where there was no front yet."""
+        if self.fronts[-1].shape[1] == 1:
+            return np.array([f[0, 0] if len(f) else np.nan for f in self.fronts])
+        return np.array([self.volume(f) if len(f) else np.nan for f in self.fronts])
+
+
 # -- how far a run is ------------------------------------------------------------------------------
 
 

@@ -129,9 +129,8 @@ def _fill(store: Store, study: Study, pool: Pool, progress: OnProgress | None) -
         tally, missing = _counted(store, study), store.missing()
         tell = progress or (lambda _: None)
         tell(tally.progress())
-        chunks = computed(pool, map(store.designs, missing))
         try:
-            for designs, block in chunks:
+            for designs, block in computed(pool, map(store.designs, missing)):
                 _store(store, designs, block)
                 tally.add(block, computed=True)
                 tell(tally.progress())

@@ -87,6 +87,17 @@ def values_at(study: Study, unit: Array) -> Array:
     return values
 
 
+def canonical(study: Study, places: Array) -> Array:
+    """The same designs, each value of a list in one place only, so that equal ones are seen."""
+    settled = np.clip(places, 0.0, 1.0)
+    for k, one in enumerate(study.vary):
+        spread: Any = one.spread
+        if spread.count:
+            step = np.minimum(np.floor(settled[:, k] * spread.count), spread.count - 1)
+            settled[:, k] = (step + 0.5) / spread.count
+    return settled
+
+
 # -- each method -----------------------------------------------------------------------------------
 
 

@@ -9,18 +9,29 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from math import isnan
+from math import comb, isnan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from equipoise.errors import ModelError, UsageError
+from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
+from equipoise.errors import ModelError, UsageError, needed
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.evolution import Archive, Hypervolumes, canonical, evolution
-from equipoise.studies.outcomes import Evaluator, designs_told, failures, kept, why_none
-from equipoise.studies.sampling import values_at
+from equipoise.studies.outcomes import (
+    Evaluator,
+    Hypervolumes,
+    Outcome,
+    designs_told,
+    failures,
+    far_apart,
+    kept,
+    non_dominated,
+    signs_of,
+    why_none,
+)
+from equipoise.studies.sampling import canonical, values_at
 from equipoise.studies.study import Study
 
 if TYPE_CHECKING:
@@ -34,6 +45,15 @@ LEAST_POPULATION, MOST_POPULATION, MOST_GENERATIONS = 8, 100_000, 100_000
 
 OnGeneration = Callable[[int, int, int, int], None]
 """Is called with generation, most of them, designs computed so far, designs on the front."""
+
+MANY = 4
+"""Objectives from which reference directions, not crowding, keep designs apart."""
+FAILED = 1e6
+"""Violation of a design that cannot be computed; those that can be stand at most at some tens."""
+VIOLATIONS = np.full(256, FAILED)
+VIOLATIONS[COMPUTED] = -1.0
+VIOLATIONS[[NO_MACHINE, NO_ASSEMBLY, NO_FULL_TURN]] *= (4.0, 3.0, 2.0)
+"""By reason: a design that fails is the further away from a machine that works."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,13 +136,13 @@ def search_designs(
     """
     _check(study)
     if not LEAST_POPULATION <= population <= MOST_POPULATION:
-        limits = f"{LEAST_POPULATION} to {MOST_POPULATION}"
-        raise UsageError(f"got a population of {population}; give {limits}")
+        most = f"{LEAST_POPULATION} to {MOST_POPULATION}"
+        raise UsageError(f"got a population of {population}; give {most}")
     if not 1 <= generations <= MOST_GENERATIONS:
         raise UsageError(f"got {generations} generations; give 1 to {MOST_GENERATIONS}")
     seed = study.sampling.seed if seed is None else seed
-    seen = Archive(study, compute or evaluator(study))
-    breeding = evolution(study, population, seed, seen.known)
+    seen = _Archive(study, compute or evaluator(study))
+    breeding = _evolution(seen, population, seed)
     volumes = Hypervolumes()
     for generation in range(1, generations + 1):
         bred = breeding.ask()
@@ -132,38 +152,30 @@ def search_designs(
         rows = seen.rows(values_at(study, places))
         bred.set("X", places, "F", seen.costs[rows], "G", seen.violations[rows])
         breeding.tell(infills=bred)
-        volumes.add(seen.front_costs)
+        volumes.add(seen.costs[seen.front])
         if progress is not None:
-            progress(generation, generations, seen.count, len(seen.front))
+            progress(generation, generations, len(seen.values), len(seen.front))
         if volumes.still:
             break
     still = bred is None or volumes.still
-    last = seen.rows(values_at(study, breeding.pop.get("X")))
-    told = seen.some_of_front(last, population)
+    told = seen.some_of_front(seen.rows(values_at(study, breeding.pop.get("X"))), population)
     return _result(study, seen, volumes, told, still, seed)
-
-
-# -- checks ----------------------------------------------------------------------------------------
 
 
 def _check(study: Study) -> None:
     for number, one in enumerate(study.vary, 1):
         if not isinstance(one.spread, Range | Choices):
-            raise ModelError(
-                f"vary[{number}]",
-                f"{one.path} has a tolerance, which cannot be chosen; a search takes a range or a "
-                "list, and equipoise tolerance takes this",
-            )
+            told = f"{one.path} has a tolerance, which cannot be chosen; a search takes a range or "
+            raise ModelError(f"vary[{number}]", told + "a list, and equipoise tolerance takes this")
     if study.correlations:
         raise ModelError("correlations", "have no place in a search; leave them out")
     if not study.objectives:
-        raise ModelError(
-            "outputs", 'none is to become small or large; give one of them make = "smallest"'
-        )
+        told = 'none is to become small or large; give one of them make = "smallest"'
+        raise ModelError("outputs", told)
 
 
 def _result(
-    study: Study, seen: Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
+    study: Study, seen: _Archive, volumes: Hypervolumes, told: Array, still: bool, seed: int
 ) -> Searched:
     counts = seen.outcome.counts
     if not len(seen.front):
@@ -178,10 +190,161 @@ def _result(
         objectives=makes,
         values=seen.values[order],
         figures=seen.outcome.figures[order],
-        computed=seen.count,
+        computed=len(seen.values),
         failures=failures(counts),
         generations=len(volumes.fronts),
         stood_still=still,
         volumes=volumes.all * (seen.signs[0] if len(seen.signs) == 1 else 1),
         seed=seed,
     )
+
+
+# -- breeding --------------------------------------------------------------------------------------
+
+
+def _evolution(seen: _Archive, population: int, seed: int) -> Any:
+    """The algorithm, ready to be asked for a generation.
+
+    With several objectives designs that were computed before are not bred again, so that lists are
+    searched to their ends.
+    """
+    for library in ("pymoo", "moocore"):
+        needed(library, "a search")
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+    from pymoo.algorithms.moo.nsga3 import NSGA3
+    from pymoo.algorithms.soo.nonconvex.de import DE
+    from pymoo.core.problem import Problem
+    from pymoo.core.termination import NoTermination
+    from pymoo.util.ref_dirs import get_reference_directions
+
+    makes, limits = len(seen.makes), len(seen.limits)
+    first, new = _first(seen.study, population, seed), _only_new(seen)
+    if makes == 1:
+        algorithm = DE(pop_size=population, sampling=first, variant="DE/rand/1/bin", CR=0.9)
+    elif makes < MANY:
+        algorithm = NSGA2(pop_size=population, sampling=first, eliminate_duplicates=new)
+    else:
+        fine = max(p for p in range(1, population) if comb(p + makes - 1, p) <= population)
+        directions = get_reference_directions("das-dennis", makes, n_partitions=fine)
+        algorithm = NSGA3(directions, pop_size=population, sampling=first, eliminate_duplicates=new)
+    width = len(seen.study.vary)
+    problem = Problem(n_var=width, n_obj=makes, n_ieq_constr=1 + limits, xl=0.0, xu=1.0)
+    return algorithm.setup(problem, termination=NoTermination(), seed=seed, verbose=False)
+
+
+def _only_new(seen: _Archive) -> Any:
+    """What strikes out designs that were computed before, or are in a generation twice."""
+    from pymoo.core.duplicate import DuplicateElimination
+
+    def values_of(bred: Any) -> Array:
+        """Values of some individuals."""
+        return values_at(seen.study, canonical(seen.study, bred.get("X")))
+
+    class OnlyNew(DuplicateElimination):  # type: ignore[misc]
+        def _do(self, bred: Any, other: Any, struck: Array) -> Array:
+            values = values_of(bred)
+            if other is None:
+                _, first = np.unique(values, axis=0, return_index=True)
+                struck[:] = True
+                struck[first] = seen.known(values[first])
+            elif len(other):
+                there = {*_keys(values_of(other))}
+                struck |= [key in there for key in _keys(values)]
+            return struck
+
+    return OnlyNew()
+
+
+def _first(study: Study, population: int, seed: int) -> Array:
+    """Places (P, d) of the first generation: evenly spread, with the model's own among them."""
+    from scipy.stats import qmc
+
+    power = (population - 1).bit_length()  # SciPy warns of other numbers than powers of two
+    places = qmc.Sobol(len(study.vary), seed=seed).random_base2(power)[:population]
+    spreads: list[Any] = [one.spread for one in study.vary]
+    numbers = (study.model.number(path)[0] for path in study.paths)
+    own = [spread.place(number) for spread, number in zip(spreads, numbers, strict=True)]
+    if all(place is not None for place in own):
+        places[0] = own
+    return canonical(study, places)
+
+
+# -- what was computed -----------------------------------------------------------------------------
+
+
+class _Archive:
+    """All designs that were computed, each once; grows by generations.
+
+    costs : (n, M) objectives, all to be small; 0 of failed designs.
+    violations : (n, 1 + L) above 0 where a design fails, or does not keep a limit.
+    """
+
+    def __init__(self, study: Study, compute: Evaluator) -> None:
+        self.study, self.compute = study, compute
+        self.numbers: dict[bytes, int] = {}
+        self.values = np.empty((0, len(study.vary)))
+        self.outcome = Outcome(np.empty((0, len(study.outputs))), np.empty(0, np.uint8))
+        self.makes = [k for k, output in enumerate(study.outputs) if output.make]
+        self.signs = signs_of(study.outputs[k].make for k in self.makes)
+        self.limits = [
+            (k, limit, sign)
+            for k, output in enumerate(study.outputs)
+            for limit, sign in ((output.at_least, -1.0), (output.at_most, 1.0))
+            if limit is not None
+        ]
+        self.costs = np.empty((0, len(self.makes)))
+        self.violations = np.empty((0, 1 + len(self.limits)))
+        self.front = np.empty(0, np.intp)
+        self._ranges: Array | None = None
+
+    def some_of_front(self, chosen: Array, count: int) -> Array:
+        """Rows of so many of the best designs: first those among the chosen rows, then others that
+        lie far from each other.
+        """
+        first = np.intersect1d(chosen, self.front)[:count]
+        others = np.setdiff1d(self.front, first)
+        far = others[far_apart(self.costs[others], max(count - len(first), 0))]
+        return np.concatenate([first, far])
+
+    def rows(self, values: Array) -> Array:
+        """Rows of designs (P, d); those that are new are computed together."""
+        keys = _keys(values)
+        new = {key: k for k, key in enumerate(keys) if key not in self.numbers}
+        if new:
+            self.add(values[list(new.values())])
+            self.numbers |= {key: len(self.numbers) + k for k, key in enumerate(new)}
+        return np.array([self.numbers[key] for key in keys])
+
+    def known(self, values: Array) -> Array:
+        """Which of some designs (P, d) are here already, (P,)."""
+        return np.array([key in self.numbers for key in _keys(values)], bool)
+
+    def add(self, values: Array) -> None:
+        found = self.compute(values)
+        begin = len(self.values)
+        self.values = np.concatenate([self.values, values])
+        self.outcome = Outcome.joined([self.outcome, found])
+        costs = np.where(found.computed[:, None], found.figures[:, self.makes] * self.signs, 0.0)
+        self.costs = np.concatenate([self.costs, costs])
+        beyond = (  # of each limit, over the range of the first figures
+            np.where(found.computed, sign * (found.figures[:, k] - limit) / self.ranges[k], 0.0)
+            for k, limit, sign in self.limits
+        )
+        violations = np.column_stack([VIOLATIONS[found.reason], *beyond])
+        self.violations = np.concatenate([self.violations, violations])
+        fine = begin + np.flatnonzero(np.all(violations <= 0, axis=1))
+        known = np.concatenate([self.front, fine])
+        self.front = known[non_dominated(self.costs[known])]
+
+    @property
+    def ranges(self) -> Array:
+        """Range of each figure (m,) in the first generation that has any; 1 where there is none."""
+        good = self.outcome.figures[self.outcome.computed]
+        if self._ranges is None and len(good):
+            wide = np.ptp(good, axis=0)
+            self._ranges = np.where(wide > 0, wide, 1.0)
+        return np.ones(len(self.study.outputs)) if self._ranges is None else self._ranges
+
+
+def _keys(values: Array) -> list[bytes]:
+    return [row.tobytes() for row in np.ascontiguousarray(values)]

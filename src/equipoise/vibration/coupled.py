@@ -62,17 +62,10 @@ class Coupled:
     ) -> Coupled:
         """On the support of the model."""
         matrix = body.mass
-        return cls(
-            body.machine,
-            speed,
-            float(matrix[0, 0]),
-            complex(matrix[1, 5], -matrix[0, 5]),
-            float(matrix[5, 5]),
-            complex(*body.reference[:2]),
-            tuple(IN_PLANE.index(number) for number in body.free),
-            contacts_of(body, rest),
-            torque,
-        )
+        first, reference = complex(matrix[1, 5], -matrix[0, 5]), complex(*body.reference[:2])
+        sums = float(matrix[0, 0]), first, float(matrix[5, 5])
+        free = tuple(IN_PLANE.index(number) for number in body.free)
+        return cls(body.machine, speed, *sums, reference, free, contacts_of(body, rest), torque)
 
     @classmethod
     def on_ground(cls, machine: Machine, speed: float, torque: Torque) -> Coupled:
@@ -255,17 +248,9 @@ def follow(
         spin_up = 0.0 if system.torque is None else found[d]
         return np.array([*y[d : 2 * d], *found[:d], spin_up, y[2 * d]])
 
-    step = 2 * pi / abs(system.speed) / 24
-    done = solve_ivp(
-        rates,
-        (float(time[0]), float(time[-1])),
-        begin,
-        "DOP853",
-        t_eval=time,
-        rtol=RELATIVE,
-        atol=ABSOLUTE,
-        max_step=step,
-    )
+    span = float(time[0]), float(time[-1])
+    limits = {"rtol": RELATIVE, "atol": ABSOLUTE, "max_step": 2 * pi / abs(system.speed) / 24}
+    done = solve_ivp(rates, span, begin, "DOP853", t_eval=time, **limits)
     if not done.success or not np.all(np.isfinite(done.y)):
         raise ResponseError(f"the motion cannot be followed beyond {done.t[-1]:g} s: it grows away")
     return np.asarray(done.y)

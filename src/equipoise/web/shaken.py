@@ -9,7 +9,8 @@ from typing import Any
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
-from equipoise.planting.blocks import EXTREMES, PATH, SOIL, cell
+from equipoise.planting.blocks import cell
+from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
 from equipoise.quantities import display, in_unit
 from equipoise.vibration.forced import respond
@@ -120,9 +121,6 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
         yield {"type": "response", **content}, data
 
 
-_LABELS = {**PATH, **SOIL, **{f"{name}.value": label for name, label in EXTREMES.items()}}
-
-
 def _shown(name: str, value: float) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
     told = cell(value, name)
@@ -139,8 +137,8 @@ def _planted(machine: Machine) -> Values:
     except EquipoiseError as error:
         return {"type": "planting", "figures": [], "notes": [str(error)]}
     figures = [
-        {"name": name, "label": label, **_shown(name, float(found.figures[name]))}
-        for name, label in _LABELS.items()
+        {"name": name, "label": one.words, **_shown(name, float(found.figures[name]))}
+        for name, one in FIGURES.items()
         if name in found.figures
     ]
     return {"type": "planting", "figures": figures, "notes": list(map(str, found.notes))}

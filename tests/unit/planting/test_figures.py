@@ -13,7 +13,7 @@ import pytest
 import equipoise as eq
 from equipoise.mechanism.tip import TipCurve, surface_of
 from equipoise.planting.figures import clearances, tip_figures
-from equipoise.planting.goals import TURNING, dimension_of
+from equipoise.planting.names import TURNING, dimension_of
 from equipoise.planting.stroke import distance, soil_crossings
 from equipoise.planting.summary import PlantingFigures, plant
 from unit.planting.build import (

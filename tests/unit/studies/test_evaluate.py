@@ -18,7 +18,7 @@ from equipoise.results.outputs import unit_of
 from equipoise.schema.template import Template
 from equipoise.studies.commands import find_outputs
 from equipoise.studies.design_space import Command, Output, Range, Sampling, Vary
-from equipoise.studies.evaluate import one_by_one
+from equipoise.studies.evaluate import OneByOne
 from equipoise.studies.figures import dimension_of, read, resolve, scale
 from equipoise.studies.outcomes import Outcome
 from equipoise.studies.study import Study
@@ -142,7 +142,7 @@ def asked(of: Command, *paths: str) -> list[Output]:
 def computed(given: Study, *values: float) -> Outcome:
     """Designs of one varied number; those of the model where none is given."""
     own = [given.model.number(path)[0] for path in given.paths]
-    return one_by_one(given, given.outputs)(np.array(values or own, float).reshape(-1, 1))
+    return OneByOne(given)(np.array(values or own, float).reshape(-1, 1))
 
 
 def printed(values: Any, path: str) -> float:
@@ -375,7 +375,7 @@ def test_other_reasons(given: Study, values: tuple[float, ...], reasons: list[st
 def test_outputs_that_lead_nowhere(path: str, told: str) -> None:
     given = study("yamashita-1", "drive.speed", "drive_torque.rms", path)
     with pytest.raises(ModelError, match=re.escape(told)) as refused:
-        find_outputs(given, given.outputs)
+        find_outputs(given)
     assert str(refused.value).startswith(f"outputs[2].value: got {path!r}")
 
 
@@ -384,14 +384,14 @@ def test_without_masses() -> None:
     given = study(Template(text), "drive.speed", "turns", "drive_torque.rms")
     sentence = "outputs[2].value: got 'drive_torque.rms'; there are no forces, "
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}.*mass"):
-        find_outputs(given, given.outputs)
+        find_outputs(given)
 
 
 def test_a_model_that_cannot_be_computed() -> None:
     given = study("yamashita-1", "drive.speed", "turns", *asked("balance", "gap"))
     sentence = "outputs[2].of: equipoise balance cannot compute the model: nothing is free to"
     with pytest.raises(ModelError, match=f"^{re.escape(sentence)}"):
-        find_outputs(given, given.outputs)
+        find_outputs(given)
 
 
 def test_a_model_that_fails_stands_back_for_designs_that_do_not() -> None:

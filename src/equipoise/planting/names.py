@@ -1,0 +1,123 @@
+"""What figures of planting are called, and what they are: declared here for tables and searches."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from equipoise.i18n import say, to_say
+from equipoise.quantities import Dimension
+
+
+class Named(NamedTuple):
+    """A figure in words, and its dimension; None of a plain number."""
+
+    words: str
+    dimension: Dimension | None
+
+
+INSTANTS = {
+    "pick_up": to_say("pick-up"),
+    "entry": to_say("entry"),
+    "lowest": to_say("lowest point"),
+    "release": to_say("release"),
+    "exit": to_say("exit"),
+    "highest": to_say("highest point"),
+}
+"""Columns of the table of instants; it begins with the first that there is."""
+OF_AN_INSTANT = {
+    "crank_angle": Named(to_say("crank angle"), "angle"),
+    "x": Named(to_say("x"), "length"),
+    "y": Named(to_say("y"), "length"),
+    "velocity.x": Named(to_say("velocity x"), "speed"),
+    "velocity.y": Named(to_say("velocity y"), "speed"),
+    "velocity.size": Named(to_say("velocity"), "speed"),
+    "velocity.direction": Named(to_say("direction of velocity"), "angle"),
+    "acceleration.x": Named(to_say("acceleration x"), "acceleration"),
+    "acceleration.y": Named(to_say("acceleration y"), "acceleration"),
+    "acceleration.size": Named(to_say("acceleration"), "acceleration"),
+    "acceleration.direction": Named(to_say("direction of acceleration"), "angle"),
+    "ground_velocity.x": Named(to_say("over ground: velocity x"), "speed"),
+    "ground_velocity.size": Named(to_say("over ground: velocity"), "speed"),
+    "ground_velocity.direction": Named(to_say("over ground: direction"), "angle"),
+    "attitude": Named(to_say("attitude of the finger"), "angle"),
+}
+PATH = {
+    "curve.height": Named(to_say("height of the curve"), "length"),
+    "curve.width": Named(to_say("width of the curve"), "length"),
+    "curve.length": Named(to_say("length of the curve"), "length"),
+    "curve.lift": Named(to_say("rise above the soil"), "length"),
+    "curve.smallest_radius.value": Named(to_say("smallest radius of the curve"), "length"),
+    "ground.smallest_radius.value": Named(to_say("smallest radius over ground"), "length"),
+    "hill_spacing": Named(to_say("distance of hills"), "length"),
+    "planting_frequency": Named(to_say("planting frequency"), "frequency"),
+}
+SOIL = {
+    "soil.depth": Named(to_say("depth in the soil"), "length"),
+    "soil.crank_travel": Named(to_say("crank travel in the soil"), "angle"),
+    "soil.time": Named(to_say("time in the soil"), "time"),
+    "soil.path_length_ground": Named(to_say("path in the soil over ground"), "length"),
+    "soil.path_length_machine": Named(to_say("path in the soil relative to the machine"), "length"),
+    "soil.ground_distance": Named(to_say("ground distance from entry to exit"), "length"),
+    "soil.hole_length": Named(to_say("length of the hole at the surface"), "length"),
+    "soil.max_acceleration.value": Named(
+        to_say("largest acceleration in the soil"), "acceleration"
+    ),
+}
+EXTREMES = {
+    "max_speed": Named(to_say("largest velocity of the tip"), "speed"),
+    "min_speed": Named(to_say("smallest velocity of the tip"), "speed"),
+    "max_acceleration": Named(to_say("largest acceleration of the tip"), "acceleration"),
+    "min_acceleration": Named(to_say("smallest acceleration of the tip"), "acceleration"),
+}
+FIGURES = {
+    **PATH,
+    **SOIL,
+    **{f"{name}.value": one for name, one in EXTREMES.items()},
+}
+LINKAGE = {"transmission.min": Named(to_say("smallest transmission angle"), "angle")}
+OF_INSTANTS = ("crank_angle", "velocity.size", "acceleration.size", "attitude")
+OTHERS = (
+    *(f"{name}.{key}" for name in ("pick_up", "entry", "lowest", "exit") for key in OF_INSTANTS),
+    *LINKAGE,
+)
+"""Further ones that a search tells before and after."""
+DIMENSIONS: dict[str, Dimension] = {
+    **dict.fromkeys(("surface", "soil.ground_advance"), "length"),
+    **dict.fromkeys(("visits.depth", "loops.y", "loops.height", "loops.width"), "length"),
+    "speed": "angular speed",
+    "forward_speed": "speed",
+    "limit": "acceleration",
+    "highest_speed": "angular speed",
+    "highest_forward_speed": "speed",
+}
+"""Of the others, by their name or its last part."""
+TURNING = {"crank_angle", "direction", "attitude", "min_at", "max_at"}
+"""Last parts of the names of angles that are the same after a turn."""
+
+
+def dimension_of(figure: str) -> Dimension | None:
+    """Dimension of a figure such as ``curve.height``, or None for a plain number."""
+    first, _, rest = figure.partition(".")
+    last = figure.rpartition(".")[2]
+    if last in TURNING:
+        return "angle"
+    if first == "clearance" and last == "value":
+        return "length"
+    known = (FIGURES | LINKAGE).get(figure)
+    if first in INSTANTS:
+        known = OF_AN_INSTANT.get(rest.removeprefix("ground_"))
+    if known is not None:
+        return known.dimension
+    return DIMENSIONS.get(last if first == "limits" else figure)
+
+
+def figure_named(name: str) -> str:
+    """A figure, such as ``pick_up.velocity.size``, in words, where there are any."""
+    known = FIGURES | LINKAGE
+    if name in known:
+        return say(known[name].words)
+    instant, _, key = name.partition(".")
+    if instant not in INSTANTS or key not in OF_AN_INSTANT:
+        return name
+    what = say(OF_AN_INSTANT[key].words)
+    return say("{what} at {instant}", what=what, instant=say(INSTANTS[instant]))
