@@ -331,6 +331,8 @@ REFUSED = {
         "nothing.toml": "nothing.toml: there is no such file; give a path, or the name",
     },
     "tool nagamine-irie": {
+        "--respond fast": "got 'fast'; give a range of speeds, the slower one first",
+        "--respond '9000 rpm'": "got '9000 rpm'; give a range of speeds, the slower one first",
         "--respond '5 rpm'": "--respond: got '5 rpm'; give a range of speeds",
         "--respond '9000 rpm : 2000 rpm'": "the slower one first",
         "--respond '0 rpm : 2000 rpm'": "the slower one first",

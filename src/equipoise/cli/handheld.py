@@ -58,8 +58,9 @@ VALUES, BAND = 81, 201
 
 def _range(option: str, text: str) -> tuple[float, float]:
     """Two speeds; a unit may stand after the second only."""
-    ends = [quantity(option, part, "angular speed") for part in ends_of_range(text)]
-    if len(ends) != 2 or not 0 < ends[0] < ends[1]:
+    parts = ends_of_range(text)
+    ends = [quantity(option, part, "angular speed") for part in parts if len(parts) == 2]
+    if not ends or not 0 < ends[0] < ends[1]:
         raise UsageError(
             f"{option}: got {text!r}; give a range of speeds, the slower one first: {RANGE}"
         )
