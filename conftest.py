@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import io
 import os
+import shlex
 import signal
 from collections.abc import Iterator
 from contextlib import chdir, redirect_stderr, redirect_stdout
@@ -41,7 +42,7 @@ def run_commands(example: Example) -> str | None:
         command, _, shown = part.partition("\n")
         out, err = io.StringIO(), io.StringIO()
         with redirect_stdout(out), redirect_stderr(err):
-            run(command.split())
+            run(shlex.split(command))
         if not OutputChecker().check_output(shown, out.getvalue(), FLAGS):
             return f"equipoise {command} printed\n{out.getvalue()}{err.getvalue()}"
     return None

@@ -25,6 +25,8 @@ export class Row {
   private gesture: Gesture | null = null;
   private exact = "";
   private typing = false;
+  /** What has been asked for and is not answered yet: leaving the field does not ask again. */
+  private asked: string | null = null;
 
   constructor(
     private field: Field,
@@ -46,6 +48,7 @@ export class Row {
     this.input.addEventListener("focus", () => this.focus());
     this.input.addEventListener("input", () => {
       this.typing = true;
+      this.asked = null;
       this.input.dataset.typed = "";
     });
     this.input.addEventListener("blur", () => this.commit());
@@ -110,12 +113,15 @@ export class Row {
   private commit(): void {
     this.gesture?.end();
     const text = this.input.value.trim().replace(/−/g, "-");
+    if (text === this.asked) return;
     if (!this.typing || text === this.exact || text === "") return this.revert();
+    this.asked = text;
     this.talk.release();
     const { path, unit } = this.field;
     const bare = Number.isFinite(Number(text));
     const edits = [{ set: path, text: bare ? `${text} ${unit}` : text }];
     this.talk.ask({ type: "edit", commit: true, label: this.label, edits }, (refusal) => {
+      this.asked = null;
       if (refusal === null) this.typing = false;
       this.complain(refusal);
       if (refusal === null) this.revert();

@@ -174,6 +174,18 @@ def test_the_response_of_a_rig_is_shown(live: Live) -> None:
     expect(live.page.get_by_role("combobox", name="Response of")).to_be_visible()
 
 
+def test_leaving_a_field_asks_for_nothing_twice(live: Live) -> None:
+    """Enter and leaving at once, before there is an answer, are one step."""
+    speed = live.field("drive speed")
+    speed.fill("150 rpm")
+    enter = "new KeyboardEvent('keydown', { key: 'Enter', bubbles: true })"
+    speed.evaluate(f"field => {{ field.dispatchEvent({enter}); field.blur(); }}")
+    expect(live.button("Undo")).to_be_enabled()
+    live.button("Undo").click()
+    expect(speed).to_have_value("193 rpm")
+    expect(live.button("Undo")).to_be_disabled()
+
+
 def test_what_was_done_outlives_a_reload(live: Live) -> None:
     """The machine is there after the page is loaded anew, with what can be undone and redone."""
     live.type(live.field("drive speed"), "150 rpm")
