@@ -127,7 +127,7 @@ def changed(draw: st.DrawFn, kind: Any) -> str:
 
 @pytest.mark.parametrize("kind", FILES)
 def test_what_is_read_is_written_and_read_again(kind: str) -> None:
-    folder = str(files("equipoise.examples"))
+    folder = str(files("equipoise") / "examples")
     kept = 0
 
     @settings(max_examples=100, suppress_health_check=[*HealthCheck])
