@@ -29,10 +29,11 @@ def signals_of(analysis: Analysis) -> Signals:
     found = analysis.solved
     if found is None:
         return {}
-    signals = {
-        "shaking_force": found.shaking_force.value,
-        "shaking_moment": found.shaking_moment,
-        "drive_torque": found.drive_torque,
+    signals = {"shaking_force": found.shaking_force.value}
+    signals |= {
+        name: analysis.outputs[name].values
+        for name, one in told_signals().items()
+        if one.group == "forces" and not one.part
     }
     signals |= {f"joint.{name}": joint.size for name, joint in found.joints.items()}
     return signals | _together(analysis)
@@ -208,7 +209,8 @@ def _choice(analysis: Analysis, signals: Signals, name: str) -> Values | None:
 
     of : whose forces have to be shown for it, those of all rows or of one; None for any.
     """
-    output = name.replace("joint.", "joints.")
+    joint = name.removeprefix("joint.")
+    output = name if joint == name else f"joints.{joint}"
     if name not in signals or output not in analysis.outputs:
         return None
     one = analysis.outputs[output]

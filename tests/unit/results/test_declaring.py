@@ -121,6 +121,23 @@ def test_it_can_be_drawn(power: None) -> None:
     assert "drive power" in picture
 
 
+def test_the_page_draws_unasked_what_is_compared() -> None:
+    """An output of which figures are told before and after has a chart and its numbers."""
+    with declaring():
+        output(POWER, "power", "drive power", compared=("rms", "peak"))(
+            lambda found: found.forces.drive_torque * found.motion.speed
+        )
+        session = Session()
+        session.open(opened_example("yamashita-1"))
+        replies = [one.content for one in session.receive(message_of({"type": "ready"}))]
+    (content,) = [one for one in replies if one["type"] == "state"]
+    (chart,) = [one for one in content["charts"] if one["name"] == POWER]
+    (choice,) = chart["choices"]
+    assert (choice["label"], choice["unit"]) == ("Drive power", "W")
+    assert choice["curves"][0]["array"] in content["arrays"]
+    assert {one["unit"] for one in content["figures"] if one["signal"] == "drive power"} == {"W"}
+
+
 def test_the_page_offers_it_and_draws_it_when_asked(power: None) -> None:
     session = Session()
     session.open(opened_example("yamashita-1"))

@@ -1,0 +1,104 @@
+"""Every command as it is installed without extras: it works, or says what to install."""
+
+from __future__ import annotations
+
+import json
+import re
+import shlex
+import subprocess
+import sys
+from collections import deque
+from importlib.metadata import PackageNotFoundError, packages_distributions, requires
+from pathlib import Path
+
+import pytest
+
+from surface.running import EXAMPLES, STUDIES, TOOLS
+
+SCRIPT = """
+import json, shlex, sys
+from importlib.machinery import PathFinder
+
+class Bare(PathFinder):
+    absent = frozenset(json.loads(sys.argv[1]))
+
+    @classmethod
+    def find_spec(cls, name, path=None, target=None):
+        if name.partition(".")[0] not in cls.absent:
+            return super().find_spec(name, path, target)
+
+sys.meta_path[sys.meta_path.index(PathFinder)] = Bare
+from equipoise.cli import run
+for words in json.loads(sys.argv[2]):
+    print("status", run(words), shlex.join(words), flush=True)
+"""
+
+
+def normal(name: str) -> str:
+    return re.sub(r"[-_.]+", "-", name).lower()
+
+
+def installed_with(name: str) -> set[str]:
+    """Distributions that a distribution brings, itself among them, without any of its extras."""
+    found: set[str] = set()
+    left = deque([normal(name)])
+    while left:
+        one = left.popleft()
+        if one in found:
+            continue
+        found.add(one)
+        try:
+            wanted = requires(one) or []
+        except PackageNotFoundError:  # of another system or version of Python
+            continue
+        left += (normal(re.split(r"[^\w.-]", w, maxsplit=1)[0]) for w in wanted if "extra" not in w)
+    return found
+
+
+def left_out() -> list[str]:
+    """Modules that are here, and are not where nothing but the product is installed."""
+    there = installed_with("equipoise") | {"pip", "setuptools"}
+    return [
+        module
+        for module, owners in packages_distributions().items()
+        if not {normal(owner) for owner in owners} & there and module.isidentifier()
+    ]
+
+
+def statuses(folder: Path, commands: list[list[str]]) -> tuple[dict[str, int], str]:
+    """Exit status of each command, and what all of them said."""
+    words = [sys.executable, "-c", SCRIPT, json.dumps(left_out()), json.dumps(commands)]
+    done = subprocess.run(words, cwd=folder, capture_output=True, encoding="utf-8", check=False)
+    assert done.returncode == 0, done.stderr[-2000:]
+    found = re.findall(r"^status (\d+) (.*)$", done.stdout, re.MULTILINE)
+    return {command: int(status) for status, command in found}, done.stderr
+
+
+def test_what_is_left_out_is_what_extras_bring() -> None:
+    assert {"numba", "zarr", "pandas", "pytest", "hypothesis"} <= set(left_out())
+    assert not {"numpy", "scipy", "rich", "platformdirs"} & set(left_out())
+
+
+@pytest.mark.parametrize("names", [EXAMPLES, TOOLS, STUDIES], ids=["linkages", "tools", "studies"])
+def test_every_bundled_file_is_checked(names: tuple[str, ...], tmp_path: Path) -> None:
+    found, _ = statuses(tmp_path, [["check", name] for name in names])
+    assert found == {f"check {name}": 0 for name in names}
+
+
+def test_every_command_answers(tmp_path: Path) -> None:
+    works = [
+        "analyze yamashita-1 --csv a.csv", "respond yamashita-rig", "plant transplanter",
+        "balance balance-crank", "tool brush-cutter", "plot yamashita-1 -o pictures",
+        "plot yamashita-1 --only linkage --format png -o png", "report yamashita-1 -o r.html",
+        "animate yamashita-1 -o a.svg", "animate yamashita-1 -o a.gif", "examples", "schema",
+        "simulate yamashita-rig '1 s'", "balance conditions yamashita-1",
+    ]  # fmt: skip
+    refused = {
+        "sweep study-of-lengths -o st": "zarr",
+        "animate yamashita-1 -o a.mp4": "equipoise[video]",
+        "report yamashita-1 -o r.pdf": "equipoise[report]",
+    }
+    found, said = statuses(tmp_path, [shlex.split(line) for line in (*works, *refused)])
+    assert found == dict.fromkeys(works, 0) | dict.fromkeys(refused, 2)
+    for name in refused.values():
+        assert name in said
