@@ -12,9 +12,6 @@ from equipoise.quantities import format_exact
 from equipoise.schema.numbers import written_point
 from equipoise.schema.reading import Place, within, written_place
 
-Namer = Callable[[str, str, Any], str]
-"""Name of the file for the key at a place: takes the place, its sort and what lies in it."""
-
 
 @dataclass(frozen=True)
 class Writer:
