@@ -28,6 +28,7 @@ class FourBar:
 
     Attributes
     ----------
+    pins : its joints: of crank and frame, crank and coupler, coupler and rocker, rocker and frame.
     a, b, c, d : lengths of frame, crank, coupler and rocker, m, named as by Yamashita, Ichikawa
         and Mori.
     grashof : "Grashof", "non-Grashof" or "change point": shortest plus longest length less than,
@@ -45,6 +46,7 @@ class FourBar:
     crank: str
     coupler: str
     rocker: str
+    pins: tuple[str, str, str, str]
     a: float
     b: float
     c: float
@@ -74,11 +76,22 @@ def four_bar(machine: Machine) -> FourBar | None:
             b = _distance(machine, drive, pivot, first.at)
             c = _distance(machine, first.on, first.at, inner.at)
             d = _distance(machine, second.on, second.at, inner.at)
-            return _described((drive, first.on, second.on), a, b, c, d)
+            links, pins = (
+                (drive, first.on, second.on),
+                (pivot, first.at, inner.at, second.at),
+            )
+            return _described(links, pins, a, b, c, d)
     return None
 
 
-def _described(links: tuple[str, str, str], a: float, b: float, c: float, d: float) -> FourBar:
+def _described(
+    links: tuple[str, str, str],
+    pins: tuple[str, str, str, str],
+    a: float,
+    b: float,
+    c: float,
+    d: float,
+) -> FourBar:
     grashof, kind = _class(a, b, c, d)
     turns = _condition_5(a, b, c, d)
     low = high = swing = ratio = None
@@ -90,7 +103,7 @@ def _described(links: tuple[str, str, str], a: float, b: float, c: float, d: flo
         lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
         ratio = (pi + lag) / (pi - lag)
     apart = not (isclose(a + b, c + d) or isclose(b + c, a + d))
-    return FourBar(*links, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
+    return FourBar(*links, pins, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
 
 
 def _distance(machine: Machine, body: str, one: str, other: str) -> float:
