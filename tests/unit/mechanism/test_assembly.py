@@ -360,10 +360,10 @@ def test_a_side_without_which_the_crank_cannot_turn() -> None:
 
 def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
     given = replace(eq.load("watt-six-bar"), assembly={"C": "forward", "f": "left"})
-    words = r"^C got 'forward', F is missing; give each its side in \[assembly\] \('f' is no"
-    with pytest.raises(ModelError, match="^assembly: C got 'forward', F is missing;") as caught:
+    words = "C got 'forward', F is missing; give each its side in [assembly] ('f' is no inner"
+    with pytest.raises(ModelError) as caught:
         eq.mechanism.assemble(given)
-    assert re.search(words, caught.value.what)
+    assert caught.value.what.startswith(words)
     assert "[assembly]\n" not in caught.value.what  # there is one already
 
 

@@ -197,7 +197,7 @@ def test_downloads() -> None:
         ({"name": "t.toml", "text": 'schema = 1\nshaft.length = "1 m"'}, "hand-held tool"),
         ({"name": "c.toml"}, "open: text: got nothing"),
         ({"name": "s.toml", "text": STUCK}, "s.toml: the crank cannot turn fully"),
-        ({"name": "s.toml", "text": SIDELESS}, 'such as\n[assembly]\n# C lies left or right of'),
+        ({"name": "s.toml", "text": SIDELESS}, "such as\n[assembly]\n# C lies left or right of"),
     ],
 )
 def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
