@@ -120,7 +120,7 @@ def _state(builder: Builder, group: Group, theta: float) -> State:
 
 
 def _given_by(builder: Builder, group: Group, state: State, theta: float) -> str:
-    """Where the joint is, or how a link with a guide stands; nothing where they cannot be joined."""
+    """Where the joint is, or how a guide stands; nothing where the links cannot be joined."""
     assert group.margin is not None
     if not state[group.margin] > STRETCHED:
         return ""
