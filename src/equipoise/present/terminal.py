@@ -183,7 +183,8 @@ class _Printer:
 
 def wrapped(text: str, width: int, indent: int = 0) -> list[str]:
     """Lines of a text that are no longer than a width, further ones less an indent; only longer
-    words are."""
+    words are.
+    """
     lines = [""]
     for word in text.split(" "):
         room = width - (indent if len(lines) > 1 else 0)
