@@ -195,7 +195,7 @@ REST: dict[str, tuple[dict[str, Any], str]] = {
     "slow work": ({"work": (replace(MOWING, speed=0.0),)}, "work[1].speed: got 0 rad/s; give more"),
     "two works": ({"work": (MOWING, MOWING)}, "work[2].name: 'mowing' is given twice; give an"),
     "long day": ({"work": (replace(MOWING, duration=90000.0),)}, "work: takes 25 h together; a "),
-    "band": ({"design": replace(DESIGN, speeds=(2.0, 2.0))}, "design.speeds: got 19.0986 to 19.0986 rpm; gi"),
+    "band": ({"design": replace(DESIGN, speeds=(2.0, 2.0))}, "design.speeds: got 19.0986 to 19"),
     "measure": ({"design": replace(DESIGN, measure="mean")}, "design.measure: got 'mean'; give 'r"),
     "no change": ({"design": replace(DESIGN, variables=())}, "design.variables: there is nothing"),
     "silence": ({"excitations": ()}, "design: nothing shakes the tool; give [[excitations]]"),
