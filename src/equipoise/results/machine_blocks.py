@@ -249,8 +249,8 @@ def four_bar_table(found: FourBar) -> Table:
     first, inner, outer, last = found.pins
     ends = ((first, last), (first, inner), (inner, outer), (last, outer))
     rows = (
-        (part, link, f"{one} \N{EN DASH} {other}", Value(length))
-        for part, link, (one, other), length in zip(
+        (part, link, say(", ").join(pins), Value(length))
+        for part, link, pins, length in zip(
             parts, links, ends, (found.a, found.b, found.c, found.d), strict=True
         )
     )
