@@ -264,7 +264,7 @@ def choose_phases(
 ) -> Phasing:
     """Find the phases of a machine's rows that make objectives smallest; row 1 keeps its own.
 
-    No phases are better than the result's `bound`, on a grid or beside it.  Where several arrangements are as good, the one with the least roll and yaw moment is taken.
+    Where several are as good, those with the least roll and yaw moment.  None is below `bound`.
 
     Parameters
     ----------
