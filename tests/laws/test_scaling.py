@@ -1,75 +1,33 @@
 """A machine in other units of length, mass and time does the same, however small it is.
 
-Everything that a file may say is scaled by its declared dimension, and so is everything that is
-told, by its unit: a machine of micrometres and picograms balances, shakes and looks like one of
-decimetres and kilograms.  The dimensions of units are pint's.
+All that a file may say is scaled by its declared dimension, and so is all that is told: a machine
+of micrometres and picograms balances, shakes and looks like one of decimetres and kilograms.  The
+factors are powers of 2, so that scaling rounds nothing, and the same choice is made wherever one
+is; a tolerance that is not one of the machine's own size comes to light.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
-from dataclasses import replace
-from functools import cache
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pint
 import pytest
 
 import equipoise as eq
-from equipoise.balancing.blocks import figure_unit
-from equipoise.keys import Frozen, Point, innermost
-from equipoise.keys import Table as TableKind
-from equipoise.keys.declaring import declarations
-from equipoise.mechanism.balance import Balance, Limit
-from equipoise.mechanism.objectives import quantity_of
+from equipoise.balancing.optimisation import default_plan
+from equipoise.figures.animation import laid_out
+from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Objective, Weight
+from equipoise.mechanism.objectives import balanced_names
 from equipoise.quantities import SI
 from equipoise.results.blocks import Column, Many, Span, Table, Value
-from laws.transforms import Units
+from equipoise.symbols.scene import Scene
+from laws.subjects import machine_of, names
+from laws.transforms import Units, in_units
 
 MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
-"""A crank of 4 um and links of 1e-12 kg that turn 64 times as fast; powers of 2, so that scaling rounds nothing."""
-
-
-@cache
-def factor(unit: str, units: Units) -> float:
-    """How many of the new units make one of the old."""
-    written = unit.replace(" ", "*").replace("turn", "radian")
-    found = pint.application_registry.Quantity(1, written).dimensionality
-    sizes = {"[length]": units.length, "[mass]": units.mass, "[time]": units.time}
-    return float(np.prod([sizes[name] ** power for name, power in found.items()]))
-
-
-def in_units(thing: Any, units: Units, machine: eq.Machine | None = None) -> Any:
-    """A machine, or a part of one, with every declared quantity in other units."""
-    if isinstance(thing, eq.Machine):
-        machine = thing
-    if isinstance(thing, Limit) and thing.at_most is not None:
-        assert machine is not None
-        dimension = quantity_of(thing.objective, machine)
-        assert dimension is not None
-        thing = replace(thing, at_most=thing.at_most * factor(SI[dimension], units))
-    changes = {
-        one.field: scaled(getattr(thing, one.field), innermost(one.kind), units, machine)
-        for one in declarations(type(thing))
-    }
-    return replace(thing, **changes)
-
-
-def scaled(value: Any, kind: Any, units: Units, machine: eq.Machine | None) -> Any:
-    if isinstance(value, Frozen):
-        return in_units(value, units, machine)
-    if isinstance(kind, TableKind):  # with one key, which the object has without it
-        kind = innermost(declarations(kind.type)[0].kind)
-    if isinstance(value, Mapping):
-        return {name: scaled(one, kind, units, machine) for name, one in value.items()}
-    if isinstance(value, tuple):
-        return tuple(scaled(one, kind, units, machine) for one in value)
-    dimension = "length" if isinstance(kind, Point) else getattr(kind, "dimension", None)
-    if value is None or isinstance(value, str) or dimension is None:
-        return value
-    return value * factor(SI[dimension], units)
+"""Of a crank of 33.5 mm one of 4 um, of 200 g some 1e-12 kg, and 64 turns where there was one."""
 
 
 # -- what is told ----------------------------------------------------------------------------------
@@ -82,7 +40,7 @@ def words(text: Any) -> str:
     return NUMBER.sub("#", str(text))
 
 
-def same_blocks(found: Any, want: Any, units: Units, tolerance: float) -> None:
+def same_blocks(found: Any, want: Any, tolerance: float) -> None:
     """Compare what two results show: the same words, and numbers by their dimension."""
     left, right = list(found.blocks()), list(want.blocks())
     assert [type(one) for one in left] == [type(one) for one in right]
@@ -90,28 +48,122 @@ def same_blocks(found: Any, want: Any, units: Units, tolerance: float) -> None:
         if not isinstance(one, Table):
             assert words(one) == words(other)
             continue
-        assert (one.title, len(one.rows)) == (other.title, len(other.rows))
-        columns = list(zip(one.columns, zip(*one.rows, strict=True), zip(*other.rows, strict=True)))
-        for column, cells, others in columns:
-            for cell, wanted in zip(cells, others, strict=True):
-                same_cell(cell, wanted, column, units, tolerance)
+        assert words(one.title) == words(other.title)
+        for cells, others in zip(one.rows, other.rows, strict=True):
+            for column, cell, wanted in zip(one.columns, cells, others, strict=True):
+                same_cell(cell, wanted, column, tolerance)
 
 
-def same_cell(cell: Any, want: Any, column: Column, units: Units, tolerance: float) -> None:
+def same_cell(cell: Any, want: Any, column: Column, tolerance: float) -> None:
     assert type(cell) is type(want)
     if isinstance(cell, Many):
         for one, other in zip(cell.values, want.values, strict=True):
-            same_cell(one, other, column, units, tolerance)
+            same_cell(one, other, column, tolerance)
     elif isinstance(cell, Value):
         dimension = cell.dimension or column.dimension
         unit = SI[dimension] if dimension else column.label  # which may be one
-        grown = factor(unit, units) if unit in (*SI.values(), "1/min") else 1.0
-        size = max(abs(want.value), 1e-10 * abs(want.scale)) * grown
-        assert abs(cell.value - grown * want.value) <= tolerance * size, (column.label, cell, want)
+        grown = MICRO.of(unit) if unit in (*SI.values(), "1/min") else 1.0
+        off = abs(cell.value - grown * want.value)
+        rounding = 1e-10 * grown * abs(want.scale)  # which is shown as 0
+        assert off <= tolerance * grown * abs(want.value) + rounding, (column.label, cell, want)
     elif isinstance(cell, Span):
-        same_cell(Value(cell.low, cell.scale), Value(want.low, want.scale), column, units, tolerance)
-        same_cell(
-            Value(cell.high, cell.scale), Value(want.high, want.scale), column, units, tolerance
-        )
+        same_cell(Value(cell.low, cell.scale), Value(want.low, want.scale), column, tolerance)
+        same_cell(Value(cell.high, cell.scale), Value(want.high, want.scale), column, tolerance)
     elif isinstance(cell, str):
         assert words(cell) == words(want)
+
+
+# -- the laws --------------------------------------------------------------------------------------
+
+EXAMPLES = [name for name in names() if ":" not in name and " " not in name]
+FAST = [name for name in names() if not name.startswith("balance-geared")]
+RIGS = ("yamashita-rig", "riding-transplanter", "walking-transplanter", "exudyn-slider-crank")
+
+
+def both(machine: eq.Machine, compute: Callable[[eq.Machine], Any]) -> tuple[Any, Any]:
+    """What is computed of the small machine, and of the machine as it is."""
+    return compute(in_units(machine, MICRO)), compute(machine)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_analysis(name: str) -> None:
+    same_blocks(*both(machine_of(name), eq.analyze), 1e-9)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_balancing_by_the_usual_plan(name: str) -> None:
+    """With a plan of its own where it has one; the same change is told."""
+    kept = eq.load(name) if name in EXAMPLES else machine_of(name)
+    small, large = both(kept, lambda one: eq.balance(one, default_plan(one)))
+    same_blocks(small, large, 1e-7)
+    for link, body in in_units(large.machine, MICRO).links.items():
+        assert small.machine.links[link].mass == pytest.approx(body.mass, rel=1e-9)
+    assert any("mass" in dict(one.values) for one in small.changes) == any(
+        "mass" in dict(one.values) for one in large.changes
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "measure"),
+    [("yamashita-1", "peak"), ("slider-crank-engine", "rms"), ("geared-counterweight", "rms")],
+)
+def test_every_objective(name: str, measure: Any) -> None:
+    """Of a counterweight of the crank, and of centres of mass that are moved."""
+    machine = machine_of(name)
+    crank = machine.drive.link
+    counterweight = AddedMass(crank, next(iter(machine.links[crank].points)), Weight(radius=0.05))
+    moves = tuple(CenterMove(link) for link in machine.links)
+    for output in balanced_names(machine):
+        if output.startswith("gauges") or (machine.gears and "moment" not in output):
+            continue
+        wish = (Objective(output, measure),)
+        for plan in (Balance(masses=(counterweight,), objectives=wish),
+                     Balance(moves=moves, objectives=wish)):  # fmt: skip
+            told = []
+            for one, own in ((machine, plan), (in_units(machine, MICRO), None)):
+                try:
+                    own = own or in_units(plan, MICRO, machine)
+                    told.append(eq.balance(one, own).cost)
+                except eq.EquipoiseError as error:
+                    told.append(words(error))
+            assert told[0] == (pytest.approx(told[1]) if isinstance(told[1], float) else told[1])
+
+
+@pytest.mark.parametrize(
+    ("name", "model"),
+    [*((name, model) for name in RIGS for model in ("linear", "moment")), (RIGS[0], "exact")],
+)
+def test_vibration(name: str, model: Any) -> None:
+    machine = eq.load(name)
+    same_blocks(*both(machine, lambda one: eq.respond(one, model=model)), 1e-6)
+    small, large = both(machine, eq.modes)
+    for one, other in zip(small.modes, large.modes, strict=True):
+        assert one.eigenvalue * MICRO.time == pytest.approx(other.eigenvalue, rel=1e-8)
+    shapes, wanted = (
+        [cell.value for block in found.blocks() if isinstance(block, Table) and "hapes" in block.title
+         for row in block.rows for cell in row[1:]]
+        for found in (small, large)
+    )  # fmt: skip
+    assert np.count_nonzero(shapes) == np.count_nonzero(wanted) > 0
+
+
+def test_vibration_in_time() -> None:
+    machine = eq.load("yamashita-rig")
+    small = eq.simulate(in_units(machine, MICRO), 1.0 * MICRO.time)
+    large = eq.simulate(machine, 1.0)
+    for name, gauge in large.gauges.items():
+        grown = MICRO.length * gauge
+        np.testing.assert_allclose(
+            small.gauges[name], grown, atol=1e-10 * float(np.max(np.abs(grown)))
+        )
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_drawing(name: str) -> None:
+    """Every line on the same place of the paper; the ruler alone tells the size."""
+    small, large = both(machine_of(name), lambda one: laid_out(Scene.of(eq.move(one, 24))))
+    for one, other in zip(small.parts, large.parts, strict=True):
+        for stroke, wanted in zip(one.strokes, other.strokes, strict=True):
+            assert stroke.role == wanted.role
+            if stroke.role != "scale":
+                np.testing.assert_allclose(stroke.points, wanted.points, atol=1e-6)
