@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.i18n import say
+from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.mechanism.reactions import JointForce, SliderForce
@@ -29,6 +30,8 @@ if TYPE_CHECKING:
 
 MOST_ORDERS = 8
 """Orders that are told of."""
+TOLD_ANGLES = 24
+"""Crank angles in a turn at which an output is told that is chosen by its name."""
 
 
 def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
@@ -119,7 +122,7 @@ def orders_table(analysis: Analysis) -> Table:
     signals = [analysis.by_order[one.name] for one in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
-    tops: dict[Dimension, float] = {}
+    tops: dict[Dimension | None, float] = {}
     for one, size in zip(ones, sizes, strict=True):
         top = float(np.max(size[1:], initial=0.0))
         tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
@@ -200,9 +203,59 @@ def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:
         yield f"{float(signal.orders[k]):.4g}", *parts, phase, rms
 
 
-def _shown(analysis: Analysis, orders: int | None = None, zero: float = 0.0) -> Iterator[Block]:
-    """What `Analysis` shows; its harmonics up to an order where that is given."""
-    return analysis_blocks(analysis) if orders is None else harmonic_blocks(analysis, orders, zero)
+# -- chosen by name --------------------------------------------------------------------------------
+
+
+def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
+    """Outputs over crank angle: at those that were asked for, or some equally spaced ones."""
+    ones = analysis.outputs.chosen(names)
+    theta, motion = analysis.crank_angle, analysis.motion
+    apart = max(len(theta) // (TOLD_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
+    columns = [Column(one.label(), one.dimension) for one in ones]
+    cells = []
+    for one in ones:
+        sizes = np.abs(one.declared.vector(analysis, one.item))
+        scale = float(np.median(sizes[np.isfinite(sizes)])) if np.any(np.isfinite(sizes)) else 0.0
+        cells.append(
+            [
+                Value(value, scale) if np.isfinite(value) else say("infinite")
+                for value in one.values[::apart].tolist()
+            ]
+        )
+    angles = (Value(angle, after=1) for angle in theta[::apart].tolist())
+    rows = zip(angles, *cells, strict=True)
+    heads = (Column(say("crank angle"), "angle", "deg"), *columns)
+    return Table.of(say("Outputs over crank angle"), heads, rows)
+
+
+def dwells_table(dwells: Mapping[str, Dwell], kind: Dimension) -> Table:
+    """How long things hardly move."""
+    rows = (
+        (joint_named(name), Value(one.tolerance), Value(one.angle, after=1, at=one.begin))
+        for name, one in dwells.items()
+    )
+    columns = ("", Column(say("within"), kind), Column(say("dwell"), "angle", "deg"))
+    title = say("Longest crank angle over which each moves by no more, from crank angle")
+    return Table.of(title, columns, rows)
+
+
+def _shown(
+    analysis: Analysis,
+    orders: int | None = None,
+    zero: float = 0.0,
+    outputs: Sequence[str] = (),
+    dwells: Mapping[str, Dwell] | None = None,
+) -> Iterator[Block]:
+    """What `Analysis` shows; or its harmonics up to an order, outputs, or dwells that are given."""
+    if orders is not None:
+        yield from harmonic_blocks(analysis, orders, zero)
+    if outputs:
+        yield outputs_table(analysis, outputs)
+    if dwells is not None:
+        of_links = dwells.keys() <= analysis.motion.links.keys()
+        yield dwells_table(dwells, "angle" if of_links else "length")
+    if orders is None and not outputs and dwells is None:
+        yield from analysis_blocks(analysis)
 
 
 SHOWS = {"Analysis": _shown}

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.outputs import body_named
-from equipoise.quantities import PER_RPM, Dimension, angle, number
-from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
+from equipoise.mechanism.outputs import body_named, joint_named
+from equipoise.mechanism.strokes import SHARE
+from equipoise.quantities import PER_RPM, Dimension, angle, number, percent
+from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
@@ -51,6 +52,9 @@ APART = {
     ),
 }
 """What `condition_5` and `condition_6` of a four-bar say."""
+
+MOST_DEAD = 4
+"""Dead positions that are told beside the outermost two."""
 
 
 # -- figures as cells ------------------------------------------------------------------------------
@@ -202,6 +206,9 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     if analysis.four_bar is not None:
         yield four_bar_table(analysis.four_bar)
         yield Facts("", tuple(_four_bar(analysis.four_bar)))
+    if analysis.strokes:
+        yield strokes_table(analysis)
+        yield advantages_table(analysis)
     rate = abs(analysis.motion.speed)
     columns = (
         "",
@@ -220,6 +227,55 @@ def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     )
     yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
     yield _points(analysis)
+
+
+def strokes_table(analysis: Analysis) -> Table:
+    """Strokes of sliders and swings of rockers, with their dead positions and time ratios."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        dead = [
+            Value(place.place, one.stroke, place.crank_angle, dimension=one.dimension)
+            for place in one.dead_positions
+        ]
+        ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
+        others = [other for other in dead if other not in ends]
+        rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
+        stroke = Value(one.stroke, dimension=one.dimension)
+        rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))
+    heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
+    columns = ("", *heads, say("further dead positions"))
+    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    title = say(
+        "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
+        "slower stroke over that of the faster"
+    )
+    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
+
+
+def advantages_table(analysis: Analysis) -> Table:
+    """Over which crank angle sliders and rockers rise and dwell, and their least advantage."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        least = None
+        if one.least_advantage is not None:
+            least = Value(one.least_advantage, at=one.least_advantage_at)
+        pushes = (least, None) if one.kind == "slider" else (None, least)
+        held = Value(one.dwell, at=one.dwell_at, after=1)
+        rows.append((joint_named(name), Value(one.rise, after=1), held, *pushes))
+    columns = (
+        "",
+        Column(say("rises over"), "angle", "deg"),
+        Column(say("dwell"), "angle", "deg"),
+        Column(say("force over crank torque"), "force per torque"),
+        say("torque over crank torque"),
+    )
+    there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
+    title = say(
+        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
+        "mechanical advantage, which has no bound towards dead positions",
+        share=percent(SHARE),
+    )
+    return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
 
 
 def _points(analysis: Analysis) -> Table:
