@@ -16,6 +16,7 @@ from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
+from equipoise.results.machine_blocks import bodies_tables
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
 from equipoise.studies.evaluate import evaluator
@@ -48,6 +49,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     yield Text(f"the crank turns fully; the motion repeats after {turns}")
+    yield from bodies_tables(machine)
     yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
     if notes := (*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)):
         yield Notes(notes)
