@@ -206,7 +206,7 @@ UNREAD = {
     "task: no hours": (f"{TASKS}\na,1,0\n", "line 2, column duration: got 0 h; give more than 0"),
     "task: long": (f"{TASKS}\na,1,25\n", "line 2, column duration: got 25 h; give more"),
     "task: none": (TASKS, "line 1: there are no rows below the header; give at least one"),
-    "quotes": ('task,"acceleration\n', "line 1: this is no table of values with commas between them"),
+    "quotes": ('task,"acceleration\n', "line 1: this is no table of values with commas"),
 }  # fmt: skip
 
 

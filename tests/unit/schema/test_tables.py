@@ -47,7 +47,7 @@ AS_WRITTEN = {
     "tabs and decimal commas": "crank_angle [deg]\tforce_x [N]\n0\t5,0e-1\n90\t1,033\n360\t0,5\n",
     "quotes": 'crank_angle [deg],force_x [N]\n"0","0,5"\n"90,0","1,033"\n"360","0,5"\n',
     "degree sign": "crank_angle [°],force_x [N]\n0,0.5\n90,1.033\n360,0.5\n",
-    "comments": "# by hand, 3; x\ncrank_angle [deg],force_x [N]\n% up\n0,.5\n//\n90,1.033\n360,.5\n",
+    "comments": "# by me, 3; x\ncrank_angle [deg],force_x [N]\n% up\n0,.5\n//\n90,1.033\n360,.5\n",
     "header in a comment": "# May\n# crank_angle [deg], force_x [N]\n0,.5\n90,1.033\n360,.5\n",
 }
 
