@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.bodies import inertia_of, together
 from equipoise.mechanism.outputs import body_named
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
@@ -15,6 +16,7 @@ from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assessment import FourBar
+    from equipoise.mechanism.bodies import Body
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 
@@ -95,6 +97,7 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         rows.append((name, next(amounts), center, next(amounts)))
     title = say("Links; places in the axes of each link")
     yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
+    yield from bodies_tables(machine)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
     yield Table.of(
@@ -111,6 +114,39 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield rows_table(machine)
     if machine.support is not None:
         yield Facts(say("Support"), tuple(_support(machine)))
+
+
+def bodies_tables(machine: Machine) -> Iterator[Table]:
+    """What links are made of, where they are given by bodies, and what each is with all of them."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, link in machine.links.items():
+        parts = [inertia_of(body, link.points) for body in link.bodies]
+        named = [*zip(map(_named, link.bodies), parts, strict=True)]
+        if len(parts) > 1:
+            named.append((say("together"), together(parts)))
+        for part, (mass, center, inertia) in named:
+            where = place((center.real, center.imag))
+            rows.append((name, part, Value(mass), where, Value(inertia)))
+    if rows:
+        heads = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, mm", heads[1])
+        yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
+
+
+SHAPES = {
+    "bar": to_say("bar"),
+    "plate": to_say("plate"),
+    "disc": to_say("disc"),
+    "ring": to_say("ring"),
+    "point": to_say("point mass"),
+}
+"""What bodies are called, by their shape."""
+
+
+def _named(body: Body) -> str:
+    """A body by its shape and the points where it is."""
+    spots = (*body.between, *body.corners, body.at)
+    return " ".join([say(SHAPES[body.shape]), *(spot for spot in spots if isinstance(spot, str))])
 
 
 def rows_table(machine: Machine) -> Table:

@@ -299,7 +299,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         ({"inertia": 10**400}, "inertia", "a number"),
         ({"center_of_mass": (1, 2, 3)}, "center_of_mass", "two numbers"),
         ({"center_of_mass": 1.0}, "center_of_mass", "two numbers"),
-        ({"points": ["A"]}, "points", "a mapping of names to two numbers"),
+        ({"points": "A"}, "points", "a mapping of names to two numbers"),
     ],
 )
 def test_values_of_the_wrong_kind(changes: dict[str, Any], where: str, wanted: str) -> None:
