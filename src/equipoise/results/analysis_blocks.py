@@ -12,15 +12,19 @@ from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.quantities import Dimension, angle
-from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.mechanism.strokes import SHARE
+from equipoise.quantities import Dimension, angle, percent
+from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
+    four_bar_facts,
+    four_bar_table,
     largest,
-    motion_blocks,
     place,
+    points_table,
     smallest,
+    span,
 )
 from equipoise.results.outputs import CAUSES
 from equipoise.signals import Array, Periodic, figures
@@ -30,6 +34,8 @@ if TYPE_CHECKING:
 
 MOST_ORDERS = 8
 """Orders that are told of."""
+MOST_DEAD = 4
+"""Dead positions that are told beside the outermost two."""
 TOLD_ANGLES = 24
 """Crank angles in a turn at which an output is told that is chosen by its name."""
 
@@ -44,6 +50,86 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield joint_table(analysis)
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def motion_blocks(analysis: Analysis) -> Iterator[Block]:
+    """How links and points move."""
+    if analysis.four_bar is not None:
+        yield four_bar_table(analysis.four_bar)
+        yield Facts("", tuple(four_bar_facts(analysis.four_bar)))
+    if analysis.strokes:
+        yield strokes_table(analysis)
+        yield advantages_table(analysis)
+    rate = abs(analysis.motion.speed)
+    columns = (
+        "",
+        Column(say("angle"), "angle"),
+        Column(say("velocity"), "angular speed"),
+        Column(say("acceleration"), "angular acceleration"),
+    )
+    rows = (
+        (
+            name,
+            span(link.angle),
+            span(link.angular_velocity, rate),
+            span(link.angular_acceleration, rate**2),
+        )
+        for name, link in analysis.motion.links.items()
+    )
+    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
+    yield points_table(analysis)
+
+
+def strokes_table(analysis: Analysis) -> Table:
+    """Strokes of sliders and swings of rockers, with their dead positions and time ratios."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        dead = [
+            Value(place.place, one.stroke, place.crank_angle, dimension=one.dimension)
+            for place in one.dead_positions
+        ]
+        ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
+        others = [other for other in dead if other not in ends]
+        rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
+        stroke = Value(one.stroke, dimension=one.dimension)
+        rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))
+    heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
+    columns = ("", *heads, say("further dead positions"))
+    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    title = say(
+        "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
+        "slower stroke over that of the faster"
+    )
+    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
+
+
+def advantages_table(analysis: Analysis) -> Table:
+    """Over which crank angle sliders and rockers rise and dwell, and their least advantage."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        least = None
+        if one.least_advantage is not None:
+            least = Value(one.least_advantage, at=one.least_advantage_at)
+        pushes = (least, None) if one.kind == "slider" else (None, least)
+        held = Value(one.dwell, at=one.dwell_at, after=1)
+        rows.append((joint_named(name), Value(one.rise, after=1), held, *pushes))
+    columns = (
+        "",
+        Column(say("rises over"), "angle", "deg"),
+        Column(say("dwell"), "angle", "deg"),
+        Column(say("force over crank torque"), "force per torque"),
+        say("torque over crank torque"),
+    )
+    there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
+    title = say(
+        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
+        "mechanical advantage, which has no bound towards dead positions",
+        share=percent(SHARE),
+    )
+    return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
 
 
 # -- forces ----------------------------------------------------------------------------------------

@@ -1,4 +1,4 @@
-"""What a machine shows, and how it moves: its parts, links, points and four-bar."""
+"""What a machine shows: its parts, how it is driven, its points and four-bar."""
 
 from __future__ import annotations
 
@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
-from equipoise.mechanism.outputs import body_named, joint_named
-from equipoise.mechanism.strokes import SHARE
-from equipoise.quantities import PER_RPM, Dimension, angle, number, percent
-from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Span, Table, Value
+from equipoise.mechanism.bodies import inertia_of, together
+from equipoise.mechanism.outputs import body_named
+from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assessment import FourBar
+    from equipoise.mechanism.bodies import Body
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 
@@ -53,9 +54,6 @@ APART = {
 }
 """What `condition_5` and `condition_6` of a four-bar say."""
 
-MOST_DEAD = 4
-"""Dead positions that are told beside the outermost two."""
-
 
 # -- figures as cells ------------------------------------------------------------------------------
 
@@ -75,7 +73,7 @@ def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
     return None if steady else crank_angle
 
 
-def _span(values: Array, scale: float = 0.0) -> Span:
+def span(values: Array, scale: float = 0.0) -> Span:
     """Smallest to largest of some values."""
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
@@ -99,6 +97,7 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         rows.append((name, next(amounts), center, next(amounts)))
     title = say("Links; places in the axes of each link")
     yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
+    yield from bodies_tables(machine)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
     yield Table.of(
@@ -115,6 +114,39 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield rows_table(machine)
     if machine.support is not None:
         yield Facts(say("Support"), tuple(_support(machine)))
+
+
+def bodies_tables(machine: Machine) -> Iterator[Table]:
+    """What links are made of, where they are given by bodies, and what each is with all of them."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, link in machine.links.items():
+        parts = [inertia_of(body, link.points) for body in link.bodies]
+        named = [*zip(map(_named, link.bodies), parts, strict=True)]
+        if len(parts) > 1:
+            named.append((say("together"), together(parts)))
+        for part, (mass, center, inertia) in named:
+            where = place((center.real, center.imag))
+            rows.append((name, part, Value(mass), where, Value(inertia)))
+    if rows:
+        heads = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, mm", heads[1])
+        yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
+
+
+SHAPES = {
+    "bar": to_say("bar"),
+    "plate": to_say("plate"),
+    "disc": to_say("disc"),
+    "ring": to_say("ring"),
+    "point": to_say("point mass"),
+}
+"""What bodies are called, by their shape."""
+
+
+def _named(body: Body) -> str:
+    """A body by its shape and the points where it is."""
+    spots = (*body.between, *body.corners, body.at)
+    return " ".join([say(SHAPES[body.shape]), *(spot for spot in spots if isinstance(spot, str))])
 
 
 def rows_table(machine: Machine) -> Table:
@@ -201,84 +233,8 @@ def angles_told(analysis: Analysis) -> str:
     )
 
 
-def motion_blocks(analysis: Analysis) -> Iterator[Block]:
-    """How links and points move."""
-    if analysis.four_bar is not None:
-        yield four_bar_table(analysis.four_bar)
-        yield Facts("", tuple(_four_bar(analysis.four_bar)))
-    if analysis.strokes:
-        yield strokes_table(analysis)
-        yield advantages_table(analysis)
-    rate = abs(analysis.motion.speed)
-    columns = (
-        "",
-        Column(say("angle"), "angle"),
-        Column(say("velocity"), "angular speed"),
-        Column(say("acceleration"), "angular acceleration"),
-    )
-    rows = (
-        (
-            name,
-            _span(link.angle),
-            _span(link.angular_velocity, rate),
-            _span(link.angular_acceleration, rate**2),
-        )
-        for name, link in analysis.motion.links.items()
-    )
-    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
-    yield _points(analysis)
-
-
-def strokes_table(analysis: Analysis) -> Table:
-    """Strokes of sliders and swings of rockers, with their dead positions and time ratios."""
-    rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.strokes.items():
-        dead = [
-            Value(place.place, one.stroke, place.crank_angle, dimension=one.dimension)
-            for place in one.dead_positions
-        ]
-        ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
-        others = [other for other in dead if other not in ends]
-        rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
-        stroke = Value(one.stroke, dimension=one.dimension)
-        rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))
-    heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
-    columns = ("", *heads, say("further dead positions"))
-    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
-    title = say(
-        "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
-        "slower stroke over that of the faster"
-    )
-    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
-
-
-def advantages_table(analysis: Analysis) -> Table:
-    """Over which crank angle sliders and rockers rise and dwell, and their least advantage."""
-    rows: list[tuple[Cell, ...]] = []
-    for name, one in analysis.strokes.items():
-        least = None
-        if one.least_advantage is not None:
-            least = Value(one.least_advantage, at=one.least_advantage_at)
-        pushes = (least, None) if one.kind == "slider" else (None, least)
-        held = Value(one.dwell, at=one.dwell_at, after=1)
-        rows.append((joint_named(name), Value(one.rise, after=1), held, *pushes))
-    columns = (
-        "",
-        Column(say("rises over"), "angle", "deg"),
-        Column(say("dwell"), "angle", "deg"),
-        Column(say("force over crank torque"), "force per torque"),
-        say("torque over crank torque"),
-    )
-    there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
-    title = say(
-        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
-        "mechanical advantage, which has no bound towards dead positions",
-        share=percent(SHARE),
-    )
-    return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
-
-
-def _points(analysis: Analysis) -> Table:
+def points_table(analysis: Analysis) -> Table:
+    """Places of moving points, and how fast they become."""
     theta = analysis.crank_angle
     rows: list[tuple[Cell, ...]] = []
     for name, point in analysis.motion.points.items():
@@ -286,7 +242,7 @@ def _points(analysis: Analysis) -> Table:
             continue
         reach = float(np.max(np.abs(point.place)))
         tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
-        rows.append((name, _span(point.x, reach), _span(point.y, reach), *map(largest, tops)))
+        rows.append((name, span(point.x, reach), span(point.y, reach), *map(largest, tops)))
     columns = (
         "",
         Column("x", "length"),
@@ -318,7 +274,8 @@ def four_bar_table(found: FourBar) -> Table:
     return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
 
 
-def _four_bar(found: FourBar) -> Iterator[str]:
+def four_bar_facts(found: FourBar) -> Iterator[str]:
+    """What else there is to say of it."""
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
             "Transmission angle from {low}° to {high}°",
