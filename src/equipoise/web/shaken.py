@@ -10,11 +10,11 @@ from equipoise.errors import EquipoiseError
 from equipoise.i18n import say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
-from equipoise.mechanism.outputs import joint_named
-from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.quantities import Dimension, display, in_unit
 from equipoise.results.analysis import Analysis
 from equipoise.vibration.forced import respond
