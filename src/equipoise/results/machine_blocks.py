@@ -1,4 +1,4 @@
-"""What a machine shows, and how it moves: its parts, links, points and four-bar."""
+"""What a machine shows: its parts, how it is driven, its points and four-bar."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
     return None if steady else crank_angle
 
 
-def _span(values: Array, scale: float = 0.0) -> Span:
+def span(values: Array, scale: float = 0.0) -> Span:
     """Smallest to largest of some values."""
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
@@ -233,32 +233,8 @@ def angles_told(analysis: Analysis) -> str:
     )
 
 
-def motion_blocks(analysis: Analysis) -> Iterator[Block]:
-    """How links and points move."""
-    if analysis.four_bar is not None:
-        yield four_bar_table(analysis.four_bar)
-        yield Facts("", tuple(_four_bar(analysis.four_bar)))
-    rate = abs(analysis.motion.speed)
-    columns = (
-        "",
-        Column(say("angle"), "angle"),
-        Column(say("velocity"), "angular speed"),
-        Column(say("acceleration"), "angular acceleration"),
-    )
-    rows = (
-        (
-            name,
-            _span(link.angle),
-            _span(link.angular_velocity, rate),
-            _span(link.angular_acceleration, rate**2),
-        )
-        for name, link in analysis.motion.links.items()
-    )
-    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
-    yield _points(analysis)
-
-
-def _points(analysis: Analysis) -> Table:
+def points_table(analysis: Analysis) -> Table:
+    """Places of moving points, and how fast they become."""
     theta = analysis.crank_angle
     rows: list[tuple[Cell, ...]] = []
     for name, point in analysis.motion.points.items():
@@ -266,7 +242,7 @@ def _points(analysis: Analysis) -> Table:
             continue
         reach = float(np.max(np.abs(point.place)))
         tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
-        rows.append((name, _span(point.x, reach), _span(point.y, reach), *map(largest, tops)))
+        rows.append((name, span(point.x, reach), span(point.y, reach), *map(largest, tops)))
     columns = (
         "",
         Column("x", "length"),
@@ -298,7 +274,8 @@ def four_bar_table(found: FourBar) -> Table:
     return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
 
 
-def _four_bar(found: FourBar) -> Iterator[str]:
+def four_bar_facts(found: FourBar) -> Iterator[str]:
+    """What else there is to say of it."""
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
             "Transmission angle from {low}° to {high}°",
