@@ -139,12 +139,14 @@ def test_vibration(name: str, model: Any) -> None:
     small, large = both(machine, eq.modes)
     for one, other in zip(small.modes, large.modes, strict=True):
         assert one.eigenvalue * MICRO.time == pytest.approx(other.eigenvalue, rel=1e-8)
-    shapes, wanted = (
-        [cell.value for block in found.blocks() if isinstance(block, Table) and "hapes" in block.title
-         for row in block.rows for cell in row[1:]]
-        for found in (small, large)
-    )  # fmt: skip
+    shapes, wanted = map(shapes_of, (small, large))
     assert np.count_nonzero(shapes) == np.count_nonzero(wanted) > 0
+
+
+def shapes_of(found: Any) -> list[float]:
+    """What is shown of the shapes of modes."""
+    tables = [one for one in found.blocks() if isinstance(one, Table) and "hapes" in one.title]
+    return [cell.value for one in tables for row in one.rows for cell in row[1:]]
 
 
 def test_vibration_in_time() -> None:
