@@ -120,9 +120,9 @@ def test_every_objective(name: str, measure: Any) -> None:
         for plan in (Balance(masses=(counterweight,), objectives=wish),
                      Balance(moves=moves, objectives=wish)):  # fmt: skip
             told = []
-            for one, own in ((machine, plan), (in_units(machine, MICRO), None)):
+            small = in_units(machine, MICRO)
+            for one, own in ((machine, plan), (small, in_units(plan, MICRO, machine))):
                 try:
-                    own = own or in_units(plan, MICRO, machine)
                     told.append(eq.balance(one, own).cost)
                 except eq.EquipoiseError as error:
                     told.append(words(error))
