@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 from collections.abc import Iterable, Mapping
@@ -23,7 +22,6 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.studies.store import Store
     from equipoise.studies.study import Study
 
     Array = np.ndarray[Any, Any]
@@ -69,7 +67,7 @@ def best(
     found = of_stores.best(opened, most, ways)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(opened, first)
-    title, units = title_of(opened), units_in(opened)
+    title, units = opened.title, units_in(opened)
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
@@ -77,7 +75,7 @@ def best(
     outputs.print(
         title,
         lambda: {"title": title, **found.to_dict()},
-        lambda: found.blocks(outputs=of_stores.outputs_of(opened), units=units),
+        lambda: found.blocks(outputs=opened.wishes, units=units),
     )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
@@ -194,11 +192,6 @@ def _columns(
 
     told = [(name, units.get(name) or "", values) for name, values in columns.items()]
     return [("design", "", np.array([*designs])), *told]
-
-
-def title_of(store: Store) -> str:
-    """Title of the study in a store."""
-    return str(json.loads(store.texts["study"])["title"])
 
 
 def _si_units(study: Study) -> dict[str, str]:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.partial import beside
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -85,12 +86,9 @@ def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = Tr
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"
             raise UsageError(f"{shown}: this is {kind}; give the name of a file")
-        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        try:
-            _write_synced(temporary, data, like=target)
-            os.replace(temporary, target)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with beside(target) as begun:
+            _write_synced(begun, data, like=target)
+            os.replace(begun, target)
     except (OSError, ValueError) as error:
         what = f"the file cannot be written ({reason(error)})"
         raise UsageError(f"{shown}: {what}; choose another place or name") from error
