@@ -1,6 +1,7 @@
 """Files and folders on their way to be whole: made beside their place, and put there at the end.
 
-What a process that was killed has left beside a place goes when the next one writes there.
+What a process that was killed has left beside a place goes when the next one writes there.  Of what
+is written `together`, all takes its place in the end, or nothing where something goes wrong.
 """
 
 from __future__ import annotations
@@ -9,9 +10,13 @@ import os
 import shutil
 import socket
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
+from contextvars import ContextVar
+from dataclasses import dataclass, field
 from pathlib import Path
+
+from equipoise.errors import UsageError
 
 ENDING = ".tmp"
 
@@ -28,6 +33,93 @@ def beside(target: Path) -> Iterator[Path]:
         yield begun
     finally:
         _remove(begun)
+
+
+@dataclass
+class _Together:
+    """What waits until all of it can be done.
+
+    places : what is to take whose place.  stack : of what goes in the end.
+    """
+
+    stack: ExitStack
+    places: dict[Path, Path] = field(default_factory=dict)
+    then: list[Callable[[], None]] = field(default_factory=list)
+
+    def done(self) -> None:
+        for begun, target in self.places.items():
+            try:
+                os.replace(begun, target)
+            except OSError as error:
+                what = f"the file cannot be written ({(error.strerror or '').lower()})"
+                raise UsageError(f"{target}: {what}; choose another place or name") from error
+        for act in self.then:
+            act()
+
+
+_waiting: ContextVar[_Together | None] = ContextVar("_waiting", default=None)
+
+
+@contextmanager
+def together() -> Iterator[None]:
+    """What is put into its place, and told of it, meanwhile: in the end all of it, or nothing.
+
+    A reader of the output who has seen enough does not keep files from being written.
+    """
+    with ExitStack() as stack:
+        whole = _Together(stack)
+        token = _waiting.set(whole)
+        try:
+            yield
+        except BrokenPipeError:
+            whole.done()
+            raise
+        finally:
+            _waiting.reset(token)
+        whole.done()
+
+
+@contextmanager
+def replaced(target: Path) -> Iterator[Path]:
+    """A free path beside a target, for a file that takes its place once it is whole."""
+    whole = _waiting.get()
+    if whole is None:
+        with beside(target) as begun:
+            yield begun
+            os.replace(begun, target)
+        return
+    begun = whole.stack.enter_context(beside(target))
+    yield begun
+    whole.places[begun] = target
+
+
+def made(folder: str | os.PathLike[str]) -> None:
+    """Make a folder, with all above it, where it is not there; gone again where nothing comes in.
+
+    Raises
+    ------
+    OSError : it cannot be made.
+    """
+    path, whole = Path(folder).absolute(), _waiting.get()
+    missing = [one for one in (path, *path.parents) if not one.exists()]
+    os.makedirs(folder, exist_ok=True)
+    if whole is not None:
+        for one in reversed(missing):  # the innermost goes first
+            whole.stack.callback(_remove_empty, one)
+
+
+def afterwards(act: Callable[[], None]) -> None:
+    """Do something once everything is in its place; at once where nothing waits."""
+    whole = _waiting.get()
+    if whole is None:
+        act()
+    else:
+        whole.then.append(act)
+
+
+def _remove_empty(folder: Path) -> None:
+    with suppress(OSError):
+        folder.rmdir()
 
 
 def clear_left_over(folder: Path) -> None:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -15,6 +13,7 @@ from equipoise.cli.outputs import (
     check_new,
     check_result_file,
     write_model,
+    wrote,
 )
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
@@ -97,7 +96,6 @@ def export(
     kept
         Only designs that keep every limit.
     """
-    from equipoise.schema.files import printable
     from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
@@ -107,7 +105,7 @@ def export(
         raise UsageError(f"--out: {got}; give the name of a file that ends in .parquet or .csv")
     check_result_file("--out", out, [])
     rows = of_stores.export(opened, out, kept=kept)
-    print(f"wrote {rows} designs to {printable(os.fspath(out))}", file=sys.stderr)
+    wrote(f"{rows} designs to {out}")
 
 
 def search(

@@ -20,7 +20,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError, needed
 from equipoise.mechanism.checks import unknown
-from equipoise.partial import beside
+from equipoise.partial import replaced
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.outcomes import (
@@ -286,9 +286,7 @@ def _csv(file: BinaryIO, schema: Any, store: Store) -> Iterator[Write]:
 def _replaced(path: Path) -> Iterator[BinaryIO]:
     """A file that takes its place once it is whole."""
     target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
-    with beside(target) as begun:
-        with open(begun, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(begun, target)
+    with replaced(target) as begun, open(begun, "wb") as file:
+        yield file
+        file.flush()
+        os.fsync(file.fileno())
