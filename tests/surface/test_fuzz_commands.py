@@ -24,7 +24,16 @@ from typing import Any
 import pytest
 import tomli_w
 
-from surface.running import EXAMPLES, STUDIES, TOOLS, Result, equipoise, example, no_constant, refused
+from surface.running import (
+    EXAMPLES,
+    STUDIES,
+    TOOLS,
+    Result,
+    equipoise,
+    example,
+    no_constant,
+    refused,
+)
 from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
 
 SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
@@ -147,7 +156,9 @@ def tried(seed: int) -> None:
         elif "--json" in words:
             json.loads(result.out, parse_constant=no_constant)
     except BaseException as error:
-        raise AssertionError(f"seed {seed}: {' '.join(words)}: {error!r}; {result.err[:300]}") from error
+        raise AssertionError(
+            f"seed {seed}: {' '.join(words)}: {error!r}; {result.err[:300]}"
+        ) from error
     finally:
         os.chdir("..")
     most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError
+from equipoise.errors import EquipoiseError, to_paste
 from equipoise.partial import together
 
 if TYPE_CHECKING:
@@ -73,7 +73,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
             if sys.stdout is not None:  # None where the shell has closed it
                 sys.stdout.flush()
     except (EquipoiseError, CycloptsError) as error:
-        print(f"equipoise: {_one_line(str(error))}", file=sys.stderr)
+        sentence, *lines = to_paste(str(error))
+        print(
+            f"equipoise: {_one_line(sentence)}", *map(_one_line, lines), sep="\n", file=sys.stderr
+        )
         return 2
     except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
         words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))

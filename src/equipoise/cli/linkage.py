@@ -184,16 +184,22 @@ def respond(
     speed
         Speed of the crank instead of the file's: "193 rpm", or a range: "20 rpm : 400 rpm".
     speeds
-        With a range: number of speeds, 200 if not given; more are added about resonances.
+        With a range: number of speeds, 200 if not given; more are added about resonances.  Without
+        --speed the range is that of speeds in [drive].
     drive
         Let the speed follow from the motor in [drive.motor], by the model exact.
     """
     from equipoise.vibration import forced, sweep
 
-    ends: list[float] = speed or []
-    if speeds is not None and len(ends) != 2:
-        raise UsageError('--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both')
     machine = linkage_of(file)
+    ends: list[float] = speed or []
+    if speeds is not None and speed is None:
+        ends = [*(machine.drive.range or ())]
+    if speeds is not None and len(ends) != 2:
+        raise UsageError(
+            '--speeds belongs to a range, --speed "20 rpm : 400 rpm"; give both, or speeds in '
+            "[drive] of the file"
+        )
     outputs.check(sources_of(machine, file))
     with naming(file):
         if len(ends) == 2:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import pi
 from typing import Any, TypeVar
 
 from equipoise.errors import ModelError
@@ -87,6 +88,17 @@ def wrong_range(where: str, pair: Vector | None, scale: float, unit: str) -> Ite
     if pair is not None and pair[0] > pair[1]:
         low, high = (scale * value for value in pair)
         yield ModelError(where, f"got {low:.6g} to {high:.6g}{unit}; give the smaller one first")
+
+
+def wrong_speeds(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
+    """Two speeds, the lower one first."""
+    if len(speeds) != 2:
+        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
+    elif not 0 < speeds[0] < speeds[1]:
+        low, high = (speed * 30 / pi for speed in speeds)
+        yield ModelError(
+            where, f"got {low:.6g} to {high:.6g} rpm; give two above 0, the lower one first"
+        )
 
 
 def unknown_link(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:

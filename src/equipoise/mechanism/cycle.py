@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, pi
+from math import degrees, lcm, pi
 
 import numpy as np
 
@@ -78,6 +78,11 @@ class Cycle:
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
 
 
+def turns_of_loads(machine: Machine) -> int:
+    """Turns of the crank after which all loads of a machine are back."""
+    return lcm(*(load.table.turns for load in machine.loads if load.table is not None))
+
+
 def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
 
@@ -86,7 +91,7 @@ def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
-    base = turns = tried = 1
+    base = turns = tried = turns_of_loads(machine)
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
         grid = _Grid(machine, turns)

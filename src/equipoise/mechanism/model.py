@@ -37,6 +37,7 @@ from equipoise.mechanism.checks import (
     too_many,
     unknown,
     unknown_link,
+    wrong_speeds,
     wrong_text,
 )
 from equipoise.mechanism.field import Planting, wrong_planting
@@ -293,6 +294,8 @@ def _problems(machine: Machine) -> Iterator[ModelError]:
         for name in machine.position.angles:
             yield from unknown_link(f"position.angles.{name}", name, bodies)
     yield from wrong_planting(machine.planting, bodies)
+    if machine.drive.speeds:
+        yield from wrong_speeds("drive.speeds", machine.drive.speeds)
     if motor is not None:
         yield from wrong_motor("drive.motor", motor)
     yield from wrong_support(machine.support, machine.rows)

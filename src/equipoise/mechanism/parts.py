@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import hypot, pi, radians
+from math import copysign, hypot, pi, radians
 from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
@@ -18,6 +18,7 @@ from equipoise.keys import (
     Named,
     Number,
     Point,
+    Quantity,
     Table,
     Text,
     Whole,
@@ -72,6 +73,8 @@ class Link(Frozen):
 class Drive(Frozen):
     """The link that is driven."""
 
+    file_order = ("link", "speed", "speeds")
+
     link: str = key(
         Text(),
         "the driven link; it shares exactly one point with the frame, about which it turns",
@@ -89,6 +92,22 @@ class Drive(Frozen):
         why=NO_INERTIA,
     )
     motor: Motor | None = key(Table(Motor, headed=True), "what drives it", default=None)
+    speeds: tuple[float, ...] = key(
+        Listing(Quantity("angular speed"), (2,), 'a list such as ["150 rpm", "240 rpm"]'),
+        "the slowest and the fastest at which the machine runs, in the direction of `speed`; over "
+        "these it is judged, swept and balanced",
+        default=(),
+        example=["150 rpm", "240 rpm"],
+        above=0,
+    )
+
+    @property
+    def range(self) -> tuple[float, float] | None:
+        """The slowest and the fastest speed, rad/s, with the sign of `speed`; None if not told."""
+        if not self.speeds:
+            return None
+        slow, fast = self.speeds
+        return copysign(slow, self.speed), copysign(fast, self.speed)
 
 
 @declared

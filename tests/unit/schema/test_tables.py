@@ -23,7 +23,7 @@ from unit.schema.samples import FOUR_BAR, PLANTING
 from unit.schema.tool_samples import TOOL
 
 RPM = 2 * pi / 60
-LOADED = '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "f.csv"\n'
+LOADED = '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "f.csv"\noutside = "wrap"\n'
 FORCES = "crank_angle [deg],force_x [N],force_y [N]\n0,1,2\n90,3,-4.5\n"
 
 
@@ -147,7 +147,9 @@ def with_tables(file: str | None = None) -> Machine:
     push, soil, curve = (
         one if file is None else replace(one, file=file) for one in (PUSH, SOIL, CURVE)
     )
-    machine = replace(loads(FOUR_BAR + PLANTING), loads=(Load("coupler", "C", table=push),))
+    machine = replace(
+        loads(FOUR_BAR + PLANTING), loads=(Load("coupler", "C", table=push, outside="hold"),)
+    )
     return machine.with_planting(soil=Soil(3.0, table=soil)).with_drive(motor=Motor(table=curve))
 
 

@@ -15,6 +15,7 @@ from unit.web.pages import ask, counterweight, edit, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
 STUCK = eq.dumps(eq.load("yamashita-1")).replace('"33.5 mm"', '"200 mm"')
+SIDELESS = eq.dumps(eq.load("yamashita-1")).replace('[assembly]\nC = "left"', "")
 
 
 def test_undo_and_redo_go_through_every_step() -> None:
@@ -168,6 +169,13 @@ def test_a_change_while_it_is_balanced_is_not_lost() -> None:
     assert session.shown.design.own.links["crank"].mass == 0.25
 
 
+def test_a_speed_within_a_resonance_is_told_with_the_response() -> None:
+    session, _ = opened("yamashita-rig")
+    shown = ask(session, "edit", seq=1, edits=[{"set": "drive.speed", "text": "118 rpm"}])
+    notes = next(one.content["notes"] for one in shown if one.content["type"] == "response")
+    assert any("is to be avoided: between 96.8 and 137 rpm order 1" in note for note in notes)
+
+
 def test_downloads() -> None:
     session, _ = opened("yamashita-1")
     edit(session, MASS)
@@ -196,6 +204,7 @@ def test_downloads() -> None:
         ({"name": "t.toml", "text": 'schema = 1\nshaft.length = "1 m"'}, "hand-held tool"),
         ({"name": "c.toml"}, "open: text: got nothing"),
         ({"name": "s.toml", "text": STUCK}, "s.toml: the crank cannot turn fully"),
+        ({"name": "s.toml", "text": SIDELESS}, "such as\n[assembly]\n# C lies left or right of"),
     ],
 )
 def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
