@@ -58,7 +58,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
     narrow = shutil.get_terminal_size().columns < LEAST
-    app.console = _console(LEAST) if narrow else None  # type: ignore[assignment]
+    app.console = _console(LEAST) if narrow else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
         for name in COMMANDS:
             _ = app[name]

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import platform
-import socket
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
@@ -27,7 +26,7 @@ import numpy as np
 
 import equipoise
 from equipoise.errors import UsageError, needed
-from equipoise.partial import clear_left_over
+from equipoise.partial import clear_left_over, locked
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.outcomes import Block, Outcome
@@ -291,61 +290,3 @@ def brief(error: Exception) -> str:
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
     line = said.splitlines()[0].rstrip(".") if said else type(error).__name__
     return line[:1].lower() + line[1:LONGEST]
-
-
-LOCK_FILE = ".lock"
-"""Of the file; empty while nobody holds it."""
-
-if sys.platform == "win32":
-    import msvcrt
-
-    BEHIND = 1_000_000
-    """What is locked: a byte behind the text, which others could not read otherwise."""
-
-    def _take(descriptor: int) -> None:
-        os.lseek(descriptor, BEHIND, os.SEEK_SET)
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-else:
-    import fcntl
-
-    def _take(descriptor: int) -> None:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-@contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a store.
-
-    Raises
-    ------
-    UsageError : another process has it; the sentence names it.
-    OSError : the folder cannot be written into, or its disk knows no locks.
-    """
-    # Files opened by Python are not handed down to processes that are started meanwhile.
-    descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT, 0o666)
-    try:
-        try:
-            _take(descriptor)
-        except (BlockingIOError, PermissionError) as error:
-            raise UsageError(
-                f"{folder}: {_holder(folder)} is writing into this store; wait until it is done, "
-                "or stop it"
-            ) from error
-        with suppress(OSError):  # of a full disk, which will be told of where it matters
-            os.ftruncate(descriptor, 0)
-            os.lseek(descriptor, 0, os.SEEK_SET)
-            os.write(descriptor, f"process {os.getpid()} on {socket.gethostname()}".encode())
-        try:
-            yield
-        finally:
-            with suppress(OSError):
-                os.ftruncate(descriptor, 0)
-    finally:
-        os.close(descriptor)
-
-
-def _holder(folder: Path) -> str:
-    try:
-        return (folder / LOCK_FILE).read_text("utf-8") or "another process"
-    except (OSError, ValueError):
-        return "another process"

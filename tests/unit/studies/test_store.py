@@ -202,7 +202,7 @@ def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) ->
 HOLD = """
 import sys, time
 from pathlib import Path
-from equipoise.studies.store import locked
+from equipoise.partial import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)
