@@ -22,8 +22,9 @@ from equipoise.cli.options import (
     naming,
 )
 from equipoise.cli.outputs import Drawn, Printed
-from equipoise.cli.progress import Watched, rate_told, swept, time_told
+from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Summary, Unit
