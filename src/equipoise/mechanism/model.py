@@ -206,13 +206,42 @@ class Machine(Frozen):
         return sum(link.mass or 0.0 for link in self.links.values())
 
     def with_link(self, name: str, **changes: Any) -> Machine:
-        """Return the machine with fields of one link changed."""
+        """Return the machine with fields of one link changed; `with_point` moves one point.
+
+        Raises
+        ------
+        ModelError : there is no such link, or new `points` leave some of its own out.
+        """
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
+        old, new = self.links[name].points, changes.get("points")
+        if new and isinstance(new, Mapping) and (lost := [one for one in old if one not in new]):
+            raise ModelError(
+                f"links.{name}.points",
+                f"{', '.join(lost)} would be lost; give all points, or move one by with_point; "
+                "dataclasses.replace(machine, links=...) leaves out what it is not given",
+            )
         links = {**self.links, name: self.links[name].altered(**changes)}
         return self._same_motion(
             replace(self, links=links), set(changes) <= {*MASS_FIELDS, "bodies"}
         )
+
+    def with_point(self, body: str, point: str, place: Vector) -> Machine:
+        """Return the machine with one point of a link, or of the frame, at another place.
+
+        place : (x, y) in the axes of the body, m.
+
+        Raises
+        ------
+        ModelError : there is no such link or point.
+        """
+        if body not in self.bodies:
+            raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
+        where = "frame" if body == FRAME else f"links.{body}"
+        if point not in (points := self.points_of(body)):
+            raise ModelError(f"{where}.points", unknown(point, points, f"point of {body}"))
+        moved = {**points, point: place}
+        return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
