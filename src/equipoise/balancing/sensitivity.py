@@ -212,7 +212,7 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
 def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
     """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
     if zero:
-        yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+        yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     rows: list[tuple[Cell, ...]] = []
     for one in found.ranked:
         unit, size = CHANGES[one.change]

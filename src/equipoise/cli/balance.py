@@ -135,7 +135,7 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
         values = {kind: one.to_dict() for kind, one in found.items()}
         told = feasibility(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: values | {"verdict": told.to_dict()},
             lambda: conditions_blocks(
                 *found.values(), verdict=[one.reason for one in told.answers]
@@ -199,7 +199,7 @@ def arrangements(
     with naming(file):
         check_moving(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
             lambda: pattern_blocks(machine, rows, spacing),
         )

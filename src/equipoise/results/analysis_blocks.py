@@ -18,7 +18,7 @@ from equipoise.results.machine_blocks import (
     driven,
     largest,
     motion_blocks,
-    place,
+    place_told,
     smallest,
 )
 from equipoise.results.outputs import CAUSES
@@ -61,8 +61,8 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
         rows.append((one.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(
-        "On frame and drive; extremes with their crank angle, moments about ({place}) mm",
-        place=place((about.real, about.imag)),
+        "On frame and drive; extremes with their crank angle, moments about {place}",
+        place=place_told((about.real, about.imag)),
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
@@ -177,7 +177,7 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     zero : rad, direction from which crank angles count.
     """
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
-    yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import body_named
-from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
@@ -55,10 +55,16 @@ def _span(values: Array, scale: float = 0.0) -> Span:
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
 
-def place(xy: tuple[float, ...]) -> str:
-    """A place in mm."""
-    scale = 1e3 * max(map(abs, xy))
-    return ", ".join(number(1e3 * part, scale) for part in xy)
+def place(xy: tuple[float, ...], unit: Display) -> str:
+    """A place without its unit."""
+    scale = max(map(abs, xy))
+    return ", ".join(unit.text(part, scale) for part in xy)
+
+
+def place_told(xy: tuple[float, ...]) -> str:
+    """A place as a sentence has it: ``(12.00, 0) mm``."""
+    unit = display("length", xy)
+    return unit.with_unit(f"({place(xy, unit)})")
 
 
 # -- model -----------------------------------------------------------------------------------------
@@ -68,19 +74,20 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
     """Everything that a model says in numbers."""
     mass, inertia = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
     rows: list[tuple[Cell, ...]] = []
+    unit = display("length", [part for xy in every_place(machine) for part in xy])
     for name, link in machine.links.items():
-        center = None if link.center_of_mass is None else place(link.center_of_mass)
+        center = None if link.center_of_mass is None else place(link.center_of_mass, unit)
         amounts = (None if value is None else Value(value) for value in (link.mass, link.inertia))
         rows.append((name, next(amounts), center, next(amounts)))
     title = say("Links; places in the axes of each link")
-    yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
+    yield Table.of(title, ("", mass, f"{say('centre of mass')}, {unit.name}", inertia), rows)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
     yield Table.of(
         say("Points; places in the axes of each body"),
-        (say("body"), f"{say('points')} (x, y), mm"),
+        (say("body"), f"{say('points')} (x, y), {unit.name}"),
         (
-            (body, "; ".join(f"{point} ({place(at)})" for point, at in points.items()))
+            (body, "; ".join(f"{point} ({place(at, unit)})" for point, at in points.items()))
             for body, points in bodies.items()
         ),
     )
@@ -90,6 +97,12 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield rows_table(machine)
     if machine.support is not None:
         yield Facts(say("Support"), tuple(_support(machine)))
+
+
+def every_place(machine: Machine) -> Iterator[tuple[float, float]]:
+    """Points and centres of mass in the axes of their bodies, m."""
+    yield from (at for points in machine.bodies.values() for at in points.values())
+    yield from (one.center_of_mass for one in machine.links.values() if one.center_of_mass)
 
 
 def rows_table(machine: Machine) -> Table:
@@ -109,7 +122,7 @@ def rows_table(machine: Machine) -> Table:
 def _parts(machine: Machine) -> Iterator[str]:
     for slider in machine.sliders:
         yield say(
-            "Slider: {point} of {link} on a line of {on} through {through} at {angle}°",
+            "Slider: {point} of {link} on a line of {on} through {through} at {angle}",
             point=slider.point,
             link=slider.link,
             on=body_named(slider.on),
@@ -126,8 +139,8 @@ def _parts(machine: Machine) -> Iterator[str]:
         )
     for spring in machine.springs:
         yield say(
-            "Spring: {stiffness} N/m from {point} of {link} to {to}",
-            stiffness=number(spring.stiffness),
+            "Spring: {stiffness} from {point} of {link} to {to}",
+            stiffness=told(spring.stiffness, "stiffness", "N/m"),
             point=spring.point,
             link=spring.link,
             to=spring.to,
@@ -143,7 +156,7 @@ def _support(machine: Machine) -> Iterator[str]:
     support = machine.support
     assert support is not None
     if support.mass is not None:
-        yield say("Mass: {mass} kg", mass=number(support.mass))
+        yield say("Mass: {mass}", mass=told(support.mass, "mass", "kg"))
     yield say("Mounts: {names}", names=say(", ").join(support.mounts))
     yield say("Gauges: {names}", names=say(", ").join(support.gauges))
 
@@ -224,18 +237,18 @@ def _four_bar(found: FourBar) -> Iterator[str]:
     lengths = {"frame": found.a, "crank": found.b, "coupler": found.c, "rocker": found.d}
     yield f"{say(found.type)}, {say(found.grashof)}"
     yield say(
-        "Frame {frame} mm, crank {crank} mm, coupler {coupler} mm, rocker {rocker} mm",
-        **{link: number(1e3 * length) for link, length in lengths.items()},
+        "Frame {frame}, crank {crank}, coupler {coupler}, rocker {rocker}",
+        **{link: told(length, "length") for link, length in lengths.items()},
     )
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
-            "Transmission angle from {low}° to {high}°",
+            "Transmission angle from {low} to {high}",
             low=angle(found.transmission_min),
             high=angle(found.transmission_max),
         )
     if found.swing is not None and found.time_ratio is not None:
         yield say(
-            "The rocker swings by {swing}°, time ratio {ratio}",
+            "The rocker swings by {swing}, time ratio {ratio}",
             swing=angle(found.swing),
             ratio=f"{found.time_ratio:.3f}",
         )

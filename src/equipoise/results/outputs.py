@@ -13,7 +13,7 @@ from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
-from equipoise.quantities import Dimension
+from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures
 
 if TYPE_CHECKING:
@@ -193,8 +193,8 @@ CAUSES = {
     "load": to_say("loads"),
     "spring": to_say("springs"),
 }
-SCALES = {"m": (1e3, "mm"), "rad": (1e3, "mrad"), "kg": (1e3, "g")}
-"""SI unit -> factor and unit that is shown."""
+DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}
+"""SI unit -> what it is of."""
 
 
 def output_named(name: str, rows: int = 1) -> str:
@@ -229,6 +229,9 @@ def unit_of_measure(output: str, measure: str) -> str:
     return "J" if measure == "area" else unit_of(output)
 
 
-def scaled(unit: str) -> tuple[float, str]:
-    """Factor and shown unit of an SI unit."""
-    return SCALES.get(unit, (1.0, unit))
+def shown_in(unit: str, values: Any = ()) -> Display:
+    """In which unit figures (in an SI unit) are shown; small angles, as of a support, in mrad."""
+    dimension = DIMENSIONS.get(unit)
+    if dimension is None:
+        return Display(unit, 1.0)
+    return display(dimension, values, "mrad" if dimension == "angle" else None)

@@ -12,7 +12,7 @@ from equipoise.mechanism.model import Machine
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
-from equipoise.quantities import display, in_unit
+from equipoise.quantities import display
 from equipoise.vibration.forced import respond
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
@@ -67,7 +67,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
         block.add(array, curve.peak_to_peak)
         label = f"{_spoken(name)} against speed, peak to peak"
         choices.append(gauge_choice(name, label, curve.rotation, array))
-    rpm = in_unit("rpm")
+    rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
     content["charts"].append(chart("sweep", choices, x=over))
     content["arrays"] = block.told
@@ -125,7 +125,7 @@ def _shown(name: str, value: float) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
     told = cell(value, name)
     assert told is not None
-    unit = display(told.dimension, [value]) if told.unit is None else in_unit(told.unit)
+    unit = display(told.dimension, [value], told.unit)
     there = unit.factor * value if isfinite(value) else None
     return {"unit": unit.name, "value": there, "text": text_of(there)}
 
