@@ -49,6 +49,16 @@ class EquipoiseError(Exception):
         return self
 
 
+PASTE = "\n\n"
+"""Between the sentence of an error and lines for the file, where it has some."""
+
+
+def to_paste(text: str) -> list[str]:
+    """The sentence of an error, then each of its lines that can be pasted into the file."""
+    sentence, _, lines = text.partition(PASTE)
+    return [sentence, *lines.splitlines()]
+
+
 class ModelError(EquipoiseError):
     """A machine contradicts itself.
 

@@ -79,11 +79,12 @@ def succeeded(result: Result) -> str:
 
 
 def refused(result: Result) -> str:
-    """Return the one sentence of a command that has to be refused."""
+    """Return the one sentence of a command that has to be refused; below may be TOML to paste."""
     assert result.status == 2, result
     assert result.out == ""
     assert result.err.endswith("\n")
-    (line,) = result.err.splitlines()
+    line, *paste = result.err.splitlines()
+    assert not paste or tomllib.loads("\n".join(paste))
     assert line.startswith("equipoise: ")
     assert line.isprintable()
     assert "Traceback" not in line

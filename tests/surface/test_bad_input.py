@@ -263,6 +263,19 @@ def test_a_bad_model(text: str | bytes, place: str, said: str) -> None:
     assert line.startswith(f"bad.toml: {place}: " if place else "bad.toml: ")
 
 
+def test_missing_sides_can_be_pasted() -> None:
+    """All at once, with the one that lets the crank turn fully; a pasted file is ready."""
+    text = example_text("watt-six-bar")
+    sides = text[text.index("[assembly]") :].partition("\n\n")[0]
+    Path("bad.toml").write_text(replaced(text, (sides, "")))
+    result = equipoise("check", "bad.toml")
+    assert "assembly: C is missing, F is missing; give each" in refused(result)
+    assert '\nC = "left"  # at (135.0, 88.74) mm at crank angle 0 deg; the crank' in result.err
+    _, _, lines = result.err.partition("\n")
+    Path("good.toml").write_text(replaced(text, (sides, lines)))
+    assert succeeded(equipoise("check", "good.toml")).endswith(f"{READY}\n")
+
+
 def test_byte_order_mark_and_windows_lines_are_fine() -> None:
     text = "\ufeff" + example_text(FOUR_BAR).replace("\n", "\r\n")
     Path("good.toml").write_bytes(text.encode())

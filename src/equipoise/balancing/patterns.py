@@ -210,7 +210,7 @@ def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Bloc
         (one.name, " ".join(fixed(unit, p, 1).removesuffix(".0") for p in one.phases), one.source)
         for one in patterns
     ]
-    heads = ("", f"{say('phases of the rows')}, {unit.unit}", say("printed in"))
+    heads = ("", f"{say('phases of the rows')}, {unit.unit}", say("printed by Yamashita et al. in"))
     yield Table(say("Patterns"), tuple(map(Column, heads)), tuple(phases))
     left = [(one.name, one.left, say("yes") if one.twists else say("no")) for one in patterns]
     heads = ("", say("orders left, of how many rows"), say("twist"))

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError
+from equipoise.errors import EquipoiseError, to_paste
 
 app = App(
     name="equipoise",
@@ -60,7 +60,10 @@ def run(arguments: Sequence[str] | None = None) -> int:
         if sys.stdout is not None:  # None where the shell has closed it
             sys.stdout.flush()
     except (EquipoiseError, CycloptsError) as error:
-        print(f"equipoise: {_one_line(str(error))}", file=sys.stderr)
+        sentence, *lines = to_paste(str(error))
+        print(
+            f"equipoise: {_one_line(sentence)}", *map(_one_line, lines), sep="\n", file=sys.stderr
+        )
         return 2
     except KeyboardInterrupt as interrupt:  # whoever has more to say raises it again with words
         words = _one_line("; ".join(["interrupted", *map(str, interrupt.args)]))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import acos, asin, degrees, isclose, pi, sqrt
 
 from equipoise.mechanism import kernels
+from equipoise.mechanism.checks import numbered
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import FRAME, Machine, size_of
@@ -27,6 +28,7 @@ class FourBar:
 
     Attributes
     ----------
+    pins : its joints: of crank and frame, crank and coupler, coupler and rocker, rocker and frame.
     a, b, c, d : lengths of frame, crank, coupler and rocker, m, named as by Yamashita, Ichikawa
         and Mori.
     grashof : "Grashof", "non-Grashof" or "change point": shortest plus longest length less than,
@@ -44,6 +46,7 @@ class FourBar:
     crank: str
     coupler: str
     rocker: str
+    pins: tuple[str, str, str, str]
     a: float
     b: float
     c: float
@@ -73,11 +76,22 @@ def four_bar(machine: Machine) -> FourBar | None:
             b = _distance(machine, drive, pivot, first.at)
             c = _distance(machine, first.on, first.at, inner.at)
             d = _distance(machine, second.on, second.at, inner.at)
-            return _described((drive, first.on, second.on), a, b, c, d)
+            links, pins = (
+                (drive, first.on, second.on),
+                (pivot, first.at, inner.at, second.at),
+            )
+            return _described(links, pins, a, b, c, d)
     return None
 
 
-def _described(links: tuple[str, str, str], a: float, b: float, c: float, d: float) -> FourBar:
+def _described(
+    links: tuple[str, str, str],
+    pins: tuple[str, str, str, str],
+    a: float,
+    b: float,
+    c: float,
+    d: float,
+) -> FourBar:
     grashof, kind = _class(a, b, c, d)
     turns = _condition_5(a, b, c, d)
     low = high = swing = ratio = None
@@ -89,7 +103,7 @@ def _described(links: tuple[str, str, str], a: float, b: float, c: float, d: flo
         lag = abs(_opposite(a, stretched, d) - _opposite(a, folded, d))
         ratio = (pi + lag) / (pi - lag)
     apart = not (isclose(a + b, c + d) or isclose(b + c, a + d))
-    return FourBar(*links, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
+    return FourBar(*links, pins, a, b, c, d, grashof, kind, low, high, swing, ratio, turns, apart)
 
 
 def _distance(machine: Machine, body: str, one: str, other: str) -> float:
@@ -134,8 +148,13 @@ def _opposite(one: float, other: float, opposite: float) -> float:
 POOR_TRANSMISSION = 30.0
 """Degrees from stretched or folded below which force is transmitted badly."""
 
-WIDE_INERTIA = 5.0
-"""Radius of gyration over size of the link above which a slip of units is likely."""
+WIDE_INERTIA, NARROW_INERTIA = 5.0, 0.02
+"""Radius of gyration over size of the link above and below which a slip of units is likely: a
+bar's is 0.29, and a factor of 1000 in its inertia makes 0.009 of that.  None is no slip."""
+
+
+LEVEL = 1e-6
+"""Degrees up to which axes are not turned."""
 
 
 def remarks(linkage: Linkage) -> Iterator[str]:
@@ -155,7 +174,7 @@ def remarks(linkage: Linkage) -> Iterator[str]:
         if not link.mass or link.inertia is None or link.center_of_mass is None or not size:
             continue
         gyration = sqrt(link.inertia / link.mass)
-        if gyration > WIDE_INERTIA * size:
+        if not NARROW_INERTIA * size < gyration < WIDE_INERTIA * size and gyration:
             yield (
                 f"links.{name}.inertia gives a radius of gyration of {gyration * 1e3:.4g} mm, for "
                 f"a link of {size * 1e3:.4g} mm; check its unit"
@@ -164,8 +183,31 @@ def remarks(linkage: Linkage) -> Iterator[str]:
         px, py = next(iter(link.points.values()))
         if sqrt((x - px) ** 2 + (y - py) ** 2) > WIDE_INERTIA * size:
             yield f"links.{name}.center_of_mass lies far outside the link; check its unit"
+    yield from _turned_axes(machine)
     used = {slider.through for slider in machine.sliders if slider.on == FRAME}
     used |= {spring.to for spring in machine.springs} | linkage.joints.pins.keys()
     for point in machine.frame:
         if point not in used:
             yield f"frame.points.{point} is not used by any joint or spring"
+
+
+def _turned_axes(machine: Machine) -> Iterator[str]:
+    """Of links that slide along a line which turns their axes, and that have further points or
+    their centre of mass off the line.
+
+    Only where no angle is given: whoever gives one knows of the axes.
+    """
+    for place, slider in numbered("sliders", machine.sliders):
+        link, turn = machine.links[slider.link], degrees(slider.direction) % 360
+        at, center = link.points[slider.point], link.center_of_mass
+        further = [name for name, other in link.points.items() if other != at]
+        if center is not None and center[1] != at[1]:
+            further.append("center_of_mass")
+        if slider.angle == 0 and further and min(turn, 360 - turn) > LEVEL:
+            axes = "the frame" if slider.on == FRAME else repr(slider.on)
+            yield (
+                f"{place}.direction turns the axes of {slider.link!r}: its x axis points along the "
+                f"line, at {turn:.4g} deg in {axes}, and its {', '.join(further)} "
+                f"{'is' if len(further) == 1 else 'are'} told in these axes; give angle = "
+                f'"{-turn % 360:.4g} deg" if they are meant along those of {axes}'
+            )

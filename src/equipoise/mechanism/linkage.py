@@ -41,6 +41,7 @@ from equipoise.mechanism.steps import (
     run,
 )
 
+NOTHING: Mapping[str, tuple[int, str]] = {}
 Stuck = RangeError | ChangePointError
 """Why a crank cannot turn fully."""
 
@@ -134,32 +135,57 @@ def assemble(machine: Machine) -> Linkage:
     return kept
 
 
-def ordered(machine: Machine, joints: Structure, start: State | None = None) -> Linkage:
+def ordered(
+    machine: Machine,
+    joints: Structure,
+    start: State | None = None,
+    assumed: Mapping[str, tuple[int, str]] = NOTHING,
+) -> Linkage:
     """Order the links into steps, whose numbers are columns where those of the machine are.
 
     start : references at crank angle 0, so that running angles begin in the same turn as those.
+    assumed : of joints, which of two sides to take where the file leaves it out, and why.
     """
+    from equipoise.mechanism import sides
+
     drive = machine.drive.link
     pivot = drive_pivot(joints, drive)
     builder = Builder(machine, points=set(machine.frame), running={FRAME, drive})
     builder.now.update(start or {})
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
-    groups = []
+    groups: list[Group] = []
+    choices: list[sides.Choice] = []
     while unknown:
-        group = next_group(builder, joints, unknown)
+        try:
+            group = next_group(builder, joints, unknown)
+        except ModelError:
+            if choices:  # sides come first: on a wrong one what hangs on it cannot be right
+                raise sides.missing(machine, choices) from None
+            raise
+        if group.joint in builder.missing:
+            choices.append(sides.chosen(builder, group, assumed))
+            group = choices[-1].group
         groups.append(group)
         builder.motion += group.motion
         unknown = [link for link in unknown if link not in group.links]
-    for joint in machine.assembly:
-        if joint not in builder.sides:
-            dyads = ", ".join(sorted(builder.sides)) or "no point"
-            raise ModelError(
-                f"assembly.{joint}",
-                "no dyad has its inner joint there that could be assembled on two sides; the dyads "
-                f"of this linkage meet at {dyads}",
-            )
+    idle = [joint for joint in machine.assembly if joint not in builder.sides]
+    if choices:
+        if not assumed and (decided := sides.decided(machine, choices, _turns)):
+            return ordered(machine, joints, start, decided)
+        raise sides.missing(machine, choices, idle)
+    for joint in idle:
+        dyads = ", ".join(sorted(builder.sides)) or "no point"
+        raise ModelError(
+            f"assembly.{joint}",
+            "no dyad has its inner joint there that could be assembled on two sides; the dyads "
+            f"of this linkage meet at {dyads}",
+        )
     return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
+
+
+def _turns(machine: Machine) -> Cycle:
+    return ordered(machine, structure(machine)).cycle
 
 
 def next_group(builder: Builder, joints: Structure, unknown: list[str]) -> Group:

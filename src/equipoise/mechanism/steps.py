@@ -22,7 +22,6 @@ from typing import Any, Literal, Protocol
 
 import numpy as np
 
-from equipoise.errors import ModelError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import FRAME, Machine, Slider, Vector
 
@@ -221,7 +220,8 @@ class Builder:
 
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
     other points are reached and about which its moments are taken.  sides : joints whose
-    assembly side was asked for.  motion : steps so far.
+    assembly side was asked for.  missing : those of them that the file does not answer -> words
+    of the two sides, what they mean, what the file has.  motion : steps so far.
     """
 
     machine: Machine
@@ -230,6 +230,7 @@ class Builder:
     points: set[str] = field(default_factory=set)
     motion: list[Step] = field(default_factory=list)
     sides: set[str] = field(default_factory=set)
+    missing: dict[str, tuple[tuple[str, str], str, str | None]] = field(default_factory=dict)
     running: set[str] = field(default_factory=set)
     _now: State = field(init=False)
     _ran: int = field(init=False, default=0)
@@ -282,15 +283,12 @@ class Builder:
         return min((b for b in bodies if b in self.rank), key=lambda b: self.rank[b])
 
     def side(self, joint: str, words: tuple[str, str], meaning: str) -> float:
-        """+1 or -1 for the side on which the file assembles a dyad."""
+        """+1 or -1 for the side on which the file assembles a dyad; +1 where that is missing."""
         self.sides.add(joint)
         side = self.machine.assembly.get(joint)
         if side not in words:
-            given = "missing" if side is None else f"got {side!r}"
-            raise ModelError(
-                f"assembly.{joint}", f'{given}; give "{words[0]}" or "{words[1]}": {meaning}'
-            )
-        return 1.0 if side == words[0] else -1.0
+            self.missing[joint] = (words, meaning, side)
+        return -1.0 if side == words[1] else 1.0
 
     def hand_over(self, reaction: Reaction) -> Call:
         """Call that passes a reaction on to the body that exerts it."""

@@ -109,9 +109,10 @@ class _Printer:
         self.begun = True
         sign = SIGN if style == STRONG and not self.coloured else ""
         start = len(text) - len(text.lstrip(" ")) + indent
-        lines = wrapped(plain(text.strip()) + sign, self.console.width - start)
+        deeper = 2 if indent else 0
+        lines = wrapped(plain(text.strip()) + sign, self.console.width - start, deeper)
         for place, line in enumerate(lines):
-            blank = " " * (start + (2 if place and indent else 0))
+            blank = " " * (start + (deeper if place else 0))
             self.console.print(RichText(blank + line, style=style), soft_wrap=True)
 
     def table(self, told: Grid) -> None:
@@ -178,11 +179,14 @@ class _Printer:
         return plain(f"{cell.text}{at}{sign}")
 
 
-def wrapped(text: str, width: int) -> list[str]:
-    """Lines of a text that are no longer than a width; only longer words are."""
+def wrapped(text: str, width: int, indent: int = 0) -> list[str]:
+    """Lines of a text that are no longer than a width, further ones less an indent; only longer
+    words are.
+    """
     lines = [""]
     for word in text.split(" "):
-        if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
+        room = width - (indent if len(lines) > 1 else 0)
+        if lines[-1] and len(lines[-1]) + 1 + len(word) > room:
             lines.append(word)
         else:
             lines[-1] += f" {word}" if lines[-1] else word

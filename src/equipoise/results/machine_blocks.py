@@ -30,6 +30,27 @@ FOUR_BARS = (
     to_say("change point"),
 )
 """Types and classes of `four_bar`."""
+TURNS = {
+    True: to_say(
+        "The crank can turn fully, and at every crank angle the rocker is determined "
+        "(conditions (5) of Yamashita et al.)"
+    ),
+    False: to_say(
+        "The crank cannot turn fully with the rocker determined at every crank angle "
+        "(conditions (5) of Yamashita et al. do not hold)"
+    ),
+}
+APART = {
+    True: to_say(
+        "The links never all lie in one line, so that none can flip to the other side "
+        "(conditions (6) of Yamashita et al.)"
+    ),
+    False: to_say(
+        "The links can all lie in one line, where they may flip to the other side "
+        "(conditions (6) of Yamashita et al. do not hold)"
+    ),
+}
+"""What `condition_5` and `condition_6` of a four-bar say."""
 
 
 # -- figures as cells ------------------------------------------------------------------------------
@@ -192,7 +213,8 @@ def angles_told(analysis: Analysis) -> str:
 def motion_blocks(analysis: Analysis) -> Iterator[Block]:
     """How links and points move."""
     if analysis.four_bar is not None:
-        yield Facts(say("Four-bar linkage"), tuple(_four_bar(analysis.four_bar)))
+        yield four_bar_table(analysis.four_bar)
+        yield Facts("", tuple(_four_bar(analysis.four_bar)))
     rate = abs(analysis.motion.speed)
     columns = (
         "",
@@ -233,13 +255,27 @@ def _points(analysis: Analysis) -> Table:
     return Table.of(title, columns, rows)
 
 
-def _four_bar(found: FourBar) -> Iterator[str]:
-    lengths = {"frame": found.a, "crank": found.b, "coupler": found.c, "rocker": found.d}
-    yield f"{say(found.type)}, {say(found.grashof)}"
-    yield say(
-        "Frame {frame}, crank {crank}, coupler {coupler}, rocker {rocker}",
-        **{link: told(length, "length") for link, length in lengths.items()},
+def four_bar_table(found: FourBar) -> Table:
+    """Which links a four-bar is made of, with the pins at their ends."""
+    parts = (say("ground (fixed link)"), say("crank"), say("coupler"), say("rocker"))
+    links = (say("frame"), found.crank, found.coupler, found.rocker)
+    first, inner, outer, last = found.pins
+    ends = ((first, last), (first, inner), (inner, outer), (last, outer))
+    rows = (
+        (part, link, say(", ").join(pins), Value(length))
+        for part, link, pins, length in zip(
+            parts, links, ends, (found.a, found.b, found.c, found.d), strict=True
+        )
     )
+    title = say(
+        "Four-bar linkage at the crank: {kind}, {grashof}",
+        kind=say(found.type),
+        grashof=say(found.grashof),
+    )
+    return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
+
+
+def _four_bar(found: FourBar) -> Iterator[str]:
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
             "Transmission angle from {low} to {high}",
@@ -252,9 +288,5 @@ def _four_bar(found: FourBar) -> Iterator[str]:
             swing=angle(found.swing),
             ratio=f"{found.time_ratio:.3f}",
         )
-    holds = {True: say("hold"), False: say("do not hold")}
-    yield say(
-        "Assembly conditions (5) {first}, (6) {second}",
-        first=holds[found.condition_5],
-        second=holds[found.condition_6],
-    )
+    yield say(TURNS[found.condition_5])
+    yield say(APART[found.condition_6])

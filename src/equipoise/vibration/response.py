@@ -17,17 +17,17 @@ from equipoise.signals import Array, Periodic
 Values = dict[str, Any]
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 MODELS: dict[Model, str] = {
-    "linear": to_say("the shaking force at the drive's pivot; equation (59) of Yamashita et al."),
+    "linear": to_say("the shaking force at the drive's pivot (equation (59) of Yamashita et al.)"),
     "torque": to_say(
-        "the shaking force at the drive's pivot, and the drive torque; equation (57) of "
-        "Yamashita et al."
+        "the shaking force at the drive's pivot, and the drive torque (equation (57) of "
+        "Yamashita et al.)"
     ),
     "moment": to_say("the whole force and moment of the joints on the frame"),
     "coupled": to_say(
-        "as torque, with the torque that the motion of the support takes; equation (54) of "
-        "Yamashita et al."
+        "as torque, with the torque that the motion of the support takes (equation (54) of "
+        "Yamashita et al.)"
     ),
-    "exact": to_say("all bodies, large motion; equations (37) to (45) of Yamashita et al."),
+    "exact": to_say("all bodies, large motion (equations (37) to (45) of Yamashita et al.)"),
 }
 """What each model of the support stands for, from the plainest on."""
 NEUTRAL = 1e-9

@@ -15,7 +15,7 @@ from threading import Lock
 from typing import Any
 
 from equipoise import __version__
-from equipoise.errors import EquipoiseError, ModelError, UsageError
+from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
 from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.shown_units import units_of
@@ -261,8 +261,9 @@ def _in_file(error: EquipoiseError, name: str) -> EquipoiseError:
     return UsageError(f"{name}: {error}")
 
 
-def _shortened(sentence: str) -> str:
-    text = " ".join(sentence.split())
+def _shortened(text: str) -> str:
+    sentence, *lines = to_paste(text)
+    text = "\n".join([" ".join(sentence.split()), *lines])
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 200]} ... {text[-190:]}"
 
 

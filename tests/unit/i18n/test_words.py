@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 from string import Formatter
@@ -44,6 +45,16 @@ def test_every_text_is_translated_and_none_is_left_over(language):
     assert texts - held.keys() == set()
     assert held.keys() - texts == set()
     assert {text for text in texts if placeholders(text) != placeholders(held[text])} == set()
+
+
+def test_numbers_of_equations_stand_behind_words():
+    """Nobody has the paper at hand: what it says is told, and where it says so in brackets."""
+    numbered = {text for text in said() if re.search(r"(?<!A)\([1-9][0-9]?\)", text)}
+    assert len(numbered) == 8
+    for text in numbered:
+        before, _, source = text.partition(" (")
+        assert re.match(r"(equations?|conditions) \(", source) and "of Yamashita et al." in source
+        assert len(before.split()) > 3
 
 
 def test_a_language_is_spoken_inside_its_block_and_in_its_thread_only():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+import tomllib
 from dataclasses import replace
 from math import pi, radians
 
@@ -9,10 +11,11 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import MobilityError, ModelError
+from equipoise.errors import MobilityError, ModelError, RangeError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.steps import Call
+from laws.transforms import with_axes
 from support.machines import KINDS, make
 from unit.mechanism.build import (
     ORIGIN,
@@ -266,3 +269,104 @@ def test_a_link_of_no_length() -> None:
         eq.mechanism.assemble(given.with_link("rocker", points={"D": ORIGIN, "C": ORIGIN}))
     assert caught.value.where == "links.rocker.points"
     assert "D and C lie at the same place" in caught.value.what
+
+
+# -- sides that are missing ------------------------------------------------------------------------
+
+
+def asked(given: eq.Machine) -> tuple[dict[str, str], str]:
+    """What is offered for the table of sides, and the whole sentence, of a machine without it."""
+    with pytest.raises(ModelError) as caught:
+        eq.mechanism.assemble(replace(given, assembly={}))
+    sentence, _, lines = caught.value.what.partition("\n\n")
+    assert sentence
+    return tomllib.loads(lines)["assembly"], lines
+
+
+def named(name: str) -> eq.Machine:
+    kind, _, seed = name.partition(":")
+    return make(kind, int(seed)).machine if seed else eq.load(name)
+
+
+EXAMPLES = ("watt-six-bar", "stephenson-six-bar", "quick-return", "geared-counterweight")
+TWO_SIDED = [
+    name
+    for name in (*(f"{kind}:{seed}" for kind in KINDS for seed in (0, 1)), *EXAMPLES)
+    if named(name).assembly
+]
+
+
+def drawn(given: eq.Machine) -> eq.Machine:
+    """The machine with the axes of every link in those of the frame at crank angle 0."""
+    at_zero = eq.move(given, np.zeros(1))
+    for link in given.links:
+        turn = np.exp(1j * at_zero.links[link].angle[0])
+        point, place = next(iter(given.links[link].points.items()))
+        origin = at_zero.points[point if point in at_zero.points else f"{link}.{point}"].place[0]
+        shift = complex(*place) - origin / turn
+        given = with_axes(given, link, -float(np.angle(turn)), shift)
+    return given
+
+
+@pytest.mark.parametrize("name", TWO_SIDED)
+def test_missing_sides_are_those_that_are_drawn(name: str) -> None:
+    """Whoever draws all links in the frame's axes is given every side back, at once."""
+    given = drawn(named(name))
+    sides, lines = asked(given)
+    assert sides == given.assembly
+    assert lines.count("as drawn") == len(sides)
+    again = replace(given, assembly=sides)
+    np.testing.assert_allclose(eq.move(again, 12).crank_angle, eq.move(given, 12).crank_angle)
+
+
+@pytest.mark.parametrize("name", ["watt-six-bar", "stephenson-six-bar", "quick-return", "v_twin:0"])
+@pytest.mark.parametrize("angle", [0.0, 1.0, -2.5])
+def test_missing_sides_are_those_of_the_position(name: str, angle: float) -> None:
+    given = named(name)
+    motion = eq.move(given, np.array([angle]))
+    position = eq.mechanism.Position(
+        angle, {}, {link: float(motion.links[link].angle[0]) + 0.1 for link in given.links}
+    )
+    sides, lines = asked(replace(given, position=position))
+    assert sides == given.assembly
+    assert lines.count("as in [position]") == len(sides)
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "slider-crank-engine"])
+def test_where_nothing_tells_both_sides_are_listed_with_their_places(name: str) -> None:
+    given = eq.load(name)
+    (joint,) = given.assembly
+    _, lines = asked(given)
+    entries = [line.removeprefix("# or ") for line in lines.splitlines()[2:]]
+    assert len(entries) == 2
+    for entry in entries:
+        machine = replace(given, assembly=tomllib.loads(entry))
+        place = 1e3 * eq.move(machine, np.zeros(1)).points[joint].place[0]
+        x, y = map(float, re.findall(r"\((.*), (.*)\) mm at crank angle 0 deg", entry)[0])
+        assert complex(x, y) == pytest.approx(place, rel=1e-3, abs=1e-3)
+
+
+def test_a_side_without_which_the_crank_cannot_turn() -> None:
+    """With C on the other side no F closes for a whole turn; F itself is open."""
+    sides, lines = asked(eq.load("watt-six-bar"))
+    assert sides["C"] == eq.load("watt-six-bar").assembly["C"]
+    assert lines.count("the crank turns fully with this side alone") == 1
+    assert '\n# or F = "right"' in lines
+    for side in ("left", "right"):
+        other = replace(eq.load("watt-six-bar"), assembly={"C": "right", "F": side})
+        with pytest.raises(RangeError):
+            eq.move(other, 12)
+
+
+def test_wrong_and_idle_sides_are_told_with_missing_ones() -> None:
+    given = replace(eq.load("watt-six-bar"), assembly={"C": "forward", "f": "left"})
+    words = "C got 'forward', F is missing; give each its side in [assembly] ('f' is no inner"
+    with pytest.raises(ModelError) as caught:
+        eq.mechanism.assemble(given)
+    assert caught.value.what.startswith(words)
+    assert "[assembly]\n" not in caught.value.what  # there is one already
+
+
+def test_sides_of_links_that_cannot_be_joined() -> None:
+    _, lines = asked(four_bar(1.0, 0.1, 0.2, 0.2))
+    assert lines.splitlines()[2:] == ['C = "left"', '# or C = "right"']

@@ -36,6 +36,7 @@ def test_types(lengths: tuple[float, ...], grashof: str, name: str) -> None:
     assert (found.grashof, found.type) == (grashof, name)
     assert (found.a, found.b, found.c, found.d) == pytest.approx(lengths)
     assert (found.crank, found.coupler, found.rocker) == ("crank", "coupler", "rocker")
+    assert found.pins == ("A", "B", "C", "D")
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
+from math import pi, radians
 from typing import Any
 
 import numpy as np
@@ -226,6 +226,46 @@ def test_remarks(given: eq.Machine, words: str) -> None:
     found = remarked(given)
     assert len(found) == 1
     assert words in found[0]
+
+
+@pytest.mark.parametrize(
+    ("slip", "noted"), [(1e-3, True), (1e-6, True), (1.0, False), (0.0, False), (1e4, True)]
+)
+def test_a_slip_of_units_of_an_inertia(slip: float, noted: bool) -> None:
+    """A factor of a thousand, either way; nothing at all is meant."""
+    bar = 0.5 * 0.8**2 / 12
+    found = remarked(crank_rocker().with_link("rocker", inertia=slip * bar))
+    assert bool(found) == noted
+    assert all("links.rocker.inertia gives a radius of gyration of" in one for one in found)
+
+
+def upright(direction: float, angle: float = 0.0, **points: tuple[float, float]) -> eq.Machine:
+    guide = eq.Slider("piston", "C", "frame", "A", radians(direction), radians(angle))
+    piston = eq.Link({"C": (0.1, 0.2), **points}, 0.5, (0.4, 0.2), 2e-3)
+    given = slider_crank(sliders=(guide,))
+    return replace(given, links={**given.links, "piston": piston})
+
+
+def test_axes_that_a_slider_turns_are_noted() -> None:
+    """With the angle that the note gives, they are those of the frame."""
+    (found,) = remarked(upright(90.0, E=(0.1, 0.9)))
+    assert found.startswith(
+        "sliders[1].direction turns the axes of 'piston': its x axis points along the line, at 90 "
+        "deg in the frame, and its E is told in these axes;"
+    )
+    given = float(found.partition('"')[2].partition(" deg")[0])
+    for angle, turn in ((0.0, 90.0), (given, 0.0)):
+        motion = eq.move(upright(90.0, angle, E=(0.1, 0.9)), 4)
+        np.testing.assert_allclose(
+            np.exp(1j * motion.links["piston"].angle), np.exp(1j * radians(turn)), atol=1e-12
+        )
+
+
+def test_axes_that_a_slider_does_not_turn_are_not_noted() -> None:
+    off_line = upright(90.0).with_link("piston", center_of_mass=(0.1, 0.3))
+    assert "center_of_mass is told in these" in remarked(off_line)[0]
+    for given in (upright(0.0, E=(0.3, 0.9)), upright(90.0), upright(90.0, -90.0, E=(0.3, 0.9))):
+        assert remarked(given) == []
 
 
 # -- load tables -----------------------------------------------------------------------------------

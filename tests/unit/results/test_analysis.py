@@ -119,6 +119,22 @@ def test_summary() -> None:
     assert "four_bar" not in summary
 
 
+def test_a_four_bar_is_told_by_its_links() -> None:
+    """Of a six-bar too, where it is not plain which of the links are meant."""
+    blocks = analysis("watt-six-bar").blocks()
+    (table,) = [one for one in blocks if getattr(one, "title", "").startswith("Four-bar")]
+    found = analysis("watt-six-bar").four_bar
+    assert found is not None
+    assert [row[:3] for row in table.rows] == [
+        ("ground (fixed link)", "frame", "A, D"),
+        ("crank", found.crank, "A, B"),
+        ("coupler", found.coupler, "B, C"),
+        ("rocker", found.rocker, "D, C"),
+    ]
+    said = " ".join(one for block in blocks for one in getattr(block, "items", ()))
+    assert "The crank can turn fully" in said and "(conditions (5) of Yamashita et al.)" in said
+
+
 def test_summary_of_a_four_bar() -> None:
     found = analysis("yamashita-1").to_dict()["summary"]["four_bar"]
     assert found["type"] == "crank-rocker"

@@ -68,7 +68,7 @@ def refusal(replies: list[Reply]) -> str:
     """The sentence with which something is refused."""
     content = replies[0].content
     assert content["type"] == "refused", content
-    assert content["message"].isprintable()
+    assert all(line.isprintable() for line in content["message"].split("\n"))
     return str(content["message"])
 
 

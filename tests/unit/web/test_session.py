@@ -15,6 +15,7 @@ from unit.web.pages import ask, counterweight, edit, opened, refusal, state
 
 MASS = {"set": "links.crank.mass", "text": "250 g"}
 STUCK = eq.dumps(eq.load("yamashita-1")).replace('"33.5 mm"', '"200 mm"')
+SIDELESS = eq.dumps(eq.load("yamashita-1")).replace('[assembly]\nC = "left"', "")
 
 
 def test_undo_and_redo_go_through_every_step() -> None:
@@ -196,6 +197,7 @@ def test_downloads() -> None:
         ({"name": "t.toml", "text": 'schema = 1\nshaft.length = "1 m"'}, "hand-held tool"),
         ({"name": "c.toml"}, "open: text: got nothing"),
         ({"name": "s.toml", "text": STUCK}, "s.toml: the crank cannot turn fully"),
+        ({"name": "s.toml", "text": SIDELESS}, "such as\n[assembly]\n# C lies left or right of"),
     ],
 )
 def test_what_is_no_machine_is_refused(given: dict[str, str], told: str) -> None:
