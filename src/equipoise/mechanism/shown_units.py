@@ -74,8 +74,12 @@ def _right(name: str, unit: str) -> str:
 
 
 def units_of(model: Any) -> dict[Dimension, str]:
-    """The units that the file of a machine, tool or study asks for; none of anything else."""
-    units = getattr(model, "units", None)
+    """The units that the file of a machine or tool asks for, or that of a study's model.
+
+    None of anything else.
+    """
+    of_study = getattr(model, "model", None)
+    units = getattr(model if of_study is None else of_study.base(), "units", None)
     return units.by_dimension if isinstance(units, ShownUnits) else {}
 
 

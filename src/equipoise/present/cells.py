@@ -176,7 +176,7 @@ def _text(
         equal = cell.high - cell.low <= ROUNDING * scale
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
     kind = _kind(cell, column)
-    text = _number(cell, shown[kind], kind[0], sizes[kind])
+    text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike)
     at = ""
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)

@@ -70,7 +70,7 @@ def chosen_unit(dimension: Dimension) -> str | None:
     if dimension in chosen or not chosen or dimension not in _FOLLOWS:
         return chosen.get(dimension)
     try:
-        unit = _FOLLOWS[dimension].format_map(dict(chosen))
+        unit = _FOLLOWS[dimension].format(**{str(kind): one for kind, one in chosen.items()})
     except KeyError:
         return None
     known = unit in KINDS[dimension].units
@@ -106,7 +106,7 @@ class Display:
 
 DEGREE = "\N{DEGREE SIGN}"
 _SIGNS = {"deg": DEGREE, "um": "µm", "um/s": "µm/s", "urad": "µrad", "urad/s": "µrad/s"}
-_SIGNS |= {"ug": "µg", "uN": "µN", "uN m": "µN m"}
+_SIGNS |= {"ug": "µg", "uN": "µN", "uN m": "µN m", "uJ": "µJ"}
 
 _SHOWN: dict[Dimension, str] = {
     "length": "mm",
@@ -129,9 +129,9 @@ _SCALES: tuple[tuple[str, ...], ...] = (
     ("g mm^2", "kg mm^2", "kg m^2"),
     ("g mm", "kg m"),
     ("nN", "uN", "mN", "N", "kN", "MN"),
-    ("uN m", "mN m", "N m", "kN m", "MN m"),
+    ("nN m", "uN m", "mN m", "N m", "kN m", "MN m"),
     ("mW", "W", "kW", "MW"),
-    ("mJ", "J", "kJ", "MJ"),
+    ("nJ", "uJ", "mJ", "J", "kJ", "MJ"),
     ("N/m", "kN/m", "MN/m"),
     ("Hz", "kHz"),
     ("ms", "s"),
@@ -151,7 +151,10 @@ _MORE = {
     "nN": 1e9,
     "uN": 1e6,
     "MN": 1e-6,
+    "nN m": 1e9,
     "uN m": 1e6,
+    "nJ": 1e9,
+    "uJ": 1e6,
     "mN m": 1e3,
     "MN m": 1e-6,
     "MW": 1e-6,
@@ -162,6 +165,8 @@ _MORE = {
 
 SMALL, LARGE = 1e-3, 1e4
 """Numbers between which a unit stays that follows the sizes."""
+FEW = 0.1
+"""Least number for which no still smaller unit is taken."""
 LARGE_IN_UNIT = 1e5
 """Largest number for which the unit of a column stays, whatever suits the sizes."""
 
@@ -197,11 +202,10 @@ def _fitting(first: Display, largest: float, most: float) -> Display:
     if not 0 < size < SMALL and not size > most:
         return first
     scale = next((scale for scale in _SCALES if first.unit in scale), (first.unit,))
-    place = scale.index(first.unit)
-    others = scale[place + 1 :] if size > most else scale[:place][::-1]
-    found = first
-    for found in map(in_unit, others):
-        if SMALL <= found.factor * largest <= LARGE:
+    place, found = scale.index(first.unit), first
+    for found in map(in_unit, scale[place + 1 :] if size > most else scale[:place][::-1]):
+        number_of_it = found.factor * largest
+        if number_of_it <= LARGE if size > most else number_of_it >= FEW:
             break
     return found
 

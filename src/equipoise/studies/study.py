@@ -14,7 +14,6 @@ import numpy as np
 
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown, wrong_text
-from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.studies.design_space import (
     COMMANDS,
     KEYS,
@@ -78,11 +77,6 @@ class Study:
         if not self.chunk:
             fast = all(output.of == "analyze" for output in self.outputs)
             object.__setattr__(self, "chunk", CHUNK if fast else SLOW_CHUNK)
-
-    @property
-    def units(self) -> ShownUnits | None:
-        """Units in which the model file wants values to be shown."""
-        return self.model.base().units
 
     @property
     def paths(self) -> tuple[str, ...]:
