@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from math import degrees
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,7 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.mechanism.tip import roots
-from equipoise.quantities import Dimension, angle, display
+from equipoise.quantities import Dimension, angle, display, fixed
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
@@ -214,11 +213,12 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
     if zero:
         yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     rows: list[tuple[Cell, ...]] = []
+    turned = display("angle")
     for one in found.ranked:
         dimension, usual = CHANGES[one.change]
         unit = display(dimension, (), usual)
         shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
-        places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
+        places = say(", ").join(fixed(turned, at, 1) for at in shifted) or say("never")
         rows.append((one.name, Value(one.rms / unit.factor), unit.unit, Value(one.percent), places))
     kind = DECLARED[found.output].dimension
     columns = (
@@ -226,7 +226,7 @@ def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Bl
         Column(say("RMS"), kind, alike=False),
         Column(say("per")),
         Column(say("RMS of 1 %"), kind),
-        Column(f"{say('no effect at')}, deg"),
+        Column(f"{say('no effect at')}, {turned.unit}"),
     )
     title = say(
         "{what}: effect of each parameter, at constant crank speed",

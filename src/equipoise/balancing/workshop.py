@@ -154,7 +154,7 @@ def _added(link: str, values: dict[str, Any]) -> str:
         "at {direction} in the axes of the link ({moment})",
         radius=told(values["radius"], "length"),
         direction=_direction(values["direction"]),
-        moment=told(values["moment"], "unbalance"),
+        moment=told(values["moment"], "unbalance", "g mm"),
         **words,
     )
 

@@ -227,7 +227,13 @@ def format_exact(value: float, dimension: Dimension) -> str:
     if value == 0:
         return f"0 {units[0]}"
     short = [text for unit in units if (text := _short(value, unit))]
-    return min(short, key=lambda text: len(text.split()[0]), default=f"{value!r} {kind.si}")
+    return min(short, key=_clumsiness, default=f"{value!r} {kind.si}")
+
+
+def _clumsiness(text: str) -> tuple[bool, int]:
+    """Powers of ten go last, and then long numbers."""
+    number, _, _ = text.partition(" ")
+    return "e" in number, len(number)
 
 
 def rounded(value: float, unit: str, digits: int) -> str:

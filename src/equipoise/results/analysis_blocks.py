@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,7 +21,7 @@ from equipoise.results.machine_blocks import (
     place_told,
     smallest,
 )
-from equipoise.results.outputs import CAUSES
+from equipoise.results.outputs import CAUSES, Output
 from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
@@ -119,10 +119,7 @@ def orders_table(analysis: Analysis) -> Table:
     signals = [analysis.by_order[one.name] for one in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
-    tops: dict[Dimension, float] = {}
-    for one, size in zip(ones, sizes, strict=True):
-        top = float(np.max(size[1:], initial=0.0))
-        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
+    tops = _tops(zip(ones, (size[1:] for size in sizes), strict=True))
     scales = [1e3 * tops[one.dimension] for one in ones]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
@@ -137,6 +134,15 @@ def orders_table(analysis: Analysis) -> Table:
     columns = (Column(one.declared.say(one.item), one.dimension) for one in ones)
     heads = (say("order"), Column(say("frequency"), "frequency"), *columns)
     return Table.of(say("Amplitudes by order"), heads, rows)
+
+
+def _tops(found: Iterable[tuple[Output, Array]]) -> dict[Dimension, float]:
+    """The largest amplitude of any output of each dimension, beside which others are rounding."""
+    tops: dict[Dimension, float] = {}
+    for one, sizes in found:
+        top = float(np.max(sizes, initial=0.0))
+        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
+    return tops
 
 
 def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
@@ -179,17 +185,17 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
     yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
+    tops = _tops((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
         columns = [say("order"), *(Column(label, kind) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind)]
-        rows = _harmonics(signals[one.name].shifted(zero), orders)
+        rows = _harmonics(signals[one.name].shifted(zero), orders, 10 * tops[kind])
         yield Table.of(one.declared.title(one.item), columns, rows)
 
 
-def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:
-    scale = 10 * float(np.max(signal.sizes))
+def _harmonics(signal: Periodic, orders: int, scale: float) -> Iterator[tuple[Cell, ...]]:
     for k in range(signal.count_to(orders)):
         value = complex(signal.amplitudes[k])
         size = abs(value)

@@ -32,7 +32,7 @@ from equipoise.web.figures import compared, figures_of, signals_of
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
 """Measures that come first."""
-EXACT, ROUNDED = 1e-12, 1e-9
+EXACT, ROUNDED = 1e-12, 1e-7
 GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
@@ -118,7 +118,9 @@ def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
         known = link in base.own.links  # and no shaft that is new
         if known and shapes == ["point"] and values["at"] == pin_of(base.own, link):
             weights[link] = Counterweight(
-                clean(values["mass"]), clean(values["radius"]), clean(values["direction"], "angle")
+                clean(values["mass"], "mass"),
+                clean(values["radius"], "length"),
+                clean(values["direction"], "angle"),
             )
     return weights
 

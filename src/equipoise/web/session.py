@@ -93,7 +93,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock:
+        with self.lock, self._in_units():
             base, found = self._current(), None
             try:
                 found = edited(base, message.changes())
