@@ -39,8 +39,8 @@ import equipoise as eq
 from equipoise.mechanism.support import Gauge, Mount, Row
 from equipoise.signals import Periodic
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import resonances
 from equipoise.vibration.linear import Linear
+from equipoise.vibration.resonance import resonances
 from equipoise.vibration.response import Model
 from equipoise.vibration.sweep import sweep_speed
 

@@ -455,7 +455,7 @@ def test_the_louder_of_two_steady_states(drive: list[str]) -> None:
     one = read("respond", WALKING, "--model", "exact", "--speed", "172 rpm", *drive)
     assert one["gauges"]["planting_part"]["peak_to_peak"] == pytest.approx(25.7e-3, abs=0.1e-3)
     assert one["stable"]
-    assert one["notes"] == []
+    assert not any("another steady state" in note for note in one["notes"])
 
 
 def test_both_branches_of_a_range() -> None:

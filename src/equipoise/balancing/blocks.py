@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any
 
 from equipoise.balancing.objectives import unit_of as si_unit
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
     from equipoise.balancing.phase_search import Phasing
 
-EXACT = 1e-12
-"""Gap below which nothing more is told of it."""
+EXACT, SMALL = 1e-12, 1.01e-4
+"""Gap below which nothing more is told of it; above which it is told in percent."""
 WORSE, MOST_WORSE = 0.1, 4
 """Growth that is told by itself; of how many figures at the most."""
 MOST_ORDERS = 8
@@ -133,17 +134,20 @@ def scope_of(found: Balanced) -> str:
     return f" {parts}" if parts else ""
 
 
+def gap_told(gap: float) -> str:
+    """A gap as it is printed, never smaller than it is where that could be seen."""
+    if gap <= SMALL:
+        return f"{max(gap, EXACT):.0e}"
+    digit = 10.0 ** floor(log10(gap) - 1)
+    return f"{100 * digit * ceil(gap / digit):.4g} %"
+
+
 def _proof(found: Balanced) -> str:
-    if found.gap is None:
-        return say(
-            "Found among {method}; that nothing better exists is not proved of phases.",
-            method=said(found.method),
-        )
     return say(
         "Proof, by {method}: nothing that is allowed is better by more than {gap} of the value "
         "before{scope}.",
         method=said(found.method),
-        gap=f"{max(found.gap, EXACT):.0e}",
+        gap=gap_told(found.gap),
         scope=scope_of(found),
     )
 

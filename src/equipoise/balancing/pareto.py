@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.blocks import EXACT, OF_UNIT, scope_of, shown_unit
+from equipoise.balancing.blocks import OF_UNIT, gap_told, scope_of, shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
@@ -55,7 +55,7 @@ class Front(Result):
     @property
     def gap(self) -> float:
         """The largest of all points."""
-        return max(point.gap or 0.0 for point in self.points)
+        return max(point.gap for point in self.points)
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values of both objectives, and of the added mass."""
@@ -168,7 +168,7 @@ def front_blocks(found: Front) -> Iterator[Block]:
     yield Text(
         say(
             "Every point is as good as any can be, to {gap} of the value before{scope}.",
-            gap=f"{max(found.gap, EXACT):.0e}",
+            gap=gap_told(found.gap),
             scope=scope_of(found.points[0]),
         )
     )

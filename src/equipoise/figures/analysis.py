@@ -58,7 +58,7 @@ def about(analysis: Analysis) -> str:
     for name, place in analysis.machine.frame.items():
         if complex(*place) == pole:
             return short(name)
-    return f"({shown(1000 * pole.real)} mm, {shown(1000 * pole.imag)} mm)"
+    return f"({quantity(pole.real, 'length')}, {quantity(pole.imag, 'length')})"
 
 
 def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:

@@ -39,7 +39,7 @@ from equipoise.results.charts import (
 )
 
 if TYPE_CHECKING:
-    from equipoise.vibration.free import Resonance
+    from equipoise.vibration.resonance import Resonance
     from equipoise.vibration.sweep import Sweep
 
 LOUD = 0.1

@@ -20,7 +20,7 @@ from equipoise.keys import (
     told_by,
 )
 from equipoise.keys import key as _key
-from equipoise.mechanism.checks import numbered, unknown
+from equipoise.mechanism.checks import numbered, unknown, wrong_speeds
 from equipoise.quantities import Dimension, format_exact, parse
 
 Measure = Literal["rms", "peak"]
@@ -168,17 +168,6 @@ def unknown_station(where: str, name: str, stations: Sequence[Station]) -> Itera
         yield ModelError(where, unknown(name, names, "station"))
 
 
-def wrong_range(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
-    """Two speeds, the lower one first."""
-    if len(speeds) != 2:
-        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
-    elif not 0 < speeds[0] < speeds[1]:
-        low, high = speeds
-        yield ModelError(
-            where, f"got {low:g} to {high:g} rad/s; give two above 0, the lower one first"
-        )
-
-
 def wrong_design(
     design: DesignPlan, stations: Sequence[Station], length: float, shaken: bool
 ) -> Iterator[ModelError]:
@@ -187,7 +176,7 @@ def wrong_design(
     length : of its shaft, m.  shaken : whether anything shakes it.
     """
     held = [one.name for one in stations if one.hand is not None]
-    yield from wrong_range("design.speeds", design.speeds)
+    yield from wrong_speeds("design.speeds", design.speeds)
     if design.measure not in MEASURES:
         yield ModelError("design.measure", unknown(design.measure, MEASURES, "measure"))
     if not design.variables:

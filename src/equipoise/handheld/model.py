@@ -16,7 +16,6 @@ from equipoise.handheld.design_plan import (
     DesignPlan,
     unknown_station,
     wrong_design,
-    wrong_range,
 )
 from equipoise.handheld.shaft import Shaft, wrong_shaft
 from equipoise.handheld.station import (
@@ -50,7 +49,7 @@ from equipoise.keys import (
     keys_of,
     wrong_values,
 )
-from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_text
+from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_speeds, wrong_text
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.shown_units import ShownUnits
 
@@ -334,7 +333,7 @@ def _wrong_day(tool: Tool) -> Iterator[ModelError]:
     if tool.operation is not None:
         idling, racing = tool.operation.idling, tool.operation.racing
         if tool.operation.speeds:
-            yield from wrong_range("operation.speeds", tool.operation.speeds)
+            yield from wrong_speeds("operation.speeds", tool.operation.speeds)
         if idling is not None and racing is not None and idling >= racing:
             yield ModelError("operation.racing", "is not above idling; give a higher speed")
     total = sum(work.duration for work in tool.work)

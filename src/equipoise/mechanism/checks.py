@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import pi
 from typing import Any, TypeVar
+from unicodedata import normalize
 
 from equipoise.errors import ModelError
 
@@ -24,12 +26,23 @@ LONGEST_NAME = 200
 
 def unknown(given: str, known: Iterable[str], kind: str) -> str:
     """Say that a name is unknown, and what would be right."""
+    names = list(known)
+    hint = meant(given, names) or f"there are {_listed(names)}"
+    return f"no {kind} is called {given!r}; {hint}"
+
+
+def meant(given: str, names: Sequence[str]) -> str:
+    """Ask whether the nearest of some names is meant; empty where none is near."""
     from difflib import get_close_matches
 
-    names = list(known)
-    near = get_close_matches(given, names, 1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
+    by_form = {form_of(name): name for name in reversed(names)}
+    near = get_close_matches(form_of(given), by_form, 1)
+    return f"did you mean {by_form[near[0]]!r}?" if near else ""
+
+
+def form_of(name: str) -> str:
+    """A name without its case, and with letters of any width as usual ones."""
+    return normalize("NFKC", name).casefold().strip()
 
 
 def _listed(names: list[str]) -> str:
@@ -87,6 +100,17 @@ def wrong_range(where: str, pair: Vector | None, scale: float, unit: str) -> Ite
     if pair is not None and pair[0] > pair[1]:
         low, high = (scale * value for value in pair)
         yield ModelError(where, f"got {low:.6g} to {high:.6g}{unit}; give the smaller one first")
+
+
+def wrong_speeds(where: str, speeds: Sequence[float]) -> Iterator[ModelError]:
+    """Two speeds, the lower one first."""
+    if len(speeds) != 2:
+        yield ModelError(where, f"got {len(speeds)}; give the lowest and the highest speed")
+    elif not 0 < speeds[0] < speeds[1]:
+        low, high = (speed * 30 / pi for speed in speeds)
+        yield ModelError(
+            where, f"got {low:.6g} to {high:.6g} rpm; give two above 0, the lower one first"
+        )
 
 
 def unknown_link(where: str, name: str, bodies: Bodies) -> Iterator[ModelError]:

@@ -34,8 +34,6 @@ NOTHING = 0.01
 
 ANGLES = 720
 """Crank angles in a turn."""
-AROUND = (0.2, 2.0)
-"""Ends of the range of speeds, over the machine's own."""
 SPEEDS = 60
 """Speeds in the range, besides those about resonances."""
 
@@ -120,12 +118,13 @@ class Findings(_Found):
     @part("vibration over speed")
     def sweep(self) -> Sweep | None:
         """Vibration over speeds around that of the machine."""
+        from equipoise.vibration.resonance import around
         from equipoise.vibration.sweep import sweep_speed
 
         if self.response is None:
             return None
-        slow, fast = (share * self.response.speed for share in AROUND)
-        return sweep_speed(self.machine, slow, fast, speeds=SPEEDS)
+        ends = around(self.machine.drive, self.response.speed)
+        return sweep_speed(self.machine, *ends, speeds=SPEEDS)
 
     @part("natural frequencies")
     def modes(self) -> FreeVibration | None:

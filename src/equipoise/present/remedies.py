@@ -40,7 +40,7 @@ def helps_told(found: Findings) -> Iterator[str]:
             unit=unit.name,
             change=change(before, after) or percent(0),
         )
-    if balanced.gap is not None:
+    if balanced.proved:
         yield say("Of all that may be changed here nothing is better; that is proved.")
     if worse := _worse(found, balanced):
         yield say("In exchange these become larger: {figures}.", figures=say(", ").join(worse))
@@ -71,7 +71,7 @@ def nothing_told(found: Findings) -> Iterator[str]:
             unit=unit.name,
             already=good_already(found),
         )
-    if balanced.gap is not None:
+    if balanced.proved:
         yield say("Less than 1 % could be gained; that is proved.")
 
 

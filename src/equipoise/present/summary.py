@@ -15,7 +15,7 @@ from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
-from equipoise.present.remedies import good_already, helps_told
+from equipoise.present.remedies import capital, good_already, helps_told
 from equipoise.quantities import (
     PER_RPM,
     Dimension,
@@ -29,6 +29,7 @@ from equipoise.quantities import (
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, shown_in
 from equipoise.signals import Array, Figures, figures, harmonics
+from equipoise.vibration.resonance import within
 
 
 @dataclass(frozen=True, eq=False)
@@ -300,16 +301,8 @@ def vibration_told(found: Findings) -> Iterator[str]:
         frequency=brief(nearest.frequency / (2 * pi)),
         speed=brief(abs(nearest.speed) / PER_RPM),
     )
-    if nearest.avoid is None:
-        return
-    low, high = sorted(abs(end) / PER_RPM for end in nearest.avoid)
-    if low <= abs(response.speed) / PER_RPM <= high:
-        yield say(
-            "The crank turns at a speed that is to be avoided: between {low} and {high} rpm this "
-            "resonance amplifies more than three times.",
-            low=brief(low),
-            high=brief(high),
-        )
+    for note in within(found.sweep.resonances, response.speed):
+        yield say("{sentence}.", sentence=capital(note.said()))
 
 
 def planting_told(found: Findings) -> Iterator[str]:

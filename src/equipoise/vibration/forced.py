@@ -21,6 +21,7 @@ from equipoise.quantities.units import HUGE
 from equipoise.vibration.body import MISSING
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.resonance import warned
 from equipoise.vibration.response import MODELS, Model, Response, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 
@@ -247,11 +248,15 @@ def respond(
     model = chosen_model(machine, model, drive)
     if missing := massless(machine):
         raise MassError(missing)
-    speed = steady_speed(machine, speed, drive)
+    speed, linear = steady_speed(machine, speed, drive), None
     if model in get_args(Step):
-        found = respond_linear(Linear.of(machine, cast(Step, model)), speed)
+        linear = Linear.of(machine, cast(Step, model))
+        found = respond_linear(linear, speed)
     elif model == "coupled":
         found = respond_coupled(Linear.of(machine, "torque"), speed)
     else:
         found = respond_exact(machine, speed, drive)
-    return replace(found, notes=(*left_out(machine), *found.notes))
+    if machine.support is None:
+        return replace(found, notes=(*left_out(machine), *found.notes))
+    near = warned(linear or Linear.of(machine, usual_step(machine, model)), found.speed)
+    return replace(found, notes=(*left_out(machine), *near, *found.notes))

@@ -25,8 +25,8 @@ from equipoise.vibration.forced import (
     steady_speed,
     usual_step,
 )
-from equipoise.vibration.free import Resonance, resonances
 from equipoise.vibration.linear import Linear, Step
+from equipoise.vibration.resonance import Resonance, resonances
 from equipoise.vibration.response import Mode, Model, Response, Values, range_shown
 from equipoise.vibration.small_motion import respond_coupled, respond_linear
 

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import Any
 
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.blocks import gap_told
 from equipoise.balancing.objectives import unit_of as si_unit
 from equipoise.balancing.optimisation import balance, default_plan
 from equipoise.balancing.phase_search import PhaseSearch
@@ -32,7 +33,7 @@ from equipoise.web.figures import compared, figures_of, signals_of
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
 """Measures that come first."""
-EXACT, ROUNDED = 1e-12, 1e-7
+ROUNDED = 1e-7
 GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
@@ -215,12 +216,9 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
 
 
 def _proof(found: Balanced, replaced: bool) -> str:
-    if found.gap is None:
-        return f"Found among {found.method}; that nothing better exists is not proved of phases."
-    gap = max(found.gap, EXACT)
     proved = f"proved {' and '.join(map(str, found.scope))}".strip()
     of = "without the counterweights that were taken off" if replaced else "before"
     return (
         f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "
-        f"{gap:.0e} of the value {of}."
+        f"{gap_told(found.gap)} of the value {of}."
     )

@@ -14,6 +14,7 @@ from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
 from equipoise.quantities import display
 from equipoise.vibration.forced import respond
+from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
 from equipoise.vibration.sweep import sweep_speed
 from equipoise.web.edits import Solved
@@ -21,8 +22,8 @@ from equipoise.web.figures import chart, gauge_choice, text_of
 from equipoise.web.state import Block
 
 Values = dict[str, Any]
-AROUND, SPEEDS = (0.2, 2.0), 60
-"""Ends of the range of speeds, over the machine's own, and how many besides those at resonances."""
+SPEEDS = 60
+"""Over which a response is told, besides those at resonances."""
 SAMPLES = 360
 """In a turn."""
 
@@ -54,8 +55,8 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
     """
     try:
         found = respond(machine)
-        slow, fast = (share * found.speed for share in AROUND)
-        curves = sweep_speed(machine, slow, fast, speeds=SPEEDS, progress=progress)
+        ends = around(machine.drive, found.speed)
+        curves = sweep_speed(machine, *ends, speeds=SPEEDS, progress=progress)
     except EquipoiseError:  # of which `response_of` has told
         return None
     block = Block()

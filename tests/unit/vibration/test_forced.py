@@ -6,14 +6,18 @@ from dataclasses import replace
 from math import inf, nan
 from typing import Literal
 
+import numpy as np
 import pytest
 
 import equipoise as eq
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.mechanism.force_elements import Motor, MotorTable
 from equipoise.mechanism.support import UP
+from equipoise.present.findings import Findings, find
+from equipoise.present.summary import vibration_told
 from equipoise.vibration.exact import solve_exact
 from equipoise.vibration.forced import chosen_model, respond, usual_step
+from equipoise.vibration.resonance import around
 from equipoise.vibration.response import MODELS, Model
 from equipoise.vibration.sweep import sweep_speed
 from unit.vibration.build import SPEED, Mount, block, cart, rig, springs
@@ -235,3 +239,35 @@ def test_a_motor_drives_the_way_that_is_asked_for() -> None:
     found = respond(machine, -17.0, drive=True)
     assert found.speed == pytest.approx(-17)
     assert found.drive.fluctuation == pytest.approx(wanted.drive.fluctuation)
+
+
+def amplified(machine: eq.Machine, speed: float) -> float:
+    """Force of the rig's spring in order 1 over what it would be if the rig turned endlessly slowly
+    under the same shaking force: by the levers about O, of 1.34 m and 1.35 m.
+    """
+    force = respond(machine, speed).mounts["spring"].force.sizes[1]
+    shaking = eq.analyze(machine, 720, speed).forces.shaking_force.y
+    return float(force / (2 * np.abs(np.fft.fft(shaking))[1] / 720 * 1.34 / 1.35))
+
+
+@pytest.mark.parametrize("rpm", [80, 95, 98, 118.5, 135, 139, 193])
+def test_a_speed_within_a_resonance_says_so(rpm: float) -> None:
+    """As the report does: where the swing is more than three times that under a standing force."""
+    machine = eq.load("yamashita-rig")
+    speed = rpm * np.pi / 30
+    told = [str(note) for note in respond(machine, speed).notes if "to be avoided" in str(note)]
+    assert len(told) == (amplified(machine, speed) > 3)
+    assert [str(n) for n in respond(machine, speed, "exact").notes if "avoided" in str(n)][:1] == (
+        [line.replace("96.8", "97.0") for line in told]
+    )
+    found = find("yamashita-rig", speed=speed)
+    assert isinstance(found, Findings)
+    summary = [line for line in vibration_told(found) if "to be avoided" in line]
+    assert summary == [f"T{line[1:]}." for line in told]
+
+
+def test_a_sweep_covers_the_speeds_at_which_the_machine_runs() -> None:
+    machine = eq.load("yamashita-rig").with_drive(speeds=(1.0, 80.0))
+    assert around(machine.drive, 20.0) == (1.0, 80.0)
+    assert around(machine.drive, -20.0) == (-1.0, -80.0)
+    assert around(eq.load("yamashita-rig").drive, 20.0) == (4.0, 40.0)

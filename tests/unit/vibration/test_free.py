@@ -13,8 +13,8 @@ from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.force_elements import Motor
 from equipoise.mechanism.support import Row
 from equipoise.vibration.forced import respond
-from equipoise.vibration.free import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.linear import Linear, find_modes
+from equipoise.vibration.resonance import AMPLIFIED, Resonance, resonances
 from equipoise.vibration.response import Mode, Model
 from equipoise.vibration.sweep import sweep_speed
 from unit.vibration.build import STIFFNESS, Array, Gauge, Mount, block, cart, rig, springs
