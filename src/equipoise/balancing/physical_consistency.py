@@ -328,9 +328,8 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
         return f"The {what} can be made zero, with every mass as it is."
     unit = display("mass", [*added.values()])
     where = ", ".join(
-        f"{unit.factor * more:.4g} {unit.unit} on {link}"
-        if more
-        else f"some mass, however little, on {link}"
+        f"{f'{unit.factor * more:.4g} {unit.unit}' if more else 'some mass, however little,'} "
+        f"on {link}"
         for link, more in added.items()
     )
     return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."

@@ -13,7 +13,7 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
-from equipoise.quantities.displays import chosen_unit
+from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
 
 # -- grammar ---------------------------------------------------------------------------------------

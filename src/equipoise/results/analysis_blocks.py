@@ -26,7 +26,7 @@ from equipoise.results.machine_blocks import (
     smallest,
     span,
 )
-from equipoise.results.outputs import CAUSES, Output
+from equipoise.results.outputs import CAUSES, tops_of
 from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
@@ -208,7 +208,7 @@ def orders_table(analysis: Analysis) -> Table:
     signals = [analysis.by_order[one.name] for one in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
-    tops = _tops(zip(ones, (size[1:] for size in sizes), strict=True))
+    tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
     scales = [1e3 * tops[one.dimension] for one in ones]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
@@ -223,15 +223,6 @@ def orders_table(analysis: Analysis) -> Table:
     columns = (Column(one.declared.say(one.item), one.dimension) for one in ones)
     heads = (say("order"), Column(say("frequency"), "frequency"), *columns)
     return Table.of(say("Amplitudes by order"), heads, rows)
-
-
-def _tops(found: Iterable[tuple[Output, Array]]) -> dict[Dimension | None, float]:
-    """The largest amplitude of any output of each dimension, beside which others are rounding."""
-    tops: dict[Dimension | None, float] = {}
-    for one, sizes in found:
-        top = float(np.max(sizes, initial=0.0))
-        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
-    return tops
 
 
 def loud(sizes: list[Array], most: int = MOST_ORDERS) -> list[int]:
@@ -274,7 +265,7 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
     yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
-    tops = _tops((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
+    tops = tops_of((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
@@ -287,10 +278,12 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
 def _harmonics(signal: Periodic, orders: int, scale: float) -> Iterator[tuple[Cell, ...]]:
     for k in range(signal.count_to(orders)):
         value = complex(signal.amplitudes[k])
-        size = abs(value)
-        silent = size <= 1e-10 * scale or k == 0
-        phase = None if silent else Value(float(np.angle(1j * value)), after=1)
-        parts = (Value(part, scale) for part in (value.real, -value.imag, size))
+        phase = (
+            None
+            if abs(value) <= 1e-10 * scale or k == 0
+            else Value(float(np.angle(1j * value)), after=1)
+        )
+        parts = (Value(part, scale) for part in (value.real, -value.imag, abs(value)))
         rms = Value(float(signal.rms_by_order[k]), scale)
         yield f"{float(signal.orders[k]):.4g}", *parts, phase, rms
 

@@ -278,3 +278,11 @@ def shown_in(unit: str, values: Any = ()) -> Display:
     if dimension is None:
         return Display(unit, 1.0)
     return display(dimension, values, "mrad" if dimension == "angle" else None)
+
+
+def tops_of(found: Iterable[tuple[Output, Array]]) -> dict[Dimension | None, float]:
+    """The largest amplitude of any output of each dimension, beside which others are rounding."""
+    tops: dict[Dimension | None, float] = {}
+    for one, sizes in found:
+        tops[one.dimension] = max(tops.get(one.dimension, 0.0), float(np.max(sizes, initial=0.0)))
+    return tops

@@ -24,7 +24,7 @@ from equipoise.quantities import (
     showing_by_default,
     told,
 )
-from equipoise.quantities.displays import _SCALES, LARGE, SMALL
+from equipoise.quantities.numbers import _SCALES, LARGE, SMALL
 
 INCHES: dict[Dimension, str] = {"length": "in", "force": "lbf", "mass": "lb"}
 
