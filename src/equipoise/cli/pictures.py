@@ -24,7 +24,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, Shown, check_folder, tell_pictures, write_pictures
+from equipoise.cli.outputs import Kind, Shown, check_folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -105,9 +105,9 @@ def plot(
         for picture in chosen:
             name = f"{picture.name}.{format}"
             write_all(folder, {name: render(picture.draw(), format)})
-            print(f"{os.path.join(folder, name)}  {picture.caption}")
+            tell(f"{os.path.join(folder, name)}  {picture.caption}")
     for part, why in found.failed.items():
-        print(f"{part}: left out, {why}", file=sys.stderr)
+        tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)
 
 
@@ -199,9 +199,9 @@ def landscape(
         write_pictures(pictures, folder, format)
         best = told_best(found)
     for name in pictures:
-        print(os.path.join(folder, f"{name}.{format}"))
+        tell(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    print(best + "".join(edge))
+    tell(best + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:
