@@ -16,7 +16,7 @@ from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import measured, unit_of
-from equipoise.balancing.phase_search import Phasing
+from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
