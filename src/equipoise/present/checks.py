@@ -15,6 +15,7 @@ from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
 from equipoise.quantities import PER_RPM, Dimension, number
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.machine_blocks import bodies_tables
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -43,6 +44,7 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
     repeats = "motion repeats" if turns_of_loads(machine) == 1 else "motion and loads repeat"
     yield Text(f"the crank turns fully; the {repeats} after {turns}")
+    yield from bodies_tables(machine)
     yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
     if machine.loads:
         ends = (Column(end, "angle", "deg") for end in ("from", "to"))

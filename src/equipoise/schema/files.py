@@ -6,8 +6,9 @@ import csv
 import io
 import json
 import os
+import re
 import stat
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,6 +17,7 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
+LONGEST_KEY = 60
 LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
 
@@ -124,6 +126,17 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> Non
         write(Path(folder) / name, data)
 
 
+def quoted(value: object) -> str:
+    """Text, or a list of texts, as it stands in TOML."""
+    return json.dumps(value, ensure_ascii=False)
+
+
+def written_key(name: str) -> str:
+    """Return a key as it stands in TOML, cut where it is endless."""
+    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
+
+
 def printable(path: str | os.PathLike[str]) -> str:
     """Return a path as text that any terminal can print."""
     text = os.fspath(path).encode("utf-8", "backslashreplace").decode("utf-8")
@@ -152,9 +165,13 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in the output")
 
 
-def to_csv(analysis: Analysis) -> str:
-    """Every array against crank angle, one row a crank angle; units stand in the header."""
-    told = [(one.name, one.unit, one.values) for one in analysis.outputs.arrays]
+def to_csv(analysis: Analysis, outputs: Iterable[str] = ()) -> str:
+    """Every array against crank angle, one row a crank angle; units stand in the header.
+
+    outputs : names of those that are told instead.
+    """
+    ones = analysis.outputs.chosen(outputs) or analysis.outputs.arrays
+    told = [(one.name, one.unit, one.values) for one in ones]
     return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
 
 

@@ -7,11 +7,10 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from json import dumps as quoted
 from math import isfinite
 from typing import Any
 
@@ -19,17 +18,11 @@ from equipoise import keys
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, described, parse
+from equipoise.schema.files import quoted, written_key
 from equipoise.schema.numbers import Polar
 
 Place = tuple[str | int, ...]
 """Keys, and numbers in lists from 0."""
-LONGEST_KEY = 60
-
-
-def written_key(name: str) -> str:
-    """Return a key as it stands in TOML, cut where it is endless."""
-    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def written_place(place: Iterable[str | int]) -> str:
@@ -157,8 +150,10 @@ def _tables(kind: keys.Tables, given: Any, place: Place, context: Context) -> An
 
 
 def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
+    if kind.listed and isinstance(given, list):
+        return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
-        return context.wrong(place, given, "give a table")
+        return context.wrong(place, given, "give a table" + ", or a list of names" * kind.listed)
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
 
@@ -210,11 +205,10 @@ def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
 def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, "give a plain number without unit and quotes")
-    try:
-        value = float(given)
-    except OverflowError:
-        return context.wrong(place, given, "give a finite number")
-    return value if isfinite(value) else context.wrong(place, given, "give a finite number")
+    with suppress(OverflowError):
+        if isfinite(value := float(given)):
+            return value
+    return context.wrong(place, given, "give a finite number")
 
 
 def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
@@ -230,9 +224,8 @@ def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
 
 
 def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
-    if not isinstance(given, str):
-        return context.wrong(place, given, "give text in quotes")
-    return NamedFile(kind.sort, place, given)
+    file = _text(keys.Text(), given, place, context)
+    return file if file is WRONG else NamedFile(kind.sort, place, file)
 
 
 # -- several values --------------------------------------------------------------------------------
@@ -261,6 +254,8 @@ _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg
 
 
 def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
+    if kind.named and isinstance(given, str):
+        return given
     if isinstance(given, dict):
         count = len(context.problems)
         found = _table(keys.Table(Polar), given, place, context)
@@ -270,7 +265,7 @@ def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
         return (x, y, 0.0) if kind.space else (x, y)
     if not kind.space:
         if not isinstance(given, list):
-            return context.wrong(place, given, _POINT)
+            return context.wrong(place, given, _POINT + ", or the name of a point" * kind.named)
         return _listing(_PAIR, given, place, context)
     values = _listing(keys.Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values
