@@ -229,11 +229,11 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         prices=_prices(found),
         looked_at=best.nodes,
         notes=tuple(_notes(found)),
-        scope=tuple(_scope(found)),
+        scope=tuple(proved_of(found)),
     )
 
 
-def _scope(found: Solution) -> Iterator[Note]:
+def proved_of(found: Solution) -> Iterator[Note]:
     """Of what the bound is proved, where that is not all that the plan allows."""
     problem = found.problem
     if problem.reads_gauges and problem.supports_more:

@@ -241,6 +241,7 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
     assert plan.phases is not None
     told = progress or (lambda done, most: None)
     linkage, solution = replace(plan, phases=None), None
+    scope: tuple[Note, ...] = ()
     limits = tuple(one for one in plan.limits if not one.objective.output.startswith(JOINTS))
     search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine, limits)
     method = Note("branch and bound over all phases of the rows")
@@ -258,9 +259,11 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
                 raise
             first = None
         problem = Problem.of(machine, linkage) if first is None else first.problem
-        solution, phasing = Together(problem, search).run(first, told)
+        together = Together(problem, search)
+        solution, phasing = together.run(first, told)
         method = Note("branch and bound over all phases of the rows and all masses")
-    found = _in_phases(machine, plan, phasing, method)
+        scope = together.scope
+    found = _in_phases(machine, plan, phasing, method, scope)
     if solution is None:
         return found
     changed = result_of(machine, plan, solution)
@@ -279,11 +282,13 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
         looked_at=phasing.looked_at,
         notes=(*changed.notes, *phasing.notes),
         phasing=phasing,
-        scope=(*changed.scope, *([Note("for the gears taken")] if plan.geared else [])),
+        scope=scope,
     )
 
 
-def _in_phases(machine: Machine, plan: Balance, phasing: Phasing, method: Note) -> Balanced:
+def _in_phases(
+    machine: Machine, plan: Balance, phasing: Phasing, method: Note, scope: tuple[Note, ...]
+) -> Balanced:
     """The result where nothing but phases has changed."""
     return Balanced(
         machine=phasing.machine,
@@ -298,4 +303,5 @@ def _in_phases(machine: Machine, plan: Balance, phasing: Phasing, method: Note) 
         looked_at=phasing.looked_at,
         notes=phasing.notes,
         phasing=phasing,
+        scope=scope,
     )

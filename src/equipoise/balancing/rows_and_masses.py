@@ -14,6 +14,7 @@ from math import inf, pi
 
 import numpy as np
 
+from equipoise.balancing.balanced import proved_of
 from equipoise.balancing.box_bounds import Numbers
 from equipoise.balancing.branch_and_bound import finite
 from equipoise.balancing.effects import Effects
@@ -28,6 +29,7 @@ from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
 from equipoise.balancing.program import NoSolutionError, Program
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.errors import UsageError
+from equipoise.i18n import Note
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import GAUGES, JOINTS
@@ -94,9 +96,17 @@ class Together:
             raise error or UsageError("no phases were found with which masses keep the limits")
         self._in_turn(self.best.phases, self.best.solution, ROUNDS, NO_GAIN)
         proof, cost = self._proof(), self.search.cost
-        if np.min(cost.values(alone)) > self.best.cost + NO_GAIN * cost.whole:
+        needed = len(self._measured) < len(self.problem.asked)  # for limits in joints
+        if needed or np.min(cost.values(alone)) > self.best.cost + NO_GAIN * cost.whole:
             return self._laid_out(proof)
         return None, phasing_of(self.search, self.search.best(alone), proof)
+
+    @property
+    def scope(self) -> tuple[Note, ...]:
+        """Of what the proof holds, where that is not all that is allowed."""
+        assert self.best is not None
+        gears = (Note("for the gears taken"),) if self.problem.plan.geared else ()
+        return (*proved_of(self.best.solution), *gears)
 
     def _from_any(self, beginnings: Array, solution: Solution | None) -> UsageError | None:
         """Masses and phases in turn, from each beginning; the last error, if there was one."""

@@ -176,7 +176,10 @@ def test_roll_counts_for_the_linkage_too() -> None:
     ("limit", "sentence"),
     [
         (Limit(LIFT, at_most=1.0), "no phases keep the rms of shaking_force.y within its limit; "),
-        (Limit(Objective("roll_moment"), ratio=0.5), "the rms of roll_moment is 0 before, of which"),
+        (
+            Limit(Objective("roll_moment"), ratio=0.5),
+            "the rms of roll_moment is 0 before, of which",
+        ),
         (Limit(Objective("joints.A"), ratio=1.0), "no phase changes the force in a joint; leave"),
     ],
 )

@@ -158,7 +158,7 @@ def test_a_force_that_can_vanish() -> None:
 
 
 def test_limits_are_kept_in_other_phases() -> None:
-    """Of phases alone, and of phases with masses, of a limit that no masses could keep as it was."""
+    """Of phases alone, and with masses, of which none could keep the limit in the phases before."""
     machine = side_by_side(TYPE_II, (0.0, 0.0, 0.0, 0.0))
     roll = Limit(Objective("roll_moment"), at_most=1.0)
     found = eq.balance(machine, Balance(phases=PHASES, objectives=(LIFT,), limits=(roll,)))
@@ -166,13 +166,16 @@ def test_limits_are_kept_in_other_phases() -> None:
     free = choose_phases(machine, [LIFT]).after[LIFT.name]
     assert free < rms(found.machine) < 0.5 * rms(machine)
     assert found.bound <= found.cost
+    machine = side_by_side(TYPE_II, (0.0, 0.0))
     along = Limit(Objective("shaking_force.x"), ratio=0.2)
     plan = Balance(masses=(POINT,), objectives=(LIFT,), limits=(along,))
     both = eq.balance(machine, replace(plan, phases=PHASES))
-    assert rms(both.machine, "shaking_force.x") <= 0.2 * rms(machine, "shaking_force.x") * (1 + 1e-6)
+    assert rms(both.machine, "shaking_force.x") <= 0.2 * rms(machine, "shaking_force.x") * (
+        1 + 1e-6
+    )
     price = both.prices[along.name]
     assert price.at_most == pytest.approx(0.2 * rms(machine, "shaking_force.x"), rel=1e-9)
-    assert rms(both.machine) < 0.2 * rms(machine)
+    assert rms(both.machine) < 0.35 * rms(machine)
 
 
 def test_mass_that_does_nothing_is_not_added() -> None:
@@ -205,7 +208,7 @@ def test_gauges_at_several_speeds() -> None:
 def test_gears_are_told_in_the_scope() -> None:
     weight = Weight("any", 0.04, at_most=0.3)
     plan = Balance(
-        geared=(GearedWeight("crank", weight, ratio=(1.0, 1.0), distance=0.1, direction=(0.0, 0.0)),),
+        geared=(GearedWeight("crank", weight, ratio=(1.0, 1.0), axis=(0.1, 0.0)),),
         phases=PHASES,
         objectives=(LIFT,),
     )
