@@ -30,6 +30,7 @@ from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, W
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import JOINTS
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
@@ -82,7 +83,8 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
 
 
 SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m."""
+"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
+that is smaller."""
 
 
 def default_plan(machine: Machine) -> Balance:
@@ -118,7 +120,8 @@ def reach_of(machine: Machine, link: str) -> float:
     """Distance of a link's farthest point from its pin, m."""
     points = machine.links[link].points
     center = complex(*points[pin_of(machine, link)])
-    return max(abs(complex(*point) - center) for point in points.values()) or SMALLEST
+    found = max(abs(complex(*point) - center) for point in points.values())
+    return found or min(SMALLEST, float(size_of_bodies(machine)))
 
 
 LARGE = 1e300
