@@ -89,12 +89,12 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         kind: Dimension = "torque" if load.point is None else "force"
         place = load.link if load.point is None else f"{load.point} of {load.link}"
         what: str = kind
-        ends, beyond = (load.start, load.stop), "0"
+        ends, beyond = (load.start, load.stop), "zero"
         if (table := load.table) is not None:
             what = f"{kind}, {table.file}" if table.file else f"{kind}, table"
-            beyond = "0" if load.start is not None or table.covers else load.outside or ""
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
+                beyond = "" if table.covers else load.outside or ""
         shown = [Value(end, after=1) for end in ends if end is not None]
         where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
