@@ -211,11 +211,8 @@ class Machine(Frozen):
         return sum(link.mass or 0.0 for link in self.links.values())
 
     def with_link(self, name: str, **changes: Any) -> Machine:
-        """Return the machine with fields of one link changed; `with_point` moves one point.
-
-        Raises
-        ------
-        ModelError : there is no such link, or new `points` leave some of its own out.
+        """Return the machine with fields of one link changed; `points` has to have all of its own
+        (`with_point` moves one).
         """
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
