@@ -7,6 +7,7 @@ from math import inf, isfinite, pi, sqrt
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     Conditions,
     Frozen,
@@ -32,12 +33,12 @@ HOLLOW = ("ring", "sector")
 """Shapes with an inner radius."""
 RANGE = Listing(Quantity("length"), (2,))
 MATERIALS = {
-    "steel": 7850.0,
-    "cast iron": 7200.0,
-    "brass": 8500.0,
-    "lead": 11340.0,
-    "tungsten alloy": 17500.0,
-    "aluminium": 2700.0,
+    to_say("steel"): 7850.0,
+    to_say("cast iron"): 7200.0,
+    to_say("brass"): 8500.0,
+    to_say("lead"): 11340.0,
+    to_say("tungsten alloy"): 17500.0,
+    to_say("aluminium"): 2700.0,
 }
 """Densities, kg/m3."""
 LARGEST_ROOM = 1000.0

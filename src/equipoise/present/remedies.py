@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from equipoise.balancing.balanced import Balanced
+from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.told import capital, nothing_told, proof_told, worse_told
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say
-from equipoise.mechanism.balance import Objective
 from equipoise.present.findings import Findings
 from equipoise.quantities import brief, change, percent
-from equipoise.results.outputs import objective_named, output_named, scaled, unit_of_measure
+from equipoise.results.outputs import objective_named, scaled
 
-WORSE, MOST_WORSE = 0.1, 3
-NOTHING = 1e-9
 LARGE = 0.5
 """Added mass over that of all links from which it is told."""
 
@@ -24,58 +23,26 @@ def helps_told(found: Findings) -> Iterator[str]:
     if balanced is None:
         return
     if not found.helped:
-        yield from nothing_told(found)
+        yield from nothing_told(balanced)
         return
     for made in balanced.changes:
-        yield say("{sentence}.", sentence=next(sentences(made)))
+        first, *pieces = sentences(made)
+        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.tried else first)
     yield from _heavy(balanced)
-    for one in balanced.plan.objectives:
-        before, after = balanced.objectives[one.name]
-        scale, unit = scaled(balanced.units[one.name])
+    for one, (before, after) in balanced.aims.items():
+        scale, unit = scaled(unit_of(one, balanced.original))
         yield say(
             "{what}: {before} → {after} {unit} ({change}).",
-            what=_named(found, one),
+            what=capital(objective_named(one, len(found.machine.rows))),
             before=brief(before * scale),
             after=brief(after * scale, before * scale),
             unit=unit,
             change=change(before, after) or percent(0),
         )
-    if balanced.gap is not None:
-        yield say("Of all that may be changed here nothing is better; that is proved.")
-    if worse := _worse(found, balanced):
-        yield say("In exchange these become larger: {figures}.", figures=say(", ").join(worse))
+    yield from worse_told(balanced)
+    yield proof_told(balanced)
     if balanced.planting_kept:
         yield say("The planting figures stay as they are.")
-
-
-def good_already(found: Findings) -> str:
-    """What a machine is where balancing brings nothing, as a part of a sentence."""
-    if found.own_plan:
-        return say("already as small as what may be changed can make it")
-    if len(found.machine.rows) > 1:
-        return say("already as small as other phases of the rows can make it")
-    return say("already as small as a counterweight on the crank can make it")
-
-
-def nothing_told(found: Findings) -> Iterator[str]:
-    """That balancing brings nothing; objectives, how small they are, and whether it is proved."""
-    balanced = found.balanced
-    assert balanced is not None
-    for one in balanced.plan.objectives:
-        scale, unit = scaled(balanced.units[one.name])
-        yield say(
-            "{what}, {value} {unit}, is {already}.",
-            what=_named(found, one),
-            value=brief(balanced.objectives[one.name][0] * scale),
-            unit=unit,
-            already=good_already(found),
-        )
-    if balanced.gap is not None:
-        yield say("Less than 1 % could be gained; that is proved.")
-
-
-def _named(found: Findings, one: Objective) -> str:
-    return capital(objective_named(one, len(found.machine.rows)))
 
 
 def _heavy(balanced: Balanced) -> Iterator[str]:
@@ -93,32 +60,3 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
             links=brief(links),
             added=brief(added),
         )
-
-
-def _worse(found: Findings, balanced: Balanced) -> list[str]:
-    """Peaks of outputs that grow by more than a tenth, the most first, and those from nothing."""
-    grown = {
-        name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
-        for name, old in balanced.before.items()
-        if old > 1e-12 and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
-    }
-    worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
-    rows = len(found.machine.rows)
-    told = [
-        say("{what} by {share} %", what=output_named(name, rows), share=percent(grown[name]))
-        for name in worst[:MOST_WORSE]
-    ]
-    # of all rows together, those that were nothing before, as moments of rows in phase are
-    for name, after in balanced.after.items():
-        output = name.removesuffix(".peak")
-        of_rows = name.startswith("rows.") and output != name
-        if of_rows and balanced.before.get(name, after) < NOTHING * after:
-            unit, what = unit_of_measure(output, "peak"), output_named(output)
-            size = brief(after)
-            told.append(say("{what} from 0 to {size} {unit}", what=what, size=size, unit=unit))
-    return told
-
-
-def capital(text: str) -> str:
-    """A text that begins a sentence."""
-    return text[:1].upper() + text[1:]

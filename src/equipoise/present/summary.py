@@ -9,13 +9,14 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
+from equipoise.balancing.told import capital, good_already
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
-from equipoise.present.remedies import capital, good_already, helps_told
+from equipoise.present.remedies import helps_told
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, scaled
@@ -124,10 +125,10 @@ def tiles(found: Findings) -> Iterator[Tile]:
         label = say("largest joint force")
         yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
-        first = found.balanced.plan.objectives[0]
-        told = change(*found.balanced.objectives[first.name]).removesuffix(" %") or percent(0)
+        first, pair = next(iter(found.balanced.aims.items()))
+        told = change(*pair).removesuffix(" %") or percent(0)
         what = objective_named(first, len(found.machine.rows))
-        note = what if found.helped else good_already(found)
+        note = what if found.helped else good_already(found.balanced)
         yield Tile(say("by balancing"), told, "%", note)
 
 
@@ -264,15 +265,23 @@ def vibration_told(found: Findings) -> Iterator[str]:
     response = found.response
     if response is None:
         return
+    later = None if found.after is None else found.after.response
     for name, gauge in response.gauges.items():
         scale, unit = scaled("rad" if gauge.rotation else "m")
-        yield say(
-            "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm.",
-            gauge=name,
-            size=brief(float(gauge.displacement.peak_to_peak) * scale),
-            unit=unit,
-            speed=brief(abs(response.speed) / PER_RPM),
-        )
+        size = float(gauge.displacement.peak_to_peak) * scale
+        told = {"unit": unit, "speed": brief(abs(response.speed) / PER_RPM), "gauge": name}
+        if later is None:
+            template = to_say(
+                "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm."
+            )
+            yield say(template, size=brief(size), **told)
+        else:
+            template = to_say(
+                "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm, and by "
+                "{after} {unit} after that change."
+            )
+            after = float(later.gauges[name].displacement.peak_to_peak) * scale
+            yield say(template, size=brief(size), after=brief(after, size), **told)
     if found.sweep is None or not found.sweep.resonances:
         return
     nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))

@@ -9,7 +9,7 @@ from functools import cached_property
 from math import cos, floor, isfinite, log10, pi, sin
 from types import MappingProxyType
 
-from equipoise.balancing.optimisation import reach_of
+from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.balance import Balance
@@ -44,14 +44,16 @@ def clean_place(place: complex, size: float = 0.0) -> Vector:
 
 @dataclass(frozen=True)
 class Counterweight:
-    """A point mass on a link that is pinned to the frame.
+    """A mass on a link that is pinned to the frame.
 
     mass : kg.  radius : from the pin, m.  direction : in the link's axes, rad.
+    gyration : radius of gyration about its own centre of mass, m; 0 of a point mass.
     """
 
     mass: float = 0.0
     radius: float = 0.0
     direction: float = 0.0
+    gyration: float = 0.0
 
     @property
     def arm(self) -> complex:
@@ -150,7 +152,7 @@ def _opposite(machine: Machine, link: str) -> Counterweight:
 
 
 def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
-    """A link with a point mass on it in mass, centre of mass and inertia.
+    """A link with a counterweight on it in mass, centre of mass and inertia.
 
     pin : from which the weight's place is told, in the link's axes, m.
     """
@@ -161,7 +163,8 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
     whole = link.mass + weight.mass
     common = (link.mass * center + weight.mass * place) / whole
     _, _, own = kernels.about(link.mass, 0.0, link.inertia, common - center)
-    _, _, added = kernels.about(weight.mass, 0.0, 0.0, common - place)
+    turning = weight.mass * weight.gyration**2
+    _, _, added = kernels.about(weight.mass, 0.0, turning, common - place)
     return replace(
         link,
         mass=clean(whole),
