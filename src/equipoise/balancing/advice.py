@@ -70,7 +70,8 @@ def advise(machine: Machine, solve: Solve = balance) -> Balanced:
     own = machine.balance or Balance()
     if own.objectives and not own.changes_nothing:
         return solve(machine, own)
-    found, problems = [], []
+    found: list[Balanced] = []
+    problems: list[UsageError] = []
     for plan in remedies(machine, own):
         if plan.phases is not None and plan.masses and any(one.helps for one in found):
             continue  # both together are for machines that neither helps

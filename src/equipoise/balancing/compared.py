@@ -74,8 +74,9 @@ def worse_of(
             found.append(Worse(one, _group_of(one.output), there, new))
     found.sort(key=lambda one: (IMPORTANT.index(one.group), -one.growth))
     seen: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
-    for one in found:
-        seen.setdefault((one.objective.output, one.objective.speeds, one.objective.about), one)
+    for grown in found:
+        aim = grown.objective
+        seen.setdefault((aim.output, aim.speeds, aim.about), grown)
     return tuple(seen.values())
 
 
