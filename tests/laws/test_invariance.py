@@ -262,7 +262,7 @@ def test_loads_add_up(name: str) -> None:
          TOLERANCE, sizes(both)[1])  # fmt: skip
     always = replace(one, start=0.3, stop=0.3 + 2 * np.pi)
     table = eq.mechanism.LoadTable((0.0, 1.0), ((30.0, 30.0), (-10.0, -10.0)))
-    tabulated = eq.Load(link, point, table=table)
+    tabulated = eq.Load(link, point, table=table, outside="wrap")
     for same_load in (always, tabulated):
         other = forces(replace(machine, loads=(same_load,)), speed=0.0, acceleration=0.0)
         same_outputs(other, first, 1e-14)

@@ -435,6 +435,7 @@ def test_transfer_moves_a_reaction_to_an_anchor(trial: int) -> None:
 SIGNATURES = {
     "about": "rcrc",
     "along_line": "cccurr",
+    "slid": "cccurrrrr",
     "inertia_demand": "ccurrrrrcr",
     "weight_demand": "urcc",
     "load_demand": "cccr",

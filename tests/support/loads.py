@@ -21,7 +21,7 @@ def force_and_torque(load: Load, crank_angle: Array) -> tuple[Array, Array]:
     acting = within(load, crank_angle).astype(float)
     force, torque = np.zeros((crank_angle.size, 2)), np.zeros(crank_angle.size)
     if load.table is not None:
-        columns = np.stack(tabulated(load.table, crank_angle), -1)
+        columns = np.stack(tabulated(load, load.table, crank_angle), -1)
         if columns.shape[1] == 2:
             force = columns
         else:
@@ -40,12 +40,18 @@ def within(load: Load, crank_angle: Array) -> np.ndarray:
     return (crank_angle - load.start) % TURN <= (load.stop - load.start) % TURN
 
 
-def tabulated(table: LoadTable, crank_angle: Array) -> list[Array]:
-    """Walk round the table's closed polygon."""
+def tabulated(load: Load, table: LoadTable, crank_angle: Array) -> list[Array]:
+    """Walk along the table's rows, turn after turn, and over the gap behind the last one."""
     nodes = np.array(table.crank_angle)
     since = (crank_angle - nodes[0]) % TURN
-    turn = np.append(nodes - nodes[0], TURN)
-    return [np.interp(since, turn, np.append(column, column[0])) for column in table.values]
+    last = nodes[-1] - nodes[0]
+    found = []
+    for column in table.values:
+        ahead = {"zero": 0.0, "hold": column[-1], "wrap": np.nan, None: np.nan}[load.outside]
+        across = column[-1] + (column[0] - column[-1]) * (since - last) / max(TURN - last, 1e-300)
+        ahead = np.where(np.isnan(ahead), across, ahead)
+        found.append(np.where(since > last, ahead, np.interp(since, nodes - nodes[0], column)))
+    return found
 
 
 def has_soil(machine: Machine) -> bool:

@@ -176,7 +176,10 @@ class Draft:
                     name, torque=float(rng.normal()) * 100 * self.size, start=start, stop=stop
                 )
             else:
-                yield Load(name, point, table=self._table())
+                table = self._table()
+                # what holds has no mirror image that a table can tell
+                outside: Literal["zero", "wrap"] = "wrap" if len(table.crank_angle) % 2 else "zero"
+                yield Load(name, point, table=table, outside=outside)
 
     def _springs(self) -> Iterable[Spring]:
         """Draw springs to a hook that no point comes near, or of no free length to any pivot."""

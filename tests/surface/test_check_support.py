@@ -79,3 +79,19 @@ def test_flywheel() -> None:
     Path("model.toml").write_text(text)
     lines = succeeded(equipoise("check", "model.toml")).splitlines()
     assert "flywheel: 0.2000 kg m^2" in lines
+
+
+def test_loads() -> None:
+    """Their work: the area under a triangle, nothing of a force that stays, and none without."""
+    Path("stroke.csv").write_text("crank_angle [deg],torque [N m]\n0,0\n90,10\n180,0\n")
+    lines = checked(
+        '[[loads]]\nlink = "crank"\ntable = "stroke.csv"\noutside = "zero"\n'
+        '[[loads]]\nlink = "coupler"\npoint = "C"\nforce = ["3 N", "-4 N"]\n'
+        '[[loads]]\nlink = "crank"\ntorque = "-2 N m"\nfrom = "300 deg"\nto = "30 deg"\n'
+    )
+    begin = lines.index("Loads, and their work in a cycle")
+    assert [line.split() for line in lines[begin + 4 : begin + 7]] == [
+        ["crank,", "N", "m", "torque,", "stroke.csv", "0.0", "180.0", "zero", "10.00", "15.71"],
+        ["C", "of", "coupler,", "N", "force", "always", "5.000", "0"],
+        ["crank,", "N", "m", "torque", "300.0", "30.0", "0", "2.000", "-3.142"],
+    ]

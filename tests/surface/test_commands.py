@@ -54,6 +54,37 @@ def analyzed(*arguments: str | Path) -> dict[str, Any]:
     return read("analyze", *arguments)
 
 
+def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
+    """A vector by its components; with --csv alone, with --json beside all else."""
+    table, name = tmp_path / "out.csv", "centers.coupler/frame"
+    found = analyzed("yamashita-1", "--output", name, "--dwell", "0.5 mm")
+    succeeded(equipoise("analyze", "yamashita-1", "--output", name, "--csv", table))
+    assert list(found["outputs"]) == [f"{name}.x", f"{name}.y"]
+    header = table.read_text().splitlines()[0]
+    assert header == f"crank_angle [rad],{name}.x [m],{name}.y [m]"
+    assert list(found["dwells"]) == ["C", "P"]
+    assert found["dwells"]["P"]["tolerance"] == pytest.approx(0.5e-3)
+    text = succeeded(equipoise("analyze", "stephenson-six-bar", "--dwell", "0.5 deg"))
+    assert re.search(r"^output +0.5000 +120.0 at 128.5$", text, re.MULTILINE)
+    assert "Force in each joint" not in text
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (
+            ("--output", "centers.rod/frame"),
+            "--output: no output is called 'centers.rod/frame'; did you mean",
+        ),
+        (("--dwell", "3 kg"), "--dwell: got '3 kg'; give a length of more than 0, such as"),
+        (("--dwell", "-1 mm"), "--dwell: got '-1 mm'; give a length of more than 0, such as"),
+        (("--dwell", "P"), "--dwell: got 'P'; give a length of more than 0, such as"),
+    ],
+)
+def test_outputs_and_dwells_that_cannot_be_told(options: tuple[str, ...], told: str) -> None:
+    assert told in refused(equipoise("analyze", "yamashita-1", *options))
+
+
 # -- in general ------------------------------------------------------------------------------------
 
 
@@ -96,7 +127,7 @@ FREED = [
 OPTIONS = {
     "analyze": [
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--split", "--csv"],
-        *["--orders", "--crank-zero", "--json"],
+        *["--orders", "--crank-zero", "--output", "--dwell", "--json"],
     ],
     "animate": [
         *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],

@@ -63,8 +63,7 @@ class Balanced(Result):
     changes : what to change, in the order of the plan.
     objectives : name -> value before and after, SI units.
     cost, bound : what was made small (the objectives over their values before, as the plan combines
-        them), and a proved lower bound of it for every machine that the plan allows; None where
-        nothing is proved, as of phases.
+        them), and a proved lower bound of it for every machine that the plan allows.
     method : ``closed form``, ``cone program`` or ``branch and bound``, with what was scanned.
     prices : of each limit, by name.
     looked_at : number of programs that were solved, or of arrangements of rows.
@@ -79,7 +78,7 @@ class Balanced(Result):
     changes: tuple[Change, ...]
     objectives: Mapping[str, tuple[float, float]]
     cost: float
-    bound: float | None
+    bound: float
     method: Note
     prices: Mapping[str, Price]
     looked_at: int
@@ -89,12 +88,15 @@ class Balanced(Result):
     tried: tuple[Balanced, ...] = ()
 
     @property
-    def gap(self) -> float | None:
-        """Between what was found and the proved bound, over the value before; None without one."""
-        if self.bound is None:
-            return None
+    def gap(self) -> float:
+        """Between what was found and the proved bound, over the value before."""
         # A bound above the cost is rounding, which is as large as it may be below.
         return abs(self.cost - self.bound) / self.whole
+
+    @property
+    def proved(self) -> bool:
+        """Whether nothing that is allowed is better by a thousandth of the value before."""
+        return self.gap < 1e-3
 
     @property
     def whole(self) -> float:
@@ -327,8 +329,7 @@ def _notes(found: Solution) -> Iterator[Note]:
             "added mass makes the support heavier, which bends what is linear "
             "otherwise: the bound is that of small changes about this result"
         )
-    each = problem.with_numbers(found.numbers)
-    yield from filter(None, (part.stopped(own) for part, own in each))
+    yield from filter(None, (part.stopped(x) for part, x in problem.with_numbers(found.numbers)))
     if rows > 1 and any(part.mass_place is not None for part in problem.parts):
         yield Note("masses are those of one row; the machine has {rows}", rows=rows)
     if found.ties > 1:

@@ -20,13 +20,15 @@ from equipoise.balancing.workshop import Change
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import CenterMove, SpringChoice
 from equipoise.mechanism.force_elements import Spring
-from equipoise.mechanism.model import Machine
+from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.parameters import spring_columns
+from equipoise.mechanism.parameters import parameters_of, spring_columns
 from equipoise.signals import Array
 
 ROUNDING = 1e-14
 """Over a moment of inertia: what is left of it about the centre of mass that is rounding."""
+SAME = 1e-12
+"""Over mass, moments and inertia of a link: a difference that is rounding."""
 
 
 @dataclass(frozen=True)
@@ -94,6 +96,9 @@ class DesignVariables(ABC):
 
 def with_parameters(machine: Machine, link: str, values: Array) -> Machine:
     """The machine with mass, first moments and inertia of a link about its origin."""
+    body = machine.links[link]
+    if body.bodies and (made := _made_of(body, values)) is not None:
+        return machine.with_link(link, bodies=made.bodies)
     mass, x, y, inertia = (float(value) for value in values)
     if mass <= 0:
         return machine.with_link(link, mass=0.0, center_of_mass=(0.0, 0.0), inertia=0.0)
@@ -101,6 +106,22 @@ def with_parameters(machine: Machine, link: str, values: Array) -> Machine:
     own = inertia - (x * x + y * y) / mass
     own = own if own > ROUNDING * inertia else 0.0
     return machine.with_link(link, mass=mass, center_of_mass=center, inertia=own)
+
+
+def _made_of(body: Link, values: Array) -> Link | None:
+    """A link of bodies with one more of them that makes up for a difference in its parameters, if a
+    body can.
+    """
+    own = np.array(parameters_of(body))
+    mass, x, y, inertia = (float(value) for value in values - own)
+    if np.all(abs(values - own) <= SAME * abs(own)):
+        return body
+    if mass <= SAME * own[0]:
+        return None
+    more = inertia - (x * x + y * y) / mass
+    if more < -SAME * values[3]:
+        return None
+    return body.with_added(mass, (x / mass, y / mass), more if more > SAME * values[3] else 0.0)
 
 
 class MovedCenter(DesignVariables):

@@ -278,6 +278,11 @@ class Cost:
         return np.asarray(np.sqrt(sum(part**2 for part in parts)))
 
     @property
+    def whole(self) -> float:
+        """Combined value where every objective has the value that counts as one."""
+        return float(self.of([term.scale for term in self.terms]))
+
+    @property
     def smooth(self) -> bool:
         """Whether mean squares at one speed each are all there is."""
         return all(

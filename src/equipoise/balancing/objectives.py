@@ -251,7 +251,7 @@ def unit_of(objective: Objective, machine: Machine) -> str:
     """SI unit of a measure of an output."""
     quantity = quantity_of(objective, machine)
     if quantity is None:  # the area under what is no torque
-        return f"{SI[output_of(objective.output, machine).dimension]} rad"
+        return f"{output_of(objective.output, machine).unit} rad"
     return SI[quantity]
 
 

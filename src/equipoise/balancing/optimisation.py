@@ -202,8 +202,7 @@ ROWS_AFTER_LINKAGE = Note(
 def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:
     """Balance the linkage where the plan frees anything of it, then choose the phases of its rows.
 
-    Nothing is proved of phases: they are looked for on a whole grid, and polished.  Everything
-    before is read off the machine as it was.
+    Everything before is read off the machine as it was.
     """
     assert plan.phases is not None
     if plan.limits:
@@ -226,12 +225,8 @@ def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = No
         changes=(*(() if found is None else found.changes), change),
         objectives={name: (before[name], after[name]) for name in after},
         cost=float(search.cost.of([after[name] for name in before])),
-        bound=None,
-        method=Note(
-            "{count} arrangements of the rows on a grid of {step} deg, the best of them polished",
-            count=phasing.combinations,
-            step=f"{np.degrees(phasing.step):.4g}",
-        ),
+        bound=phasing.bound if found is None else 0.0,
+        method=Note("branch and bound over all phases of the rows"),
         prices={} if found is None else found.prices,
         looked_at=phasing.combinations,
         notes=notes,

@@ -16,7 +16,7 @@ from equipoise.balancing.blocks import OF_UNIT, shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.told import EXACT, scope_of
+from equipoise.balancing.told import gap_told, scope_of
 from equipoise.errors import UsageError
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Balance, Limit, Objective
@@ -56,7 +56,7 @@ class Front(Result):
     @property
     def gap(self) -> float:
         """The largest of all points."""
-        return max(point.gap or 0.0 for point in self.points)
+        return max(point.gap for point in self.points)
 
     def columns(self) -> list[tuple[str, str, Array]]:
         """Name, unit and values of both objectives, and of the added mass."""
@@ -169,7 +169,7 @@ def front_blocks(found: Front) -> Iterator[Block]:
     yield Text(
         say(
             "Every point is as good as any can be, to {gap} of the value before{scope}.",
-            gap=f"{max(found.gap, EXACT):.0e}",
+            gap=gap_told(found.gap),
             scope=scope_of(found.points[0]),
         )
     )

@@ -2,8 +2,9 @@
 
 Section 5-5 of Yamashita, Ichikawa and Mori looks for the phase of two rows that makes the standard
 deviation of their sum smallest, and 5-6 (1) asks for the phases of all rows at once, which was too
-much work then.  Here every arrangement of a grid is looked at, the best ones are polished, and
-equal rows are swapped against twist.
+much work then.  Here every arrangement of a grid is looked at, the best ones are polished, what
+is better than those is proved not to exist (`phase_bound`), and equal rows are swapped against
+twist.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
+from equipoise.balancing.phase_bound import CLOSE, prove
 from equipoise.balancing.phase_grid import (
     BETTER,
     Grid,
@@ -40,6 +42,8 @@ Progress = Callable[[int, int], None]
 
 CANDIDATES, COARSE_CANDIDATES = 16, 40
 """Cells that are polished of each distance apart; where the first grid had to be coarse."""
+MOST_KINKED = 6
+"""Arrangements that are polished where peaks count, which takes longer."""
 GUESSES, FEW_LEVELS = 300, 12
 """Random starts over the number of rows, where a turn of the first grid has so few phases."""
 WIDE = pi / 6
@@ -127,11 +131,15 @@ class PhaseSearch:
 
     def pool(self, progress: Progress) -> Array:
         """Arrangements (R, m) among which the best one is, the present one first."""
-        found = [self.present]
-        for start in self._starts(progress):
-            cell = self._descended(start)
-            found.append(self._snapped(polished(self.cost, cell, self.step)))
-        return np.array(found)
+        cells = np.array([self._descended(start) for start in self._starts(progress)])
+        if not self.cost.smooth:
+            order = np.argsort(self.cost.values(cells), kind="stable")
+            cells = distinct(cells[order], self.cost.period, [self.step / 2], MOST_KINKED)
+        return np.array([self.present, *map(self.polished, cells)])
+
+    def polished(self, phases: Array) -> Array:
+        """Phases (m,) of the least next to these, on the grid where they nearly are."""
+        return self._snapped(polished(self.cost, phases, self.step))
 
     def _starts(self, progress: Progress) -> Array:
         """The best cells (S, m) of the grid; and the present and the equally spaced phases."""
@@ -166,11 +174,11 @@ class PhaseSearch:
         """Phases on the grid where they are there but for rounding."""
         near = np.round(phases / self.step) * self.step
         near = np.where(np.abs(near - phases) < 1e-6, near, phases)
-        as_good = self.cost.values(near) <= self.cost.values(phases) + NOTHING * self._whole
+        as_good = self.cost.values(near) <= self.cost.values(phases) + NOTHING * self._alone
         return np.asarray((near if as_good else phases) % self.cost.period)
 
     @cached_property
-    def _whole(self) -> float:
+    def _alone(self) -> float:
         """Combined value of all rows without any cancelling."""
         return float(self.cost.of([term.single for term in self.cost.terms]))
 
@@ -183,7 +191,7 @@ class PhaseSearch:
         roll and yaw moment, as section 5-5 of Yamashita, Ichikawa and Mori wants rows arranged.
         """
         values = self.cost.values(pool)
-        limit = np.min(values) * (1 + BETTER) + NOTHING * self._whole
+        limit = np.min(values) * (1 + BETTER) + NOTHING * self._alone
         if values[0] <= limit:
             return np.asarray(pool[0])
         good = distinct(pool[values <= limit], self.cost.period, [1e-6], MOST_BEST)
@@ -208,6 +216,7 @@ class Phasing(Result):
     remaining : orders of the shaking force of all rows together that are left.
     lateral : ``roll_moment`` and ``yaw_moment`` -> RMS before and after, N m.
     combinations : arrangements that the first grid has, of `step`, rad; 0 without a grid.
+    bound : proved, of all objectives together in any phases.  looked_at : boxes that it took.
     """
 
     machine: Machine
@@ -219,6 +228,8 @@ class Phasing(Result):
     lateral: Mapping[str, tuple[float, float]]
     combinations: int
     step: float
+    bound: float
+    looked_at: int
     notes: tuple[Note, ...] = ()
 
     def to_dict(self) -> dict[str, Any]:
@@ -236,6 +247,8 @@ class Phasing(Result):
                 name: {"before": before, "after": after}
                 for name, (before, after) in self.lateral.items()
             },
+            "bound": self.bound,
+            "looked_at": self.looked_at,
             "combinations": self.combinations,
             "step": self.step,
             "notes": list(map(str, self.notes)),
@@ -249,9 +262,9 @@ def choose_phases(
     combine: Combine = "sum",
     progress: Progress | None = None,
 ) -> Phasing:
-    """Look for the phases of a machine's rows that make objectives smallest; row 1 keeps its own.
+    """Find the phases of a machine's rows that make objectives smallest; row 1 keeps its own.
 
-    Where several arrangements are as good, the one with the least roll and yaw moment is taken.
+    Where several are as good, those with the least roll and yaw moment.  None is below `bound`.
 
     Parameters
     ----------
@@ -267,8 +280,12 @@ def choose_phases(
     MassError, MotionError, ResponseError : the machine cannot be computed.
     """
     search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine)
-    found = search.best(search.pool(progress or (lambda done, total: None)))
     present, cost, grid = search.present, search.cost, search.grid
+    pool = search.pool(progress or (lambda done, total: None))
+    found = search.best(pool)
+    proof = prove(cost, found, search.polished)
+    if proof.phases is not found:
+        found = search.best(np.vstack([pool, proof.phases]))
     placed = _placed(search, found)
     varying = (Objective(output, "ripple") for output in OF_ROWS)
     lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
@@ -290,7 +307,9 @@ def choose_phases(
         },
         combinations=0 if grid is None else grid.count,
         step=search.step if grid is None else grid.step,
-        notes=tuple(_notes(search, found)),
+        bound=proof.bound,
+        looked_at=proof.boxes,
+        notes=tuple(_notes(search, found, float(cost.values(found)) - proof.bound)),
     )
 
 
@@ -304,15 +323,12 @@ def _placed(search: PhaseSearch, found: Array) -> Machine:
     return search.machine.with_rows([first, *moved])
 
 
-def _notes(search: PhaseSearch, found: Array) -> Iterator[Note]:
+def _notes(search: PhaseSearch, found: Array, gap: float) -> Iterator[Note]:
     if np.all(found == search.present):
         yield Note("no phases were found that are better than the present ones")
     grid = search.grid
     if grid is None:
-        yield Note(
-            "there are too many rows for a grid: random arrangements were "
-            "polished instead, and better ones may exist"
-        )
+        yield Note("there are too many rows for a grid: random arrangements were polished instead")
     elif grid.levels < search.levels:
         yield Note(
             "a grid of {step} deg has too many arrangements: one of {coarse} deg "
@@ -327,3 +343,8 @@ def _notes(search: PhaseSearch, found: Array) -> Iterator[Note]:
                 "{name} is 0 before, so it counts over the sum of what each row does alone",
                 name=term.objective.name,
             )
+    if gap > CLOSE * search.cost.whole:
+        yield Note(
+            "the search ended before it had proved that nothing better exists; "
+            "the gap tells how far it came"
+        )

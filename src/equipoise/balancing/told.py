@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
+from math import ceil, floor, log10
 from operator import eq
 from typing import TYPE_CHECKING
 
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.compared import Worse
 
-EXACT = 1e-12
-"""Gap below which nothing more is told of it."""
+EXACT, SMALL = 1e-12, 1.01e-4
+"""Gap below which nothing more is told of it; above which it is told in percent."""
 FEW = 0.1
 """Growth below which a digit more is told."""
 
@@ -98,23 +99,24 @@ def figure_unit(found: Balanced, name: str) -> str:
 
 
 def proof_told(found: Balanced) -> str:
-    """What is proved: of which freedom, of which aim, at which speed; or that nothing is."""
-    told = {
-        "method": said(found.method),
-        "freedom": listed(freedoms(found.plan)),
-        "aims": aims_told(found),
-    }
-    if found.gap is None:
-        return say(
-            "Found among {method}; that {freedom} can do no more for {aims} is not proved.", **told
-        )
+    """What is proved: of which freedom, of which aim, at which speed."""
     return say(
         "Proof, by {method}: with {freedom}, no choice makes {aims} smaller than here by more than "
         "{gap} of the value before{scope}.",
-        gap=f"{max(found.gap, EXACT):.0e}",
+        method=said(found.method),
+        freedom=listed(freedoms(found.plan)),
+        aims=aims_told(found),
+        gap=gap_told(found.gap),
         scope=scope_of(found),
-        **told,
     )
+
+
+def gap_told(gap: float) -> str:
+    """A gap as it is printed, never smaller than it is where that could be seen."""
+    if gap <= SMALL:
+        return f"{max(gap, EXACT):.0e}"
+    digit = 10.0 ** floor(log10(gap) - 1)
+    return f"{100 * digit * ceil(gap / digit):.4g} %"
 
 
 def scope_of(found: Balanced) -> str:

@@ -51,9 +51,10 @@ def check(file: Annotated[str, file_named("Path of a model file or a study file"
         elif isinstance(found, Machine):
             blocks = checks.machine_blocks(found)
         else:
+            from equipoise.present.check_study import study_blocks
             from equipoise.schema.study_units import units_of
 
-            blocks = checks.study_blocks(found, units_of(found), file)
+            blocks = study_blocks(found, units_of(found), file)
         show_blocks(found.title, [*blocks])  # what is wrong is told before the title
 
 

@@ -16,6 +16,7 @@ from equipoise.cli.options import (
     Out,
     Rate,
     Speed,
+    blaming,
     count,
     ends_of_range,
     naming,
@@ -120,10 +121,8 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     if isinstance(found, ToolFindings):
         raise UsageError("--output: a tool has no crank angles; leave it out")
     names = list(dict.fromkeys(names))
-    for name in names:
-        if name not in found.analysis.outputs:
-            raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
-    caption = ", ".join(found.analysis.outputs[name].label() for name in names)
+    with blaming("--output"):
+        caption = ", ".join(one.label() for one in found.analysis.outputs.chosen(names))
     return [Picture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))]
 
 

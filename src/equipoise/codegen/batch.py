@@ -88,7 +88,7 @@ def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
         "torque": force * size,
     }
     known = {signal: declared(signal) for signal in signals}
-    return {signal: sizes[one[0].dimension] for signal, one in known.items() if one}
+    return {signal: sizes[str(one[0].dimension)] for signal, one in known.items() if one}
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,12 +155,12 @@ class Batch:
         if angles is not None and angles < 1:
             raise UsageError(f"got {angles} crank angles; give at least 1")
         self.base = assemble(machine)
-        self.turns = self.base.cycle.turns if machine.gears else 1
+        self.turns = self.base.cycle.turns if machine.gears else cycle.turns_of_loads(machine)
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
         self.needed = 2 if any(figure.name not in SMOOTH for figure in self.wanted) else 1
-        has_steps = any(load.start is not None for load in machine.loads)
+        has_steps = any(load.jumps for load in machine.loads)
         self.least = STEP / tolerance if has_steps else FIRST
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered

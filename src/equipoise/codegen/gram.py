@@ -87,7 +87,8 @@ class MassBatch:
         rows = [*map(self._factor, self._settled(angles, tolerance), self.wanted, self.outputs)]
         self.rows = np.concatenate(rows)
         self.ends = np.cumsum([0, *map(len, rows)])
-        self.polar = any(path.endswith((".distance", ".direction")) for path in paths)
+        # What follows from a number in more than one step is computed anew.
+        self.anew = any(p.endswith((".distance", ".direction")) or ".bodies[" in p for p in paths)
         self.not_negative = [k for k, p in enumerate(paths) if p.endswith((".mass", ".inertia"))]
 
     def __call__(self, values: Array) -> tuple[Array, Array]:
@@ -103,10 +104,10 @@ class MassBatch:
             some = slice(begin, begin + AT_ONCE)
             count = len(values[some])
             columns[:, :count] = values[some].T
-            if begin == 0 or self.polar:
-                machine = with_columns(self.base.machine, named)
-            inertial = chain(*(parameters_of(machine.links[link]) for link in self.links))
             with np.errstate(all="ignore"):
+                if begin == 0 or self.anew:
+                    machine = with_columns(self.base.machine, named)
+                inertial = chain(*(parameters_of(machine.links[link]) for link in self.links))
                 for row, value in zip(parameters[:-1], inertial, strict=True):
                     row[:] = np.ravel(value)
                 np.matmul(self.rows, parameters, out=found)
@@ -116,7 +117,7 @@ class MassBatch:
                         figures[some, k] = part[0]
                     else:
                         figures[some, k] = np.sqrt(np.einsum("ij,ij->j", part, part))
-            if not self._all_usual(columns[:, :count]):
+            if self.anew or not self._all_usual(columns[:, :count]):
                 reason[some][wrong(machine, self.base, named)[:count]] = NO_MACHINE
         figures[reason != COMPUTED] = np.nan
         return figures, reason

@@ -17,8 +17,8 @@ from equipoise.errors import MassError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
+from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring
-from equipoise.mechanism.reactions import load_at
 from equipoise.mechanism.steps import (
     Call,
     Rotation,

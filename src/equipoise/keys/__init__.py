@@ -12,6 +12,11 @@ the tables of the documentation and access by path (`equipoise.schema`).  Rules 
 plain functions beside the class.
 """
 
+from equipoise.keys.conditions import any_of as any_of
+from equipoise.keys.conditions import lacks as lacks
+from equipoise.keys.conditions import needs as needs
+from equipoise.keys.conditions import not_both as not_both
+from equipoise.keys.conditions import told_by as told_by
 from equipoise.keys.declaring import REQUIRED as REQUIRED
 from equipoise.keys.declaring import ROW as ROW
 from equipoise.keys.declaring import SCHEMA_VERSION as SCHEMA_VERSION
@@ -26,8 +31,8 @@ from equipoise.keys.declaring import declared as declared
 from equipoise.keys.declaring import inside as inside
 from equipoise.keys.declaring import key as key
 from equipoise.keys.declaring import keys_of as keys_of
+from equipoise.keys.declaring import quantities_in as quantities_in
 from equipoise.keys.declaring import quantities_of as quantities_of
-from equipoise.keys.declaring import told_by as told_by
 from equipoise.keys.declaring import wrong_values as wrong_values
 from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE
 from equipoise.keys.kinds import NO_INERTIA as NO_INERTIA

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cache
 from math import inf, isfinite
 from types import MappingProxyType
-from typing import Any, ClassVar, TypeVar, dataclass_transform
+from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
 from equipoise.keys.kinds import (
@@ -24,7 +24,7 @@ from equipoise.keys.kinds import (
     choice,
     innermost,
 )
-from equipoise.quantities import HUGE, SI, TINY, Dimension, pattern
+from equipoise.quantities import HUGE, SI, TINY
 
 Class = TypeVar("Class", bound=type)
 Result = TypeVar("Result")
@@ -188,6 +188,14 @@ class Frozen(Record):
         given = ((one, getattr(value, one.field)) for one in keys_of(cls).values() if one.field)
         return {one.name: item for one, item in given if one.required or item != one.default}
 
+    def following(self, changes: dict[str, Any]) -> dict[str, Any]:
+        """Changes of fields, with those of other fields that follow from them."""
+        return changes
+
+    def altered(self, **changes: Any) -> Self:
+        """The same with other fields, and with what follows from them."""
+        return replace(self, **self.following(changes))
+
     def __getstate__(self) -> dict[str, Any]:
         return {
             key: dict(value) if isinstance(value, MappingProxyType) else value
@@ -210,20 +218,6 @@ VERSION = Key(
     example=SCHEMA_VERSION,
 )
 """The first key of every file."""
-
-
-def told_by(name: str, sizes: Sequence[str], dimensions: Mapping[str, Dimension]) -> dict[str, Any]:
-    """JSON Schema of a table in which the key `name` tells the dimension of `sizes`."""
-    cases = []
-    for dimension in dict.fromkeys(dimensions.values()):
-        names = [one for one, own in dimensions.items() if own == dimension]
-        cases.append(
-            {
-                "if": {"properties": {name: {"enum": names}}, "required": [name]},
-                "then": {"properties": {size: {"pattern": pattern(dimension)} for size in sizes}},
-            }
-        )
-    return {"allOf": cases}
 
 
 # -- what a class declares -------------------------------------------------------------------------
@@ -315,7 +309,12 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
 
 def quantities_of(value: Frozen) -> Mapping[str, Key]:
     """Keys of an object that are one quantity each, by name."""
-    found = keys_of(type(value)).items()
+    return quantities_in(type(value))
+
+
+def quantities_in(of: type[Frozen]) -> Mapping[str, Key]:
+    """Keys of a class that are one quantity each, by name."""
+    found = keys_of(of).items()
     return {name: one for name, one in found if isinstance(one.kind, Quantity) and one.field}
 
 
@@ -347,4 +346,5 @@ def changed(
     held = getattr(value, one.field)
     if isinstance(one.kind, Table) and not isinstance(held, Frozen):
         rest = rest[1:]  # a table with one key, which the object has without it
-    return make(value, **{one.field: changed(held, rest, change, make)})
+    new = {one.field: changed(held, rest, change, make)}
+    return make(value, **value.following(new))

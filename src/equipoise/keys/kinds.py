@@ -182,15 +182,20 @@ class Point(Kind):
     """Two lengths along x and y, in a file by distance and direction too.
 
     space : with a third length along z, which may be left out.
+    named : or the name of a point of the body that it lies on.
     """
 
     space: bool = False
+    named: bool = False
 
     @property
     def wanted(self) -> str:  # type: ignore[override]
-        return "two or three numbers" if self.space else "two numbers"
+        words = "two or three numbers" if self.space else "two numbers"
+        return f"the name of a point, or {words}" if self.named else words
 
-    def check(self, value: Any) -> tuple[float, ...]:
+    def check(self, value: Any) -> Any:
+        if self.named and isinstance(value, str):
+            return value
         row = tuple(map(Number().check, items_of(value)))
         row = (*row, 0.0) if self.space and len(row) == 2 else row
         if len(row) != (3 if self.space else 2):
@@ -258,16 +263,22 @@ class Planes(Kind):
 
 @dataclass(frozen=True)
 class Named(Kind):
-    """Some of a kind by names that the user chooses."""
+    """Some of a kind by names that the user chooses.
+
+    listed : or a list of the names alone, where other keys tell the rest.
+    """
 
     item: Kind
+    listed: bool = False
 
     @property
     def wanted(self) -> str:  # type: ignore[override]
         of = {Point: "two numbers", Text: "text", Table: "such objects"}
         return f"a mapping of names to {of.get(type(self.item), 'numbers')}"
 
-    def check(self, value: Any) -> Mapping[str, Any]:
+    def check(self, value: Any) -> Any:
+        if self.listed and isinstance(value, tuple | list):
+            return tuple(map(Text().check, value))
         if not isinstance(value, Mapping):
             raise TypeError
         name, item = Text().check, self.item.check

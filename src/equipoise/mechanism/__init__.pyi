@@ -1,5 +1,7 @@
 from .assessment import FourBar as FourBar
 from .assessment import four_bar as four_bar
+from .bodies import Body as Body
+from .bodies import Hole as Hole
 from .dynamics import Forces as Forces
 from .dynamics import forces as forces
 from .field import Planting as Planting

@@ -21,12 +21,12 @@ from equipoise.mechanism.counterweights import (
 )
 from equipoise.mechanism.declaring import Measure
 from equipoise.mechanism.force_elements import wrong_ends
+from equipoise.mechanism.materials import MATERIALS, material_of
 from equipoise.mechanism.objectives import MEASURES, Limit, Objective, wrong_limit, wrong_objective
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     CUT,
     HOLLOW,
-    MATERIALS,
     RANGE,
     SHAPES,
     AddedMass,
@@ -35,7 +35,6 @@ from equipoise.mechanism.weights import (
     Shape,
     Weight,
     largest_mass,
-    material_of,
     plate_mass,
     wrong_added,
     wrong_move,

@@ -19,22 +19,20 @@ from equipoise.keys import (
     Table,
     Text,
     Whole,
+    any_of,
     declared,
     key,
+    lacks,
+    needs,
+    not_both,
 )
 from equipoise.mechanism.checks import numbered, unknown, wrong_range
+from equipoise.mechanism.materials import material_key, with_density, with_material
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     WEIGHT,
     Pair,
     Weight,
-    any_of,
-    lacks,
-    material_key,
-    needs,
-    not_both,
-    with_density,
-    with_material,
     wrong_weight,
 )
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, pi
+from math import degrees, lcm, pi
+from typing import Any
 
 import numpy as np
 
@@ -78,6 +79,11 @@ class Cycle:
         return value + rise[..., None] * cycles  # type: ignore[no-any-return]
 
 
+def turns_of_loads(machine: Machine) -> int:
+    """Turns of the crank after which all loads of a machine are back."""
+    return lcm(*(load.table.turns for load in machine.loads if load.table is not None))
+
+
 def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     """Find the cycle of a linkage, given the groups in which it is solved.
 
@@ -86,7 +92,7 @@ def close(machine: Machine, groups: Iterable[Group]) -> Cycle:
     RangeError, ChangePointError : the crank cannot turn fully, or not in a definite way.
     MotionError : the motion does not close within `MOST_TURNS` turns of the crank.
     """
-    base = turns = tried = 1
+    base = turns = tried = turns_of_loads(machine)
     while turns <= min(MOST_TURNS, MOST_LOOP_TURNS * base):
         tried = turns
         grid = _Grid(machine, turns)
@@ -142,7 +148,6 @@ class _Grid:
             self.tables[link] = angle
         if group.kind == "loops":
             self.record_loops(group)
-            return
         if group.kind == "geared":
             gear = next(r.name for r in group.reactions if r.kind == "gear")
             self.windings[group.links[0]] = self.gear_winding(gear)
@@ -153,17 +158,12 @@ class _Grid:
 
     def record_loops(self, group: Group) -> None:
         """Newton's method follows a branch, which may come back only after further turns."""
-        name = " and ".join(group.links)
-        q = self.state[f"q({name})"]
-        self.tables[name] = q
+        solved: Any = next(step for step in group.motion if hasattr(step, "turning"))
+        q = self.tables[solved.reference] = self.state[solved.reference]
         rise = q[:, -1] - q[:, 0]
-        turns = np.round(rise[2::3] / (2 * pi))
-        rise[2::3] -= 2 * pi * turns
-        angle = np.arange(len(q)) % 3 == 2
-        scale = np.where(angle, 1.0, np.max(np.abs(q[~angle])))
-        if np.max(np.abs(rise) / scale) > 1e-8:
+        rise[solved.turning] -= 2 * pi * np.round(rise[solved.turning] / (2 * pi))
+        if np.max(solved.sizes(rise)) > 1e-8:
             raise _LongerCycle(0)
-        self.windings.update(zip(group.links, (int(turn) for turn in turns), strict=True))
 
     def gear_winding(self, name: str) -> int:
         """Turns of a driven gear in one cycle, or a longer cycle in which they are whole."""

@@ -22,8 +22,9 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.keys import changed
+from equipoise.keys import Frozen, changed, quantities_in
 from equipoise.mechanism import kernels
+from equipoise.mechanism.bodies import Body, outlined_by_columns
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u
@@ -135,19 +136,23 @@ HOLDERS = {
     r"(frame)\.(points)\.(.+)": PAIR,
     r"(links)\.(.+?)\.(points)\.(.+)": PAIR,
     r"(links)\.(.+)\.(center_of_mass)": PAIR,
-    r"(links)\.(.+)": {"mass", "inertia"},
+    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]\.(at)": PAIR,
+    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_in(Body)},
+    r"(links)\.(.+)\.(sides)": None,
+    r"(links)\.(.+)": {"mass", "inertia", "length"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
     r"(gears)\[([1-9]\d*)\]": {"start", "pressure_angle"},
     r"(springs)\[([1-9]\d*)\]": {"stiffness", "free_length"},
 }
-"""What has numbers that may be columns, by its path in the model file, and their keys."""
+"""What has numbers that may be columns, by its path in the model file, and their keys; None where
+these are names."""
 
 
 def _holder(whole: str, parts: Set[str]) -> tuple[str, ...]:
     """The steps to what has these numbers; a `KeyError` where they may be no columns."""
     for pattern, keys in HOLDERS.items():
         found = re.fullmatch(pattern, whole)
-        if found is not None and parts <= keys:
+        if found is not None and (keys is None or parts <= keys):
             return found.groups()
     raise KeyError(whole)
 
@@ -178,6 +183,7 @@ def with_columns(machine: Machine, columns: Columns) -> Machine:
         try:
             steps = _holder(whole, found.keys())
             machine = changed(machine, steps, partial(_filled, found), _with)
+            _check_outlines(machine)
         except (KeyError, IndexError):
             told = " and ".join(f"{whole}.{part}".lstrip(".") for part in found)
             raise UsageError(
@@ -190,9 +196,18 @@ def _filled(parts: Mapping[str, Array], held: Any) -> Any:
     """What holds numbers with columns for some of them, which have to be given."""
     if isinstance(held, tuple):
         return _pair(held, parts)
-    if held is None or any(getattr(held, name) is None for name in parts):
+    if isinstance(held, Mapping) and parts.keys() <= held.keys():
+        return {**held, **parts}
+    if not isinstance(held, Frozen) or any(getattr(held, name) is None for name in parts):
         raise KeyError
-    return _with(held, **parts)
+    return _with(held, **held.following(dict(parts)))
+
+
+def _check_outlines(machine: Machine) -> None:
+    """Whether plates keep their shape, and their holes the places, is only told of numbers."""
+    for link in machine.links.values():
+        if any(outlined_by_columns(body, link.points) for body in link.bodies):
+            raise KeyError
 
 
 def _pair(place: Vector, parts: Mapping[str, Array]) -> tuple[Any, Any]:
@@ -229,7 +244,9 @@ def massive_link(path: str) -> str | None:
     whole, _, part = path.rpartition(".")
     with suppress(KeyError):
         match _holder(whole, {part}):
-            case ("links", link) | ("links", link, "center_of_mass"):
+            case ("links", link) if part != "length":
+                return link
+            case ("links", link, "center_of_mass" | "bodies", *_):
                 return link
     return None
 
@@ -257,6 +274,7 @@ def _demands(machine: Machine, base: Linkage) -> Iterator[Any]:
         if link.mass is not None and link.inertia is not None:
             yield (link.mass >= 0) & (link.inertia >= 0)
             yield (link.mass > 0) | (np.asarray(link.inertia) == 0)
+        yield from link.demands()
     for gear in machine.gears:
         yield (gear.pressure_angle >= 0) & (np.asarray(gear.pressure_angle) < pi / 2)
     for spring in machine.springs:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from itertools import pairwise
-from math import pi
+from math import ceil, degrees, pi
 from typing import Any, ClassVar, Literal
 
 from equipoise.errors import ModelError
@@ -25,15 +25,22 @@ from equipoise.keys import (
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
 
 MEAN_SPEEDS = ("held", "free")
+OUTSIDE = ("zero", "hold", "wrap")
 TURN = 2 * pi * (1 + 1e-12)
 """rad: a whole turn, rounding included."""
+NEARLY = 1e-4
+"""rad: by how much the last digit of a table's angles may miss a whole turn."""
+SAME_LOAD = 1e-6
+"""Share of a table's largest value by which what is given twice may differ."""
+MOST_TURNS = 100
+"""Turns of the crank in a load table."""
 
 
 @declared
 class LoadTable(Frozen):
-    """A load over one turn, linear between its rows and from the last row to the first.
+    """A load over one turn or several, linear between its rows.
 
-    crank_angle : rad, rising, within one turn.
+    crank_angle : rad, rising.
     values : force_x and force_y (N) or torque (N m), each as long as `crank_angle`.
     file : name of the CSV file that it came from.
     """
@@ -41,6 +48,21 @@ class LoadTable(Frozen):
     crank_angle: tuple[float, ...] = inside(ROW)
     values: tuple[tuple[float, ...], ...] = inside(Listing(ROW))
     file: str = inside(Text(), default="", compare=False)
+
+    @property
+    def span(self) -> float:
+        """From the first row to the last, rad."""
+        return self.crank_angle[-1] - self.crank_angle[0]
+
+    @property
+    def turns(self) -> int:
+        """Turns of the crank after which it begins anew."""
+        return max(1, ceil((self.span - NEARLY) / (2 * pi)))
+
+    @property
+    def covers(self) -> bool:
+        """Whether the rows tell the load at every crank angle."""
+        return self.span >= 2 * pi * self.turns - NEARLY
 
 
 @declared
@@ -50,11 +72,13 @@ class Load(Frozen):
     Exactly one of force, torque and table.  Without `start` and `stop` it acts always.
     """
 
-    file_order = ("link", "point", "force", "torque", "table", "from", "to")
+    file_order = ("link", "point", "force", "torque", "table", "outside", "from", "to")
     conditions: ClassVar[Conditions] = {
         "oneOf": [{"required": [one]} for one in ("force", "torque", "table")],
-        "dependentRequired": {"from": ["to"], "to": ["from"], "force": ["point"]},
-    }
+        "dependentRequired": {
+            "from": ["to"], "to": ["from"], "force": ["point"], "outside": ["table"]
+        },
+    }  # fmt: skip
 
     link: str = key(Text(), "the loaded link", example="coupler")
     point: str | None = key(Text(), "where a force acts; not for torques", default=None)
@@ -76,6 +100,19 @@ class Load(Frozen):
         default=None,
         example="force.csv",
     )
+    outside: Literal["zero", "hold", "wrap"] | None = key(
+        Text(OUTSIDE),
+        "what acts between the last row of a table and its first one in the next turn, where the "
+        "rows do not cover a whole turn: nothing, what the last row has, or a straight line "
+        "between both",
+        default=None,
+    )
+
+    @property
+    def jumps(self) -> bool:
+        """Whether it sets in or ends suddenly."""
+        gap = self.table is not None and not self.table.covers and self.outside != "wrap"
+        return gap or self.start is not None
 
 
 @declared
@@ -184,20 +221,51 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
             where, "from and to must differ, by one turn at most; leave both out for always"
         )
     if load.table is not None:
-        yield from _wrong_loads(f"{where}.table", load.table)
+        yield from _wrong_loads(where, load.table, load.outside)
+    elif load.outside is not None:
+        yield ModelError(f"{where}.outside", "goes with a table; leave it out")
 
 
-def _wrong_loads(where: str, table: LoadTable) -> Iterator[ModelError]:
-    angles = table.crank_angle
+def _wrong_loads(where: str, table: LoadTable, outside: str | None) -> Iterator[ModelError]:
+    at, angles, named = f"{where}.table", table.crank_angle, table.file or "the table"
     if not angles:
-        yield ModelError(where, "the table has no rows")
-        return
-    if any(b <= a for a, b in pairwise(angles)):
-        yield ModelError(where, "the crank angles must rise from row to row")
-    if angles[-1] - angles[0] > TURN:
-        yield ModelError(where, "the crank angles cover more than one turn")
-    if any(len(column) != len(angles) for column in table.values):
-        yield ModelError(where, "the columns differ in length")
+        yield ModelError(at, "the table has no rows")
+    elif any(b <= a for a, b in pairwise(angles)):
+        yield ModelError(at, "the crank angles must rise from row to row")
+    elif any(len(column) != len(angles) for column in table.values):
+        yield ModelError(at, "the columns differ in length")
+    elif table.turns > MOST_TURNS:
+        yield ModelError(at, f"{named} covers {table.turns} turns; give at most {MOST_TURNS}")
+    elif table.covers:
+        yield from _contradiction(at, table, named)
+    elif outside is None:
+        turns = "a turn" if table.turns == 1 else f"{table.turns} turns"
+        yield ModelError(
+            f"{where}.outside",
+            f"missing; {named} goes {_from_to(table)}, not round {turns}; say what acts in the "
+            'rest: outside = "zero" for nothing, "hold" for what the last row has, or "wrap" for '
+            "a straight line to the first row",
+        )
+
+
+def _contradiction(where: str, table: LoadTable, named: str) -> Iterator[ModelError]:
+    """Complain of a last row that stands at the crank angle of the first one, and differs."""
+    largest = max(abs(value) for column in table.values for value in column)
+    unit = "N m" if len(table.values) == 1 else "N"
+    for column in table.values:
+        if abs(column[-1] - column[0]) > SAME_LOAD * largest:
+            yield ModelError(
+                where,
+                f"{named} has {column[0]:g} {unit} at {degrees(table.crank_angle[0]):.6g} deg and "
+                f"{column[-1]:g} {unit} at {degrees(table.crank_angle[-1]):.6g} deg, where the "
+                "crank is back; give the same in both rows, or leave the last one out",
+            )
+            return
+
+
+def _from_to(table: LoadTable) -> str:
+    first, last = (f"{degrees(table.crank_angle[end]):.6g} deg" for end in (0, -1))
+    return f"from {first} to {last}"
 
 
 def wrong_ends(where: str, spring: Any, bodies: Bodies) -> Iterator[ModelError]:

@@ -74,6 +74,12 @@ def along_line(d, d1, d2, n, w, a):
     return (d * back, (d1 - 1j * w * d) * back, (d2 - 2j * w * d1 - (1j * a + w * w) * d) * back)
 
 
+def slid(g, g1, g2, n, w, a, t, t1, t2):
+    """Point at the way t from the point g along the unit vector n, which turns by w, a."""
+    slip = 2j * w * t1 + t2
+    return g + n * t, g1 + (1j * w * t + t1) * n, g2 + ((1j * a - w * w) * t + slip) * n
+
+
 def rrr(p, p1, p2, q, q1, q2, arm_p, arm_q, side):
     """Two links pinned at p and q meet in the pin c.
 
@@ -110,7 +116,7 @@ def rrp(p, p1, p2, g, g1, g2, u, w, a, arm, along, shift, turn, side):
     axes.  shift : from the sliding point to c, in axes along the line.  turn : unit vector of the
     sliding link's x axis in axes along the line.
     side : +1 where c lies ahead of p along the line, -1 behind.
-    Returns rotation of the pinned link, rotation of the sliding link, c, the dyad's number.
+    Returns rotations of pinned and sliding link, c, the dyad's number.
     """
     reach_most = length(arm)
     n = u * along
@@ -187,9 +193,8 @@ def rpp(p, p1, p2, g, g1, g2, u, w, a, along, turn, inner, inner_turn, shift):
     """A link pinned at p slides on a second link (or carries it), which slides along a guide.
 
     along : unit vector of the outer line in the guide's axes; turn, inner_turn : unit vectors of
-    the x axes of second and first link, inner : unit vector of the inner line, all in axes along
-    the outer line.  shift : vector that has to be added to p - g so that it splits into a way
-    along the outer and one along the inner line, in the same axes.
+    the x axes of second and first link, inner : of the inner line, all in axes along the outer
+    line.  shift : vector that, added to p - g, splits it into a way along each line, in the same.
     Returns rotations of first and second link, the second link's sliding point, the number.
     """
     n = u * along
@@ -197,9 +202,8 @@ def rpp(p, p1, p2, g, g1, g2, u, w, a, along, turn, inner, inner_turn, shift):
     z = z + shift
     slope = inner.real / inner.imag
     t, t1, t2 = z.real - slope * z.imag, z1.real - slope * z1.imag, z2.real - slope * z2.imag
-    s1 = g1 + (1j * w * t + t1) * n
-    s2 = g2 + ((1j * a - w * w) * t + 2j * w * t1 + t2) * n
-    return n * inner_turn, w, a, n * turn, w, a, g + n * t, s1, s2, inner.imag * inner.imag
+    s, s1, s2 = slid(g, g1, g2, n, w, a, t, t1, t2)
+    return n * inner_turn, w, a, n * turn, w, a, s, s1, s2, inner.imag * inner.imag
 
 
 # -- forces ----------------------------------------------------------------------------------------

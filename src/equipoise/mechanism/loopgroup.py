@@ -2,123 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import combinations
 from math import ceil, degrees, pi
 from typing import Any
 
 import numpy as np
 
 from equipoise.errors import ModelError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.groups import Mesh
 from equipoise.mechanism.joints import Structure
-from equipoise.mechanism.model import FRAME, Gear, Position, Slider
-from equipoise.mechanism.newton import (
+from equipoise.mechanism.loops import (
     End,
+    Free,
     GearLoop,
+    Hinge,
     Loop,
-    LoopGroup,
     PinLoop,
-    Pose,
+    Place,
     Poses,
+    Rail,
     SlideLoop,
 )
+from equipoise.mechanism.model import FRAME, Gear, Position, Slider
+from equipoise.mechanism.newton import LoopForces, LoopGroup, poses_in
 from equipoise.mechanism.steps import (
     Array,
     Builder,
     Group,
     Reaction,
-    State,
     Step,
     initial_state,
-    p,
     pin_reaction,
+    planar,
     run,
-    u,
 )
-
-
-@dataclass(frozen=True)
-class LoopForces:
-    """Solves the free-body equations of a group: as many unknown joint forces as equations.
-
-    reactions : of each loop.
-    """
-
-    group: LoopGroup
-    loops: tuple[Loop, ...]
-    reactions: tuple[Reaction, ...]
-
-    def run(self, state: State) -> None:
-        poses = self.poses(state)
-        senses = self.senses(state, poses)
-        strengths = self.solve(state, poses, senses)
-        for loop, reaction, sense, parts in zip(
-            self.loops, self.reactions, senses, strengths, strict=True
-        ):
-            units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
-            for name, unit in zip(reaction.outputs, units, strict=False):
-                state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
-            if isinstance(loop, GearLoop):
-                state[f"p({reaction.at})"] = loop.place(poses)
-                state[f"T({loop.name})"] = parts[0]
-
-    def poses(self, state: State) -> Poses:
-        poses = self.group.known_poses(state)
-        for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            x, y, z = (state[name] for name in p(anchor))
-            _, w, a = (state[name] for name in u(link))
-            poses[link] = Pose((x, y, z), (state[f"phi({link})"], w, a))
-        return poses
-
-    def senses(self, state: State, poses: Poses) -> list[Any]:
-        """Sign of each gear's tangential force, which does not depend on the pressure angle."""
-        names = [f"flank({loop.name})" if isinstance(loop, GearLoop) else "" for loop in self.loops]
-        if any(name and name not in state for name in names):
-            strengths = self.solve(state, poses, [0.0] * len(self.loops))
-            for name, parts in zip(names, strengths, strict=True):
-                if name:
-                    (state[name],) = kernels.flank(parts[0])
-        return [state[name] if name else 0.0 for name in names]
-
-    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
-        """Strength (..., N) of every unknown of each loop."""
-        shape = np.shape(state["theta"])
-        columns = [
-            [np.broadcast_to(entry, shape) for entry in column]
-            for loop, sense in zip(self.loops, senses, strict=True)
-            for column in self.columns(loop, poses, sense)
-        ]
-        matrix = np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
-        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
-        strengths = iter(np.moveaxis(solved, -1, 0))
-        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
-
-    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
-        """Force and moment about the anchor on each link, for a unit of each of its unknowns."""
-        at = loop.place(poses)
-        result = []
-        for force, couple in loop.wrenches(poses, sense):
-            column: list[Any] = []
-            for link in self.group.links:
-                sign = (link == loop.on.body) - (link == loop.by.body)
-                moment = kernels.cross(at - poses[link].place[0], force) + couple
-                column += [sign * np.real(force), sign * np.imag(force), sign * moment]
-            result.append(column)
-        return result
-
-    def demand(self, state: State) -> Array:
-        """(..., N, 3 n): force and moment about the anchor that the joints of each link supply."""
-        parts = []
-        for link in self.group.links:
-            force, moment = state[f"F({link})"], state[f"M({link})"]
-            parts += [np.real(force), np.imag(force), moment]
-        count = np.shape(state["theta"])
-        full = [np.broadcast_to(part, np.broadcast_shapes(np.shape(part), count)) for part in parts]
-        return np.stack(np.broadcast_arrays(*full), axis=-1)
-
 
 STEPS_PER_TURN = 360
 """Crank angles in a turn at which a branch is followed from one to the next."""
@@ -130,18 +49,21 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
     """Make the group of these links, with `builder` knowing them afterwards."""
     maker = _Maker(builder, joints, links)
     before, loops = maker.prepare()
+    touched = {FRAME, *(end.body for loop in loops for end in (loop.on, loop.by))}
+    touched |= {loop.carrier for loop in loops if isinstance(loop, GearLoop)}
     unsolved = LoopGroup(
         links,
         tuple(maker.anchors[link] for link in links),
-        tuple((body, builder.anchors[body]) for body in builder.rank),
-        loops,
+        tuple((body, builder.anchors[body]) for body in builder.rank if body in touched),
+        maker.tree(loops),
+        tuple(loop for k, loop in enumerate(loops) if k not in maker.holds.values()),
         (),
         builder.size(),
     )
     run(before, builder.now)
     solved, loops = _solve_start(builder, before, unsolved, loops)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
-    builder.running.update(links)
+    builder.running.update(place.link for place in solved.tree if any(place.turning))
     reactions = tuple(maker.reaction(loop) for loop in loops)
     hand_over = tuple(builder.hand_over(one) for one in reactions if one.by not in links)
     reach = tuple(
@@ -156,12 +78,15 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
 
 @dataclass
 class _Maker:
+    """anchors : of each link.  holds : link -> number of the joint that tells where it is."""
+
     builder: Builder
     joints: Structure
     links: tuple[str, ...]
 
     def __post_init__(self) -> None:
         self.anchors = {}
+        self.holds: dict[str, int] = {}
         for link in self.links:
             points = [*self.builder.machine.links[link].points]
             self.anchors[link] = next((pt for pt in points if pt in self.joints.pins), points[0])
@@ -172,7 +97,19 @@ class _Maker:
 
     def prepare(self) -> tuple[tuple[Step, ...], tuple[Loop, ...]]:
         """Steps that make the known bodies' angles available, and the loop equations."""
+        self.hang(self.pinned_and_sliding())
+        loops = self.pinned_and_sliding()  # from the anchors that this has found
         reachable = {*self.builder.rank, *self.links}
+        before: list[Step] = []
+        for gear in self.joints.gears:
+            ends = {gear.driver, gear.driven, gear.carrier}
+            if ends <= reachable and ends & set(self.links):
+                for body in self.roots(ends, loops):
+                    before += self.builder.running_angle(body)
+                loops.append(self.gear(gear))
+        return tuple(before), tuple(loops)
+
+    def pinned_and_sliding(self) -> list[Loop]:
         loops: list[Loop] = []
         for point, bodies in self.joints.pins.items():
             if free := [body for body in bodies if body in self.links]:
@@ -182,23 +119,57 @@ class _Maker:
                 loops += [PinLoop(point, end, self.end(hub, point)) for end in held]
         for slider in self.joints.sliders:
             ends = {slider.link, slider.on}
-            if ends <= reachable and ends & set(self.links):
+            if ends <= {*self.builder.rank, *self.links} and ends & set(self.links):
                 loops.append(self.slide(slider))
-        before: list[Step] = []
-        for gear in self.joints.gears:
-            ends = {gear.driver, gear.driven, gear.carrier}
-            if ends <= reachable and ends & set(self.links):
-                for body in ends & self.builder.rank.keys():
-                    before += self.builder.running_angle(body)
-                loops.append(self.gear(gear))
-        return tuple(before), tuple(loops)
+        return loops
+
+    def hang(self, loops: list[Loop]) -> None:
+        """Find for each link the joint that tells where it is, by the shortest way from a body
+        that is known, and take the point in that joint for the link's anchor.
+        """
+        placed = set(self.builder.rank)
+        while True:
+            found: dict[str, int] = {}
+            for k, loop in enumerate(loops):
+                for end, other in ((loop.on, loop.by), (loop.by, loop.on)):
+                    if end.body not in placed | found.keys() and other.body in placed:
+                        found[end.body] = k
+                        self.anchors[end.body] = end.point
+            if not found:
+                break
+            self.holds |= found
+            placed |= found.keys()
+
+    def tree(self, loops: Sequence[Loop]) -> tuple[Place, ...]:
+        """Where each link is; one that nothing but gears holds may be anywhere."""
+        held = [self.place(link, loops[k]) for link, k in self.holds.items()]
+        return (*held, *(Free(link) for link in self.links if link not in self.holds))
+
+    def place(self, link: str, loop: Loop) -> Place:
+        here = link == loop.on.body
+        to = loop.by if here else loop.on
+        if not isinstance(loop, SlideLoop):
+            return Hinge(link, to)
+        along, turn = loop.along, loop.turn
+        if not here:
+            along, turn = turn.conjugate(), along.conjugate()
+        return Rail(link, to, along, turn, np.angle(along * turn))
+
+    def roots(self, bodies: Iterable[str], loops: Sequence[Loop]) -> Iterator[str]:
+        """Known bodies whose angles those of these bodies are counted from."""
+        for body in bodies:
+            if body in self.builder.rank:
+                yield body
+            elif isinstance(loop := loops[self.holds[body]], SlideLoop):
+                yield from self.roots({loop.on.body, loop.by.body} - {body}, loops)
 
     def slide(self, slider: Slider) -> SlideLoop:
         """The link `on` is always one of the group; the line is the same seen from either."""
         link, guide = self.end(slider.link, slider.point), self.end(slider.on, slider.through)
+        along, turn = np.exp(1j * slider.direction), np.exp(1j * slider.angle)
         if slider.link in self.links:
-            return SlideLoop(slider.name, link, guide, slider.direction, slider.angle)
-        return SlideLoop(slider.name, guide, link, -slider.angle, -slider.direction)
+            return SlideLoop(slider.name, link, guide, along, turn)
+        return SlideLoop(slider.name, guide, link, turn.conjugate(), along.conjugate())
 
     def gear(self, gear: Gear) -> GearLoop:
         if gear.driven not in self.links:
@@ -235,7 +206,7 @@ def _solve_start(
             "where they are: crank_angle, and points or angles of these links",
         )
     gears = {gear.name: gear for gear in builder.machine.gears}
-    meshes = [loop for loop in loops if isinstance(loop, GearLoop)]
+    meshes = {loop.name: loop for loop in loops if isinstance(loop, GearLoop)}
     if meshes and position.crank_angle != 0:
         raise ModelError(
             "position.crank_angle",
@@ -243,58 +214,77 @@ def _solve_start(
             "start angle of the gears holds",
         )
     # Its gears stand still at the angle at which they start.
-    stand_in = replace(
-        group,
-        equations=tuple(
-            replace(loop, carrier=FRAME, ratio=0.0, offset=gears[loop.name].start)
-            if isinstance(loop, GearLoop)
-            else loop
-            for loop in loops
-        ),
-    )
-    steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
-    path = np.linspace(0.0, position.crank_angle, steps)
-    state = initial_state(builder.machine, path)
-    run([*builder.motion, *before], state)
-    known = group.known_poses(state)
-    guess = [x for link in group.links for x in _guess(builder, group, link, known, position)]
-    backwards = {body: pose.pick(slice(None, None, -1)) for body, pose in known.items()}
-    columns = stand_in.follow(np.array(guess), backwards, path[::-1])
-    at_zero = columns[:, -1]
-    if not meshes:
-        at_zero[2::3] = np.angle(np.exp(1j * at_zero[2::3]))
-    at_start = group.poses(known, columns[:, ::-1])
-    solved = tuple(
-        replace(loop, offset=float(np.ravel(loop.gaps(at_start, 0)[0])[0]))
+    standing = tuple(
+        replace(loop, carrier=FRAME, ratio=0.0, offset=gears[loop.name].start)
         if isinstance(loop, GearLoop)
         else loop
         for loop in loops
     )
-    _check_near(builder, group.poses(backwards, columns[:, :1]), position, group)
-    start = tuple(float(x) for x in at_zero)
-    return replace(group, start=start, equations=solved), solved
+    rough = replace(group, tree=tuple(map(Free, group.links)), equations=standing)
+    steps = max(2, ceil(abs(position.crank_angle) / (2 * pi) * STEPS_PER_TURN))
+    path = np.linspace(0.0, position.crank_angle, steps)
+    state = initial_state(builder.machine, path)
+    with np.errstate(all="ignore"):
+        run([*builder.motion, *before], state)
+        backwards = slice(None, None, -1)
+        known = {
+            body: pose.pick((..., backwards)) for body, pose in poses_in(state, group.known).items()
+        }
+        there = {body: pose.pick((..., 0)) for body, pose in known.items()}
+        guess = [x for link in group.links for x in _guess(builder, group, link, there, position)]
+        q = rough.solve(np.array(np.broadcast_arrays(*guess)), there, path[-1])
+        poses = rough.poses(there, q)
+        far = _far(builder, poses, position, group)
+        start = np.array([one for place in group.tree for one in place.values(poses)])
+        if position.crank_angle != 0:
+            start = group.follow(start, known, path[backwards])[0][..., -1]
+        if not meshes:
+            angles = start[group.turning]
+            start[group.turning] = np.angle(np.exp(1j * angles))
+    start = np.where(far, np.nan, start)
+    offsets = {name: _plain(loop.gaps(poses, 0)[0]) for name, loop in meshes.items()}
+    loops, equations = (
+        tuple(
+            replace(loop, offset=offsets[loop.name]) if loop.name in offsets else loop
+            for loop in some
+        )
+        for some in (loops, group.equations)
+    )
+    return replace(group, start=start, equations=equations), loops
 
 
-def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
-    """A solution far from the position in the file may be another assembly of the links."""
+def _plain(value: Array) -> Any:
+    """The one number of an array, but a column of several designs as it is."""
+    return value[:, None] if np.ndim(value) else float(value)
+
+
+def _far(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> Any:
+    """Which solutions are so far from the position in the file that they may be others.
+
+    Errors as of a `ModelError`, where there is one machine.
+    """
+    result: Any = False
     for link, anchor in zip(group.links, group.anchors, strict=True):
         for name in builder.machine.links[link].points.keys() & position.points.keys():
-            found = complex(np.ravel(poses[link].point(builder.arm(link, anchor, name))[0])[0])
-            if abs(found - complex(*position.points[name])) > FAR * group.size:
+            found = poses[link].point(builder.arm(link, anchor, name))[0]
+            far = abs(found - complex(*position.points[name])) > FAR * group.size
+            if far.ndim == 0 and far:
                 raise ModelError(
                     f"position.points.{name}",
                     f"too rough: the links meet with {name} at ({found.real * 1e3:.4g}, "
                     f"{found.imag * 1e3:.4g}) mm; give a place nearer to where it is",
                 )
+            result = result | far
+    return result
 
 
 def _guess(
     builder: Builder, group: LoopGroup, link: str, known: Poses, position: Position
-) -> tuple[float, float, float]:
+) -> tuple[Array, Array, Array]:
     """Rough position of a link's anchor and its angle, from the file and from known pins."""
-    points = builder.machine.links[link].points
-    given = [
-        (complex(*points[name]), complex(*position.points[name]))
+    points = {name: planar(place) for name, place in builder.machine.links[link].points.items()}
+    given: list[tuple[Any, Any]] = [
+        (points[name], complex(*position.points[name]))
         for name in points
         if name in position.points
     ]
@@ -302,19 +292,30 @@ def _guess(
         for name in builder.machine.points_of(body):
             if name in points and name not in position.points:
                 arm = builder.arm(body, builder.anchors[body], name)
-                given.append((complex(*points[name]), complex(pose.point(arm)[0][-1])))
-    anchor = complex(*points[group.anchors[group.links.index(link)]])
-    angle = position.angles.get(link)
-    if angle is None and len(given) >= 2:
-        pairs = [(a - b, c - d) for a, c in given for b, d in given if a != b]
-        local, world = max(pairs, key=lambda pair: abs(pair[0]))
-        angle = float(np.angle(world / local)) if world else None
+                given.append((points[name], pose.point(arm)[0]))
+    angle: Any = position.angles.get(link)
+    if angle is None:
+        angle = _line_angle(given)
     if angle is None or not given:
         raise ModelError(
             "position",
             f"does not place {link!r} at crank angle {degrees(position.crank_angle):g} deg; give "
             f"two of its points ({', '.join(points)}), or one and its angle",
         )
-    turn = np.exp(1j * angle)
-    place = given[0][1] + turn * (anchor - given[0][0])
-    return float(place.real), float(place.imag), float(angle)
+    anchor = points[group.anchors[group.links.index(link)]]
+    shape = np.shape(next(iter(known.values())).place[0])
+    place, angle = np.broadcast_arrays(
+        given[0][1] + np.exp(1j * angle) * (anchor - given[0][0]), angle + np.zeros(shape)
+    )
+    return place.real, place.imag, angle
+
+
+def _line_angle(given: Sequence[tuple[Any, Any]]) -> Any:
+    """Angle of a link some of whose points, in its axes, have places: by those farthest apart."""
+    local: Any = 0.0
+    world: Any = 0.0
+    for (a, c), (b, d) in combinations(given, 2):
+        farther = abs(a - b) > abs(local)
+        local, world = np.where(farther, a - b, local), np.where(farther, c - d, world)
+    told = np.any(local != 0) and np.any(world != 0)
+    return np.angle(world / local) if told else None

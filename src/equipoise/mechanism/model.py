@@ -49,15 +49,18 @@ from equipoise.mechanism.force_elements import (
     wrong_load,
     wrong_motor,
 )
+from equipoise.mechanism.links import (
+    MASS_FIELDS,
+    Link,
+    size_of,
+    wrong_link,
+    wrong_points,
+)
 from equipoise.mechanism.parts import (
     Drive,
     Gear,
-    Link,
     Slider,
-    size_of,
     wrong_gear,
-    wrong_link,
-    wrong_points,
     wrong_slider,
 )
 from equipoise.mechanism.support import Row, Support, wrong_support
@@ -85,8 +88,6 @@ __all__ = [
 MOST = {"links": 100, "points": 2000, "sliders": 200, "gears": 200, "loads": 500, "springs": 200}
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
 STANDARD_GRAVITY: Vector = (0.0, -9.80665)
-
-MASS_FIELDS = {"mass", "center_of_mass", "inertia"}
 
 
 @declared
@@ -208,8 +209,10 @@ class Machine(Frozen):
         """Return the machine with fields of one link changed."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
-        links = {**self.links, name: replace(self.links[name], **changes)}
-        return self._same_motion(replace(self, links=links), set(changes) <= MASS_FIELDS)
+        links = {**self.links, name: self.links[name].altered(**changes)}
+        return self._same_motion(
+            replace(self, links=links), set(changes) <= {*MASS_FIELDS, "bodies"}
+        )
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
@@ -221,7 +224,7 @@ class Machine(Frozen):
         ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
         """
         first, last = steps[0], steps[-1]
-        massive = first == "links" and bool({*steps} & MASS_FIELDS) and "points" not in steps
+        massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, "bodies"})
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
         return self._same_motion(changed(self, steps, lambda _: number), same)
 

@@ -1,156 +1,48 @@
-"""Groups of links that no dyad solves: loop equations, and Newton's method on them.
+"""Newton's method on the loop equations of groups of links that no dyad solves.
 
-Each joint says of two bodies that something vanishes: the gap of a pin (2 equations), turn and
-offset of a slider (2), the mismatch of a gear (1).  The same expressions in velocities and
-accelerations are linear in them, and the force in the joint acts where and as the gap is measured.
+One joint of each link only tells where the link is: of a link on a pin the angle is unknown, of one
+on a guide how far along it lies.  These joints make a tree, from the bodies that are known to every
+link; what they leave open, the others close.  The start alone, from a rough position, takes every
+joint for an equation, with place and angle of each link unknown.
 
-The unknowns of a group are position (x, y) and angle of each link.  Because the loop equations'
-rates are linear in the unknowns' rates, one set of formulas gives Newton's matrix and both
-derivatives.  The branch is followed from the position in the model file: neighbouring crank
-angles first, then any crank angle from the nearest one followed.
+Because the loop equations' rates are linear in the unknowns' rates, one set of formulas gives
+Newton's matrix and both derivatives.  The branch is followed from the position in the model file:
+neighbouring crank angles first, then any crank angle from the nearest one followed.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from math import degrees
-from typing import Any, ClassVar
+from functools import cached_property
+from itertools import islice
+from math import ceil, degrees, radians
+from typing import Any
 
 import numpy as np
 
 from equipoise.errors import MotionError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.steps import Array, State, p, u
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Position and angle of a body with two derivatives, each of shape (..., N)."""
-
-    place: tuple[Any, Any, Any]
-    turn: tuple[Any, Any, Any]
-
-    def point(self, arm: complex) -> tuple[Any, Any, Any]:
-        angle, w, a = self.turn
-        p, p1, p2 = kernels.point(*self.place, np.exp(1j * angle), w, a, arm)
-        return p, p1, p2
-
-    def pick(self, part: slice | Array) -> Pose:
-        """The pose at some of the crank angles."""
-        place, turn = (tuple(value[part] for value in values) for values in (self.place, self.turn))
-        return Pose(place, turn)
-
-
-@dataclass(frozen=True)
-class End:
-    """A point of a body: `arm` from the body's anchor."""
-
-    body: str
-    point: str
-    arm: complex
-
-
-Poses = dict[str, Pose]
-Wrench = tuple[Any, float]
-
-
-@dataclass(frozen=True)
-class PinLoop:
-    """Two points stay together; `on` carries the force that `by` exerts."""
-
-    name: str
-    on: End
-    by: End
-
-    unknowns: ClassVar[int] = 2
-
-    def gaps(self, poses: Poses, level: int) -> list[Any]:
-        """What vanishes (level 0), and its first and second derivative."""
-        here, there = (poses[end.body].point(end.arm)[level] for end in (self.on, self.by))
-        return [(here - there).real, (here - there).imag]
-
-    def place(self, poses: Poses) -> Any:
-        """Where its force acts."""
-        return poses[self.on.body].point(self.on.arm)[0]
-
-    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        """Force and couple on `on`, at that place, for a unit of each unknown."""
-        return [(1 + 0j, 0.0), (1j, 0.0)]
-
-
-@dataclass(frozen=True)
-class SlideLoop:
-    """A link's point stays on a line of the body `by`, and the link does not turn in it."""
-
-    name: str
-    on: End
-    by: End
-    direction: float
-    angle: float
-
-    unknowns: ClassVar[int] = 2
-
-    def gaps(self, poses: Poses, level: int) -> list[Any]:
-        link, guide = poses[self.on.body], poses[self.by.body]
-        turn = link.turn[level] - guide.turn[level]
-        if level == 0:
-            turn = turn - self.direction - self.angle
-        d, d1, d2 = (
-            a - b for a, b in zip(link.point(self.on.arm), guide.point(self.by.arm), strict=True)
-        )
-        angle, w, a = guide.turn
-        line = np.exp(1j * (angle + self.direction))
-        return [turn, kernels.along_line(d, d1, d2, line, w, a)[level].imag]
-
-    def place(self, poses: Poses) -> Any:
-        return poses[self.on.body].point(self.on.arm)[0]
-
-    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        normal = 1j * np.exp(1j * (poses[self.by.body].turn[0] + self.direction))
-        return [(0j, 1.0), (normal, 0.0)]
-
-
-@dataclass(frozen=True)
-class GearLoop:
-    """Angles of driven link, driver and carrier in a fixed relation."""
-
-    name: str
-    on: End
-    by: End
-    carrier: str
-    ratio: float
-    offset: float
-    lever: complex
-    radial: float
-
-    unknowns: ClassVar[int] = 1
-
-    def gaps(self, poses: Poses, level: int) -> list[Any]:
-        driver, carrier = poses[self.by.body].turn, poses[self.carrier].turn
-        wanted = kernels.gear(*driver, *carrier, self.ratio, self.offset)
-        return [poses[self.on.body].turn[level] - wanted[level]]
-
-    def place(self, poses: Poses) -> Any:
-        """The pitch point."""
-        turn = np.exp(1j * poses[self.carrier].turn[0])
-        return poses[self.on.body].point(self.on.arm)[0] + turn * self.lever
-
-    def wrenches(self, poses: Poses, sense: Any) -> list[Wrench]:
-        """The flank in contact, told by `sense`, sets the line of action."""
-        turn = np.exp(1j * poses[self.carrier].turn[0])
-        return [(kernels.tooth(turn, sense, self.lever, self.radial), 0.0)]
-
-
-Loop = PinLoop | SlideLoop | GearLoop
+from equipoise.mechanism.loops import GearLoop, Loop, Place, Pose, Poses
+from equipoise.mechanism.steps import Array, Reaction, State, p, u
 
 ITERATIONS = 25
 SETTLED = 1e-11
 """Last step of Newton's method, in sizes of the machine and radians, that counts as arrived."""
-STRIDE = 12
-"""Crank angles between those at which a branch is followed first."""
+STRIDES = (radians(30), radians(6))
+"""Between crank angles at which a branch is followed first; the next where it cannot be so."""
 JUMP = 0.02
 """Step, in sizes of the linkage and radians, that the branch's slope does not explain."""
+QUINTIC = np.array([
+    [1, 0, 0, -10, 15, -6],
+    [0, 1, 0, -6, 8, -3],
+    [0, 0, 0.5, -1.5, 1.5, -0.5],
+    [0, 0, 0, 10, -15, 6],
+    [0, 0, 0, -4, 7, -3],
+    [0, 0, 0, 0.5, -1, 0.5],
+])  # fmt: skip
+"""Between 0 and 1, by powers: what value, slope and curvature at 0, then at 1, contribute."""
 
 
 @dataclass(frozen=True)
@@ -159,148 +51,169 @@ class LoopGroup:
 
     links, anchors : the unknown links and their anchor points.
     known : other bodies that the loops touch -> their anchors.
-    start : (3 n,) x, y, angle of each link at crank angle 0, on the branch.
+    tree : where each link is, in an order in which the bodies that this asks for come first.
+    equations : the joints that the tree leaves.
+    start : (n,) unknowns at crank angle 0, on the branch; (n, P) where numbers are columns.
     size : a typical length, m, against which gaps and steps are measured.
+
+    Among columns a design that fails has NaN, where a single machine ends in a `MotionError`.
     """
 
     links: tuple[str, ...]
     anchors: tuple[str, ...]
     known: tuple[tuple[str, str], ...]
+    tree: tuple[Place, ...]
     equations: tuple[Loop, ...]
-    start: tuple[float, ...]
-    size: float
+    start: Any
+    size: Any
 
     @property
     def reference(self) -> str:
-        return " and ".join(self.links)
+        return f"q({' and '.join(self.links)})"
+
+    @cached_property
+    def turning(self) -> Array:
+        """Which of the unknowns (n,) are angles."""
+        return np.array([one for place in self.tree for one in place.turning])
 
     def run(self, state: State) -> None:
         """Solve at every crank angle; follow the branch where no solution is known nearby."""
         theta = np.atleast_1d(state["theta"])
-        known = self.known_poses(state)
+        known = poses_in(state, self.known)
         guess = state.get(f"reference({self.reference})")
-        if guess is None:
-            q = self.follow(np.array(self.start), known, theta)
-        else:
-            q = self.solve(guess, known, theta)
-        self.write(state, q, known)
+        with np.errstate(all="ignore"):
+            if guess is None:
+                levels = self.follow(self.start, known, theta)
+            else:
+                q = self.solve(guess, known, theta)
+                levels = (q, *self.derivatives(q, known))
+        self.write(state, known, *levels)
 
-    def known_poses(self, state: State) -> Poses:
-        poses = {}
-        shape = np.atleast_1d(state["theta"]).shape
-        for body, anchor in self.known:
-            rotation, w, a = (state[name] for name in u(body))
-            angle = state.get(f"phi({body})", np.angle(rotation))
-            values = [state[name] for name in p(anchor)] + [angle, w, a]
-            x, x1, x2, t, t1, t2 = (np.broadcast_to(value, shape) for value in values)
-            poses[body] = Pose((x, x1, x2), (t, t1, t2))
-        return poses
+    def poses(self, known: Poses, q: Any, q1: Any = None, q2: Any = None) -> Poses:
+        """Poses of all bodies from unknowns and their derivatives, of each a row (n, ...).
 
-    def poses(self, known: Poses, *levels: Array) -> Poses:
-        """Poses of all bodies from unknowns and their derivatives, each (..., 3 n, N)."""
-        values = [*levels, *[np.zeros_like(levels[0])] * (3 - len(levels))]
+        An unknown angle may be a rotation and an angle already.
+        """
+        nothing = (0.0,) * len(self.turning)
+        rows = [q, nothing if q1 is None else q1, nothing if q2 is None else q2]
         result = dict(known)
-        for k, link in enumerate(self.links):
-            x, y, angle = (3 * k + i for i in range(3))
-            places = (q[..., x, :] + 1j * q[..., y, :] for q in values)
-            turns = (q[..., angle, :] for q in values)
-            result[link] = Pose((*places,), (*turns,))  # type: ignore[arg-type]
+        begin = 0
+        for place in self.tree:
+            own = slice(begin, begin := begin + len(place.turning))
+            values, *rates = (row[own] for row in rows)
+            values = [
+                (np.exp(1j * value), value) if turns and not isinstance(value, tuple) else value
+                for value, turns in zip(values, place.turning, strict=True)
+            ]
+            if len(values) == 1:
+                result[place.link] = place.pose(result, values[0], *(rate[0] for rate in rates))
+            else:
+                result[place.link] = place.pose(result, values, *rates)
         return result
 
-    def gaps(self, poses: Poses, level: int) -> Array:
-        """All loop equations, or their first or second derivatives, of shape (..., 3 n, N)."""
-        parts = [gap for equation in self.equations for gap in equation.gaps(poses, level)]
-        return np.stack(np.broadcast_arrays(*parts), axis=-2)
+    def gaps(self, poses: Poses, level: int) -> list[Any]:
+        """All loop equations, or their first or second derivatives."""
+        return [gap for equation in self.equations for gap in equation.gaps(poses, level)]
 
-    def matrix(self, q: Array, known: Poses) -> Array:
-        """Derivative of the loop equations by the unknowns, (N, 3 n, 3 n).
+    def slopes(self, known: Poses, q: Array) -> tuple[Array, Array]:
+        """Loop equations (n, ...) and their derivative by the unknowns (..., n, n).
 
         The first derivative of the gaps is linear in that of the unknowns, and the known bodies'
-        part drops out of the difference.
+        part drops out where these stand still.
         """
-        still = {
-            body: Pose((pose.place[0], 0, 0), (pose.turn[0], 0, 0)) for body, pose in known.items()
-        }
-        unit = np.eye(len(q))[:, :, None] * np.ones(q.shape[1])
-        gaps = self.gaps(self.poses(still, np.broadcast_to(q, unit.shape), unit), 1)
-        return np.moveaxis(gaps, (0, 1, 2), (2, 1, 0))
+        count, shape = len(q), q.shape[1:]
+        unit = np.eye(count).reshape(count, count, *(1 for _ in shape))
+        poses = self.poses({body: pose.still for body, pose in known.items()}, q, unit)
+        rates = self.stacked(poses, 1, (count, *shape))
+        return self.stacked(poses, 0, shape), np.moveaxis(rates, (0, 1), (-2, -1))
 
-    def solve(self, guess: Array, known: Poses, theta: Array) -> Array:
-        """Newton's method at all crank angles together; guess and result (3 n, N)."""
-        q = np.array(guess, dtype=float)
-        with np.errstate(all="ignore"):
-            for _ in range(ITERATIONS):
-                gap = self.gaps(self.poses(known, q), 0)
-                step = self.divide(self.matrix(q, known), gap)
-                q = q - step
-                if not np.all(np.isfinite(q)) or np.max(self.sizes(step)) < 1e-14:  # rounding error
-                    break
-            bad = ~(np.max(self.sizes(step), axis=0) < SETTLED)
-        if np.any(bad):
-            raise MotionError(self.failure(theta[int(np.argmax(bad))]))
-        return q
+    def stacked(self, poses: Poses, level: int, shape: tuple[int, ...]) -> Array:
+        """The gaps, or their derivatives, (n, *shape)."""
+        gaps = self.gaps(poses, level)
+        result = np.empty((len(gaps), *shape))
+        for row, gap in enumerate(gaps):
+            result[row] = gap
+        return result
+
+    def solve(self, guess: Array, known: Poses, theta: Any) -> Array:
+        """Newton's method at all crank angles (N,), or one, together; guess, result (n, ..., N)."""
+        shape = np.broadcast_shapes(*(np.shape(pose.place[0]) for pose in known.values()))
+        q = np.array(np.broadcast_to(guess, np.broadcast_shapes(np.shape(guess), shape)))
+        for _ in range(ITERATIONS):
+            gap, matrix = self.slopes(known, q)
+            step = divide(matrix, gap)
+            q -= step
+            sizes = np.max(self.sizes(step), axis=0)
+            if not np.any(sizes >= SETTLED):  # the next step would be rounding
+                break
+        return self.kept(q, ~(sizes < SETTLED), theta)
+
+    def kept(self, q: Array, bad: Array, theta: Any) -> Array:
+        """What is solved at crank angles, but for that which failed."""
+        if not np.any(bad):
+            return q
+        if bad.shape == np.shape(theta):  # of one machine
+            raise MotionError(self.failure(np.ravel(theta)[int(np.argmax(bad))]))
+        return np.where(bad, np.nan, q)
 
     def sizes(self, steps: Array) -> Array:
-        """Steps of the unknowns (3 n, N) without dimension."""
-        scale = np.tile([self.size, self.size, 1.0], len(self.links))
-        sizes: Array = np.abs(steps) / scale[:, None]
+        """Steps of the unknowns (n, ...) without dimension."""
+        sizes = np.abs(steps)
+        sizes[~self.turning] /= self.size
         return sizes
-
-    def divide(self, matrix: Array, right: Array) -> Array:
-        """Solve the loops' matrix (N, 3 n, 3 n) for a right-hand side (3 n, N)."""
-        try:
-            solution = np.linalg.solve(matrix, right.T[:, :, None])
-        except np.linalg.LinAlgError:
-            return np.full_like(right, np.nan)
-        return solution[:, :, 0].T
 
     def derivatives(self, q: Array, known: Poses) -> tuple[Array, Array]:
         """First and second derivative of the unknowns by crank angle."""
-        matrix = self.matrix(q, known)
-        q1 = -self.divide(matrix, self.gaps(self.poses(known, q, np.zeros_like(q)), 1))
-        q2 = -self.divide(matrix, self.gaps(self.poses(known, q, q1), 2))
+        _, matrix = self.slopes(known, q)
+        q1 = -divide(matrix, self.stacked(self.poses(known, q), 1, q.shape[1:]))
+        q2 = -divide(matrix, self.stacked(self.poses(known, q, q1), 2, q.shape[1:]))
         return q1, q2
 
-    def follow(self, start: Array, known: Poses, theta: Array) -> Array:
+    def follow(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
         """Follow the branch along crank angles, from the solution `start` at the first.
 
         Wide steps first, with all angles between them solved together; where those do not fit
-        together, every angle from the one before.
+        together, every angle from the one before.  Returns the unknowns with two derivatives.
         """
-        if len(theta) > 2 * STRIDE:
-            with suppress(MotionError):
-                return self.follow_wide(start, known, theta)
+        for stride in STRIDES if len(theta) > 1 else ():
+            each = int(stride / abs(theta[1] - theta[0] or 1.0))
+            if 1 < each < len(theta):
+                with suppress(MotionError):
+                    return self.follow_wide(start, known, theta, each)
         return self.follow_each(start, known, theta)
 
-    def follow_wide(self, start: Array, known: Poses, theta: Array) -> Array:
-        posts = np.unique([*range(0, len(theta), STRIDE), len(theta) - 1])
-        at_posts = self.follow_each(
-            start, {b: p.pick(posts) for b, p in known.items()}, theta[posts]
+    def follow_wide(
+        self, start: Array, known: Poses, theta: Array, each: int
+    ) -> tuple[Array, Array, Array]:
+        count = ceil((len(theta) - 1) / each)
+        posts = np.linspace(0, len(theta) - 1, count + 1).astype(int)
+        levels = self.follow_each(
+            start, {body: pose.pick((..., posts)) for body, pose in known.items()}, theta[posts]
         )
-        way = np.abs(theta - theta[0])
-        guess = np.array([np.interp(way, way[posts], row) for row in at_posts])
-        q = self.solve(guess, known, theta)
-        q1, _ = self.derivatives(q, known)
-        bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
-        if np.max(self.sizes(bent)) > JUMP:
+        q = self.solve(between(theta, posts, *levels), known, theta)
+        q1, q2 = self.derivatives(q, known)
+        bent = np.diff(q) - 0.5 * (q1[..., 1:] + q1[..., :-1]) * np.diff(theta)
+        if np.any(self.sizes(bent) > JUMP):
             raise MotionError(self.failure(theta[0]))
-        return q
+        return q, q1, q2
 
-    def follow_each(self, start: Array, known: Poses, theta: Array) -> Array:
-        columns = np.empty((len(start), len(theta)))
-        here = start[:, None]
-        for k in range(len(theta)):
-            now = {body: pose.pick(slice(k, k + 1)) for body, pose in known.items()}
+    def follow_each(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
+        here = start
+        found = []
+        for k, angle in enumerate(theta):
+            now = {body: pose.pick((..., k)) for body, pose in known.items()}
             guess = here
-            here = self.solve(guess, now, theta[k : k + 1])
-            columns[:, k] = here[:, 0]
-            if k and np.max(self.sizes(here - guess)) > 10 * JUMP:
-                raise MotionError(self.failure(theta[k]))
+            here = self.solve(guess, now, angle)
+            if k:
+                far = np.any(self.sizes(here - guess) > 10 * JUMP, axis=0)
+                here = self.kept(here, far, angle)
+            q1, q2 = self.derivatives(here, now)
+            found.append((here, q1, q2))
             if k + 1 < len(theta):
-                q1, q2 = self.derivatives(here, now)
-                step = theta[k + 1] - theta[k]
+                step = theta[k + 1] - angle
                 here = here + q1 * step + q2 * (0.5 * step * step)
-        return columns
+        q, q1, q2 = (np.stack(level, axis=-1) for level in zip(*found, strict=True))
+        return q, q1, q2
 
     def failure(self, angle: float) -> str:
         links = ", ".join(self.links)
@@ -310,13 +223,123 @@ class LoopGroup:
             "another position in [position]"
         )
 
-    def write(self, state: State, q: Array, known: Poses) -> None:
-        q1, q2 = self.derivatives(q, known)
-        for k, (link, anchor) in enumerate(zip(self.links, self.anchors, strict=True)):
-            x, y, angle = 3 * k, 3 * k + 1, 3 * k + 2
-            place = [level[x] + 1j * level[y] for level in (q, q1, q2)]
-            state.update(zip(p(anchor), place, strict=True))
-            rotation = (np.exp(1j * q[angle]), q1[angle], q2[angle])
-            state.update(zip(u(link), rotation, strict=True))
-            state[f"phi({link})"] = q[angle]
-        state[f"q({self.reference})"] = q
+    def write(self, state: State, known: Poses, q: Array, q1: Array, q2: Array) -> None:
+        poses = self.poses(known, q, q1, q2)
+        for link, anchor in zip(self.links, self.anchors, strict=True):
+            pose = poses[link]
+            state.update(zip(p(anchor), pose.place, strict=True))
+            state.update(zip(u(link), pose.turn, strict=True))
+        for place in self.tree:
+            if any(place.turning):
+                state[f"phi({place.link})"] = poses[place.link].angle
+        state[self.reference] = q
+
+
+def poses_in(state: State, bodies: Iterable[tuple[str, str]]) -> Poses:
+    """Poses of bodies, each with its anchor, at the crank angles (N,) of a state."""
+    poses = {}
+    shape = np.atleast_1d(state["theta"]).shape
+    for body, anchor in bodies:
+        turn = tuple(state[name] for name in u(body))
+        angle = state.get(f"phi({body})", np.angle(turn[0]))
+        values = [*(state[name] for name in p(anchor)), *turn, angle]
+        full = (np.broadcast_to(v, np.broadcast_shapes(np.shape(v), shape)) for v in values)
+        x, x1, x2, t, t1, t2, angle = full
+        poses[body] = Pose((x, x1, x2), (t, t1, t2), angle)
+    return poses
+
+
+def divide(matrix: Array, right: Array) -> Array:
+    """Solve matrices (..., n, n) for right-hand sides (n, ...); NaN where one is singular."""
+    columns = np.moveaxis(right, 0, -1)[..., None]
+    try:
+        solution = np.linalg.solve(matrix, columns)
+    except np.linalg.LinAlgError:
+        singular = np.linalg.det(matrix) == 0
+        solution = np.linalg.solve(np.where(singular[..., None, None], np.nan, matrix), columns)
+    return np.moveaxis(solution[..., 0], -1, 0)
+
+
+def between(theta: Array, posts: Array, q: Array, q1: Array, q2: Array) -> Array:
+    """Values (n, ..., N) at crank angles between posts, whose value and derivatives are known."""
+    left = np.minimum(np.searchsorted(posts, np.arange(len(theta)), "right"), len(posts) - 1) - 1
+    width = np.diff(theta[posts])[left]
+    share = (theta - theta[posts[left]]) / width
+    weights = QUINTIC @ share ** np.arange(6)[:, None]
+    ends = [(q, 1.0), (q1, width), (q2, width * width)]
+    parts = [value[..., left + at] * scale for at in (0, 1) for value, scale in ends]
+    return np.asarray(sum(part * weight for part, weight in zip(parts, weights, strict=True)))
+
+
+@dataclass(frozen=True)
+class LoopForces:
+    """Solves the free-body equations of a group: as many unknown joint forces as equations.
+
+    reactions : of each loop.
+    """
+
+    group: LoopGroup
+    loops: tuple[Loop, ...]
+    reactions: tuple[Reaction, ...]
+
+    def run(self, state: State) -> None:
+        group = self.group
+        own = zip(group.links, group.anchors, strict=True)
+        poses = poses_in(state, (*group.known, *own))
+        senses = self.senses(state, poses)
+        strengths = self.solve(state, poses, senses)
+        for loop, reaction, sense, parts in zip(
+            self.loops, self.reactions, senses, strengths, strict=True
+        ):
+            units = zip(*loop.wrenches(poses, sense), strict=True)  # of forces, then of couples
+            for name, unit in zip(reaction.outputs, units, strict=False):
+                state[name] = sum(part * one for part, one in zip(parts, unit, strict=True))
+            if isinstance(loop, GearLoop):
+                state[f"p({reaction.at})"] = loop.place(poses)
+                state[f"T({loop.name})"] = parts[0]
+
+    def senses(self, state: State, poses: Poses) -> list[Any]:
+        """Sign of each gear's tangential force, which does not depend on the pressure angle."""
+        names = [f"flank({loop.name})" if isinstance(loop, GearLoop) else "" for loop in self.loops]
+        if any(name and name not in state for name in names):
+            strengths = self.solve(state, poses, [0.0] * len(self.loops))
+            for name, parts in zip(names, strengths, strict=True):
+                if name:
+                    (state[name],) = kernels.flank(parts[0])
+        return [state[name] if name else 0.0 for name in names]
+
+    def solve(self, state: State, poses: Poses, senses: Sequence[Any]) -> list[list[Array]]:
+        """Strength (..., N) of every unknown of each loop."""
+        shape = np.shape(state["theta"])
+        columns = [
+            [np.broadcast_to(entry, shape) for entry in column]
+            for loop, sense in zip(self.loops, senses, strict=True)
+            for column in self.columns(loop, poses, sense)
+        ]
+        matrix = np.moveaxis(np.array(columns), (0, 1, 2), (2, 1, 0))
+        solved = np.linalg.solve(matrix, self.demand(state)[..., None])[..., 0]
+        strengths = iter(np.moveaxis(solved, -1, 0))
+        return [list(islice(strengths, loop.unknowns)) for loop in self.loops]
+
+    def columns(self, loop: Loop, poses: Poses, sense: Any) -> list[list[Any]]:
+        """Force and moment about the anchor on each link, for a unit of each of its unknowns."""
+        at = loop.place(poses)
+        result = []
+        for force, couple in loop.wrenches(poses, sense):
+            column: list[Any] = []
+            for link in self.group.links:
+                sign = (link == loop.on.body) - (link == loop.by.body)
+                moment = kernels.cross(at - poses[link].place[0], force) + couple
+                column += [sign * np.real(force), sign * np.imag(force), sign * moment]
+            result.append(column)
+        return result
+
+    def demand(self, state: State) -> Array:
+        """(..., N, 3 n): force and moment about the anchor that the joints of each link supply."""
+        parts = []
+        for link in self.group.links:
+            force, moment = state[f"F({link})"], state[f"M({link})"]
+            parts += [np.real(force), np.imag(force), moment]
+        count = np.shape(state["theta"])
+        full = [np.broadcast_to(part, np.broadcast_shapes(np.shape(part), count)) for part in parts]
+        return np.stack(np.broadcast_arrays(*full), axis=-1)

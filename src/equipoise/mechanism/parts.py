@@ -1,10 +1,10 @@
-"""Parts of a machine: links, joints, gears and the drive, as frozen values with their checks."""
+"""Parts of a machine: joints, gears and the drive, as frozen values with their checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import copysign, hypot, pi, radians
+from math import copysign, pi, radians
 from typing import Any, ClassVar, Literal, Protocol
 
 from equipoise.errors import ModelError
@@ -15,9 +15,7 @@ from equipoise.keys import (
     Key,
     Keys,
     Listing,
-    Named,
     Number,
-    Point,
     Quantity,
     Table,
     Text,
@@ -28,45 +26,10 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import FRAME, Bodies, Vector, unknown, unknown_link, unknown_point
 from equipoise.mechanism.force_elements import Motor
+from equipoise.mechanism.links import Link
 from equipoise.mechanism.support import Row, Support
 
 MESHES = ("external", "internal")
-
-
-@declared
-class Link(Frozen):
-    """A rigid body.  Points, centre of mass and inertia are in the link's own axes.
-
-    A point whose name another link or the frame also has is a pin.  Without a mass no forces are
-    computed.
-    """
-
-    conditions: ClassVar[Conditions] = {
-        "dependentRequired": {
-            "mass": ["center_of_mass", "inertia"],
-            "center_of_mass": ["mass", "inertia"],
-            "inertia": ["mass", "center_of_mass"],
-        }
-    }
-
-    points: Mapping[str, Vector] = key(
-        Named(Point()),
-        "in the link's own axes; links that share a name are pinned together there",
-        example={"A": ["0 mm", "0 mm"], "B": ["33.5 mm", "0 mm"]},
-    )
-    mass: float | None = key(
-        "mass", "needed for forces", default=None, at_least=0, why="a mass cannot be negative"
-    )
-    center_of_mass: Vector | None = key(
-        Point(), "needed for forces; in the link's own axes", default=None
-    )
-    inertia: float | None = key(
-        "inertia", "about the centre of mass", default=None, at_least=0, why=NO_INERTIA
-    )
-
-    @property
-    def has_mass(self) -> bool:
-        return self.mass is not None
 
 
 @declared
@@ -210,12 +173,6 @@ class Gear(Frozen):
         return near if abs(float(near) - self.speed_ratio) <= 1e-13 * abs(near) else None
 
 
-def size_of(points: Mapping[str, Vector]) -> float:
-    """Diagonal of the rectangle around some points, m: how large a body is."""
-    xs, ys = zip(*points.values(), strict=True)
-    return hypot(max(xs) - min(xs), max(ys) - min(ys))
-
-
 class Mechanism(Protocol):
     """What a machine is to those who only look at its parts."""
 
@@ -238,38 +195,6 @@ class Mechanism(Protocol):
 
 
 # -- checks ----------------------------------------------------------------------------------------
-
-
-def wrong_points(where: str, points: Mapping[str, Vector]) -> Iterator[ModelError]:
-    """Everything that is wrong with what has to have points, each with a name."""
-    if not points:
-        yield ModelError(f"{where}.points", "there is no point; give at least one")
-    for name in points:
-        if not name.strip():
-            yield ModelError(f"{where}.points", "a point has an empty name")
-
-
-def wrong_link(where: str, name: str, link: Link) -> Iterator[ModelError]:
-    """Everything that is wrong with a link."""
-    if name == FRAME or not name.strip():
-        yield ModelError(where, f"a link cannot be called {name!r}; choose another name")
-    yield from wrong_points(where, link.points)
-    given = {"mass": link.mass, "center_of_mass": link.center_of_mass, "inertia": link.inertia}
-    missing = [key for key, value in given.items() if value is None]
-    if 0 < len(missing) < 3:
-        yield ModelError(
-            where,
-            f"{' and '.join(missing)} missing; give mass, center_of_mass and inertia together, "
-            "or none of them",
-        )
-        return
-    if link.mass is None or link.inertia is None:
-        return
-    if link.mass == 0 and link.inertia > 0:
-        text = f"{link.inertia:g} kg m^2"
-        yield ModelError(
-            f"{where}.inertia", f"got {text} for a mass of 0; no body can have that, give 0"
-        ).about(link.inertia, text)
 
 
 def wrong_slider(where: str, slider: Slider, bodies: Bodies) -> Iterator[ModelError]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from math import degrees, pi
+from math import degrees
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from equipoise.mechanism import kernels
 from equipoise.mechanism.checks import Named
 from equipoise.mechanism.field import Soil
 from equipoise.mechanism.force_elements import Spring
-from equipoise.mechanism.model import FRAME, Load, LoadTable
+from equipoise.mechanism.loads import load_at
+from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.steps import Array, Call, Reaction, State, Step, run
 from equipoise.mechanism.tip import surface_of, tip_link
@@ -192,8 +193,6 @@ def full(motion: Motion, value: Any, kind: type) -> Array:
 Acting = tuple[str, str | None, Array, Any]
 """Link, its point or None for a torque, force and torque."""
 
-ROUNDING = 1e-9
-"""rad: a window includes its first crank angle and excludes its last, whatever their rounding."""
 MEETING = 1e-12
 """Of the coordinates of its ends: where they are closer, rounding decides where a spring points."""
 
@@ -233,33 +232,6 @@ def _loads(motion: Motion) -> Iterator[Acting]:
         yield load.link, load.point, *load_at(load, motion.crank_angle)
     if machine.planting is not None and machine.planting.soil is not None:
         yield tip_link(machine), machine.planting.tip, soil_force(motion), 0.0
-
-
-def _interpolated(table: LoadTable, column: tuple[float, ...], crank_angle: Array) -> Array:
-    """Linear between the rows; a table of less than a whole turn goes on to its first row."""
-    first = table.crank_angle[0]
-    angles, values = [a - first for a in table.crank_angle], list(column)
-    if angles[-1] < 2 * pi - ROUNDING:
-        angles, values = [*angles, 2 * pi], [*values, values[0]]
-    return np.interp(np.mod(crank_angle - first, 2 * pi), angles, values)
-
-
-def load_at(load: Load, crank_angle: Array) -> tuple[Array, Array]:
-    """Force (complex, N) and torque (N m) of a load at crank angles (N,)."""
-    zero = np.zeros(len(crank_angle))
-    if load.table is not None:
-        columns = [_interpolated(load.table, column, crank_angle) for column in load.table.values]
-    elif load.force is not None:
-        columns = [zero + load.force[0], zero + load.force[1]]
-    else:
-        columns = [zero + (load.torque or 0.0)]
-    if load.start is not None and load.stop is not None:
-        span = np.mod(load.stop - load.start, 2 * pi) or 2 * pi
-        acts = np.mod(crank_angle - load.start + ROUNDING, 2 * pi) < span
-        columns = [np.where(acts, column, 0.0) for column in columns]
-    if len(columns) == 2:
-        return columns[0] + 1j * columns[1], zero
-    return zero + 0j, columns[0]
 
 
 def soil_force(motion: Motion) -> Array:

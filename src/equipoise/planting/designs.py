@@ -95,7 +95,7 @@ class Designs:
             variable.put(bodies, float(value))
         points = {name: _pairs(bodies[name], machine.points_of(name)) for name in names}
         links = {
-            name: link if points[name] == dict(link.points) else replace(link, points=points[name])
+            name: link if points[name] == dict(link.points) else link.altered(points=points[name])
             for name, link in machine.links.items()
         }
         size = abs(machine.drive.speed)

@@ -1,4 +1,4 @@
-"""What `equipoise check` tells of a file: of a linkage, of a hand-held tool, of a study."""
+"""What `equipoise check` tells of the file of a linkage and of a hand-held tool."""
 
 from __future__ import annotations
 
@@ -6,20 +6,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from math import degrees
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import ModelError
 from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.cycle import turns_of_loads
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
+from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
-from equipoise.quantities import PER_RPM, number
-from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
-from equipoise.signals import Array
-from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
-from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Outcome
+from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
+from equipoise.results.machine_blocks import bodies_tables
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
@@ -31,7 +27,6 @@ if TYPE_CHECKING:
     from equipoise.mechanism.linkage import Linkage
     from equipoise.mechanism.model import Machine
     from equipoise.mechanism.support import Gauge, Mount
-    from equipoise.studies.study import Study
 
 
 # -- linkages --------------------------------------------------------------------------------------
@@ -47,8 +42,14 @@ def machine_blocks(machine: Machine) -> Iterator[Block]:
     )
     yield from map(Text, _build_up(linkage))
     turns = "one turn" if cycle.turns == 1 else f"{cycle.turns} turns"
-    yield Text(f"the crank turns fully; the motion repeats after {turns}")
+    repeats = "motion repeats" if turns_of_loads(machine) == 1 else "motion and loads repeat"
+    yield Text(f"the crank turns fully; the {repeats} after {turns}")
+    yield from bodies_tables(machine)
     yield from map(Text, (*_springs(machine), *_drive_train(machine), *_support(machine)))
+    if machine.loads:
+        ends = (Column(end, "angle", "deg") for end in ("from", "to"))
+        heads = ("on", "what", *ends, "beyond", "largest", Column("work", "energy"))
+        yield Table.of("Loads, and their work in a cycle", heads, _loads(machine))
     if notes := (*remarks(linkage), *idle_parts(machine.support), *_uncarried(machine)):
         yield Notes(notes)
     yield Text("ready to be analysed")
@@ -80,6 +81,24 @@ def _build_up(linkage: Linkage) -> Iterable[str]:
 
 MOST_SHOWN = 12
 """Phases of rows in a line."""
+
+
+def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
+    """Every load: where it acts, from which crank angle to which, its size and its work."""
+    for load in machine.loads:
+        work = work_in_cycle(machine, load)
+        kind: Dimension = "torque" if load.point is None else "force"
+        place = load.link if load.point is None else f"{load.point} of {load.link}"
+        what: str = kind
+        ends, beyond = (load.start, load.stop), "0"
+        if (table := load.table) is not None:
+            what = f"{kind}, {table.file}" if table.file else f"{kind}, table"
+            beyond = "0" if load.start is not None or table.covers else load.outside or ""
+            if load.start is None:
+                ends = (table.crank_angle[0], table.crank_angle[-1])
+        shown = [Value(end, after=1) for end in ends if end is not None]
+        where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
+        yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
 
 
 def _springs(machine: Machine) -> Iterator[str]:
@@ -283,55 +302,3 @@ def _design(design: DesignPlan) -> str:
     kept = ", ".join(f"{limit.station or ''} {limit.output}".strip() for limit in design.limits)
     limits = f"; limits {kept}" if kept else ""
     return f"{low} to {high} rpm, {design.measure}; may change {changes}{limits}"
-
-
-# -- studies ---------------------------------------------------------------------------------------
-
-FAST, SLOW = "many at once, in compiled loops", "one after the other"
-
-
-def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
-    """Everything about a study that can be told before it is computed."""
-    compute = evaluator(study)
-    own = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
-    outcome = compute(own[None])
-    sampling = study.sampling
-    seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
-    yield Text(f"model: {study.model.base().title}")
-    yield Text(f"{study.size} designs, {sampling.method}{seed}")
-    varied = _varied(study, units, own)
-    yield Table.of("What varies", ("", "model", "in the study"), varied)
-    for one in study.correlations:
-        yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
-    heads = ("", "of", "model", "at least", "at most", "make")
-    yield Table.of("What is computed", heads, _computed(study, units, outcome))
-    yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
-    if outcome.reason[0] != COMPUTED:
-        reason = REASONS[int(outcome.reason[0])]
-        yield Notes((f"the model itself has no figures ({reason})",))
-    yield Listing("", "\n".join(_ready(study, file)))
-
-
-def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
-    for one, value in zip(study.vary, own.tolist(), strict=True):
-        unit = units[one.path]
-        spread = spread_told(one.spread, unit)
-        yield labelled(one.path, unit.name), in_unit(value, unit), spread
-
-
-def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
-    for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
-        unit = units[output.name]
-        ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))
-        own = in_unit(figure, unit)
-        yield labelled(output.name, unit.name), output.of, own, *ends, output.make or ""
-
-
-def _ready(study: Study, file: str) -> Iterator[str]:
-    """Commands that take it."""
-    yield f"ready for: equipoise sweep {file} -o designs.zarr"
-    tolerances = [one.spread.tolerance for one in study.vary]
-    if all(tolerances):
-        yield f"ready for: equipoise tolerance {file}"
-    if not any(tolerances) and study.objectives:
-        yield f"ready for: equipoise search {file}"

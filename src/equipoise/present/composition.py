@@ -21,9 +21,9 @@ from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, number
 from equipoise.results.analysis import Analysis
-from equipoise.results.analysis_blocks import force_blocks, joint_table
+from equipoise.results.analysis_blocks import force_blocks, joint_table, motion_blocks
 from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text, beside
-from equipoise.results.machine_blocks import angles_told, driven, model_blocks, motion_blocks
+from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
 

@@ -99,11 +99,57 @@ def too_far(text: str) -> str:
     return f"got {_quoted(text)}, which no machine can have; give a usual size"
 
 
+DECIMAL_COMMA = re.compile(r"([+-]?[0-9]*),([0-9]*(?:[eE][+-]?[0-9]{1,3})?)")
+"""A number with a comma for its point."""
+_GROUPS = [
+    # a sign that may separate thousands, and one that may then be the decimal sign
+    re.compile(rf"([+-]?[1-9][0-9]{{0,2}}(?:{apart}[0-9]{{3}}){some})(?:{decimal}([0-9]*))?")
+    for apart, some, decimal in (
+        (",", "+", r"\."), (r"\.", "{2,}", ","), (r"\.", "+(?=,)", ","),
+        ("[ '_\N{RIGHT SINGLE QUOTATION MARK}\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}]", "+",
+         "[.,]"),
+    )
+]  # fmt: skip
+
+
+def readings(number: str) -> tuple[str, str]:
+    """What a number is if its comma is the decimal sign, and if signs in it separate thousands.
+
+    Each is empty where it cannot be read so.
+    """
+    pointed = ".".join(match.groups()) if (match := DECIMAL_COMMA.fullmatch(number)) else ""
+    grouped = next(filter(None, (form.fullmatch(number) for form in _GROUPS)), None)
+    digits = re.sub("[^0-9+-]", "", grouped[1]) if grouped else ""
+    whole = f"{digits}.{grouped[2]}" if grouped and grouped[2] else digits
+    return pointed if re.fullmatch(NUMBER, pointed) else "", whole
+
+
+def separators_told(number: str, unit: str = "") -> str:
+    """Say what a number with commas or separators of thousands may be; empty where it has none.
+
+    unit : written behind each reading, in quotes.
+    """
+    decimal, whole = (f'"{one} {unit}"' if one and unit else one for one in readings(number))
+    if decimal and whole:
+        return f"a comma may be the decimal sign or separate thousands; write {decimal} or {whole}"
+    if whole:
+        return f"leave out what separates thousands: {whole}"
+    return f"the decimal sign is a point, not a comma: {decimal}" if decimal else ""
+
+
+def usual_unit(unit: str, dimension: Dimension) -> str:
+    """A unit as the lists have it where it is another spelling of one, such as a degree sign."""
+    other = _NAMES.get(unit.strip().lower(), unit)
+    return other if other in KINDS[dimension].units else unit
+
+
 def wrong_text(text: str, dimension: Dimension) -> str:
     """Complain of a text outside the grammar of its dimension."""
     kind, got = KINDS[dimension], f"got {_quoted(text)}"
-    if re.fullmatch(pattern(dimension), mended := text.replace(",", ".")):
-        return f'{got}; the decimal sign is a point, not a comma: "{mended}"'
+    parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
+    known = parts is not None and plain_unit(parts[2]) in kind.units
+    if parts is not None and known and (told := separators_told(*parts.groups())):
+        return f"{got}; {told}"
     whole = re.fullmatch(rf"({NUMBER})( *)(\S.*)", text)
     if whole is None:
         return f"{got}; {_number_complaint(text, kind)}"

@@ -36,6 +36,7 @@ Dimension = Literal[
     "mass per length",
     "modulus",
     "unbalance",
+    "force per torque",
 ]
 
 
@@ -291,6 +292,7 @@ KINDS: dict[Dimension, Kind] = {
         example="300 g mm",
         usual=("g mm", "kg m"),
     ),
+    "force per torque": Kind("a force per torque", {"1/m": "1", "1/mm": "1000"}, example="20 1/m"),
 }
 
 FACTORS: dict[str, str] = {

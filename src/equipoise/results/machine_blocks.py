@@ -1,4 +1,4 @@
-"""What a machine shows, and how it moves: its parts, links, points and four-bar."""
+"""What a machine shows: its parts, how it is driven, its points and four-bar."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from equipoise.i18n import say, to_say
+from equipoise.mechanism.bodies import inertia_of, together
 from equipoise.mechanism.outputs import body_named
 from equipoise.quantities import PER_RPM, Dimension, angle, number
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
@@ -15,6 +16,7 @@ from equipoise.signals import Array, Figures, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.assessment import FourBar
+    from equipoise.mechanism.bodies import Body
     from equipoise.mechanism.model import Machine
     from equipoise.results.analysis import Analysis
 
@@ -71,7 +73,7 @@ def _at(found: Figures, crank_angle: float, scale: float) -> float | None:
     return None if steady else crank_angle
 
 
-def _span(values: Array, scale: float = 0.0) -> Span:
+def span(values: Array, scale: float = 0.0) -> Span:
     """Smallest to largest of some values."""
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
@@ -95,6 +97,7 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         rows.append((name, next(amounts), center, next(amounts)))
     title = say("Links; places in the axes of each link")
     yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
+    yield from bodies_tables(machine)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
     yield Table.of(
@@ -111,6 +114,39 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield rows_table(machine)
     if machine.support is not None:
         yield Facts(say("Support"), tuple(_support(machine)))
+
+
+def bodies_tables(machine: Machine) -> Iterator[Table]:
+    """What links are made of, where they are given by bodies, and what each is with all of them."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, link in machine.links.items():
+        parts = [inertia_of(body, link.points) for body in link.bodies]
+        named = [*zip(map(_named, link.bodies), parts, strict=True)]
+        if len(parts) > 1:
+            named.append((say("together"), together(parts)))
+        for part, (mass, center, inertia) in named:
+            where = place((center.real, center.imag))
+            rows.append((name, part, Value(mass), where, Value(inertia)))
+    if rows:
+        heads = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
+        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, mm", heads[1])
+        yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
+
+
+SHAPES = {
+    "bar": to_say("bar"),
+    "plate": to_say("plate"),
+    "disc": to_say("disc"),
+    "ring": to_say("ring"),
+    "point": to_say("point mass"),
+}
+"""What bodies are called, by their shape."""
+
+
+def _named(body: Body) -> str:
+    """A body by its shape and the points where it is."""
+    spots = (*body.between, *body.corners, body.at)
+    return " ".join([say(SHAPES[body.shape]), *(spot for spot in spots if isinstance(spot, str))])
 
 
 def rows_table(machine: Machine) -> Table:
@@ -197,32 +233,8 @@ def angles_told(analysis: Analysis) -> str:
     )
 
 
-def motion_blocks(analysis: Analysis) -> Iterator[Block]:
-    """How links and points move."""
-    if analysis.four_bar is not None:
-        yield four_bar_table(analysis.four_bar)
-        yield Facts("", tuple(_four_bar(analysis.four_bar)))
-    rate = abs(analysis.motion.speed)
-    columns = (
-        "",
-        Column(say("angle"), "angle"),
-        Column(say("velocity"), "angular speed"),
-        Column(say("acceleration"), "angular acceleration"),
-    )
-    rows = (
-        (
-            name,
-            _span(link.angle),
-            _span(link.angular_velocity, rate),
-            _span(link.angular_acceleration, rate**2),
-        )
-        for name, link in analysis.motion.links.items()
-    )
-    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
-    yield _points(analysis)
-
-
-def _points(analysis: Analysis) -> Table:
+def points_table(analysis: Analysis) -> Table:
+    """Places of moving points, and how fast they become."""
     theta = analysis.crank_angle
     rows: list[tuple[Cell, ...]] = []
     for name, point in analysis.motion.points.items():
@@ -230,7 +242,7 @@ def _points(analysis: Analysis) -> Table:
             continue
         reach = float(np.max(np.abs(point.place)))
         tops = (figures(theta, np.abs(v)) for v in (point.velocity, point.acceleration_vector))
-        rows.append((name, _span(point.x, reach), _span(point.y, reach), *map(largest, tops)))
+        rows.append((name, span(point.x, reach), span(point.y, reach), *map(largest, tops)))
     columns = (
         "",
         Column("x", "length"),
@@ -262,7 +274,8 @@ def four_bar_table(found: FourBar) -> Table:
     return Table.of(title, ("", say("link"), say("between"), Column(say("length"), "length")), rows)
 
 
-def _four_bar(found: FourBar) -> Iterator[str]:
+def four_bar_facts(found: FourBar) -> Iterator[str]:
+    """What else there is to say of it."""
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
             "Transmission angle from {low}° to {high}°",

@@ -7,7 +7,7 @@ import io
 import json
 import os
 import stat
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -152,9 +152,13 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in the output")
 
 
-def to_csv(analysis: Analysis) -> str:
-    """Every array against crank angle, one row a crank angle; units stand in the header."""
-    told = [(one.name, one.unit, one.values) for one in analysis.outputs.arrays]
+def to_csv(analysis: Analysis, outputs: Iterable[str] = ()) -> str:
+    """Every array against crank angle, one row a crank angle; units stand in the header.
+
+    outputs : names of those that are told instead.
+    """
+    ones = analysis.outputs.chosen(outputs) or analysis.outputs.arrays
+    told = [(one.name, one.unit, one.values) for one in ones]
     return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
 
 

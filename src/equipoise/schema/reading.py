@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 from json import dumps as quoted
@@ -157,6 +158,8 @@ def _tables(kind: keys.Tables, given: Any, place: Place, context: Context) -> An
 
 
 def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
+    if kind.listed and isinstance(given, list):
+        return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
         return context.wrong(place, given, "give a table")
     read, item = READERS[type(kind.item)], kind.item
@@ -210,11 +213,10 @@ def _text(kind: keys.Text, given: Any, place: Place, context: Context) -> Any:
 def _number(kind: keys.Number, given: Any, place: Place, context: Context) -> Any:
     if isinstance(given, bool) or not isinstance(given, int | float):
         return context.wrong(place, given, "give a plain number without unit and quotes")
-    try:
-        value = float(given)
-    except OverflowError:
-        return context.wrong(place, given, "give a finite number")
-    return value if isfinite(value) else context.wrong(place, given, "give a finite number")
+    with suppress(OverflowError):
+        if isfinite(value := float(given)):
+            return value
+    return context.wrong(place, given, "give a finite number")
 
 
 def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
@@ -230,9 +232,8 @@ def _whole(kind: keys.Whole, given: Any, place: Place, context: Context) -> Any:
 
 
 def _file(kind: keys.File, given: Any, place: Place, context: Context) -> Any:
-    if not isinstance(given, str):
-        return context.wrong(place, given, "give text in quotes")
-    return NamedFile(kind.sort, place, given)
+    file = _text(keys.Text(), given, place, context)
+    return file if file is WRONG else NamedFile(kind.sort, place, file)
 
 
 # -- several values --------------------------------------------------------------------------------
@@ -261,6 +262,8 @@ _POINT = 'give ["33.5 mm", "0 mm"] or { distance = "88 mm", direction = "-83 deg
 
 
 def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
+    if kind.named and isinstance(given, str):
+        return given
     if isinstance(given, dict):
         count = len(context.problems)
         found = _table(keys.Table(Polar), given, place, context)
@@ -270,7 +273,7 @@ def _point(kind: keys.Point, given: Any, place: Place, context: Context) -> Any:
         return (x, y, 0.0) if kind.space else (x, y)
     if not kind.space:
         if not isinstance(given, list):
-            return context.wrong(place, given, _POINT)
+            return context.wrong(place, given, _POINT + ", or the name of a point" * kind.named)
         return _listing(_PAIR, given, place, context)
     values = _listing(keys.Listing(_LENGTH, (2, 3), _PLACE), given, place, context)
     return (*values, 0.0) if isinstance(values, tuple) and len(values) == 2 else values

@@ -122,8 +122,16 @@ def _point(kind: keys.Point, definitions: Definitions) -> Schema:
         else "x and y, or distance and direction"
     )
     either = [_listing(keys.Listing(_LENGTH, sizes), definitions), polar]
+    if kind.named:
+        return {"anyOf": [{"type": "string"}, _point(keys.Point(kind.space), definitions)]}
     name = "Place" if kind.space else "Point"
     return _defined(name, lambda: {"anyOf": either, "description": told}, definitions)
+
+
+def _named(kind: keys.Named, definitions: Definitions) -> Schema:
+    table = {"type": "object", "additionalProperties": _schema(kind.item, definitions)}
+    names = {"type": "array", "items": {"type": "string"}, "minItems": 1}
+    return {"anyOf": [table, names]} if kind.listed else table
 
 
 def _direction(kind: keys.Direction, definitions: Definitions) -> Schema:
@@ -173,10 +181,7 @@ SCHEMAS: Mapping[type[keys.Kind], Callable[[Any, Definitions], Schema]] = {
     keys.File: lambda kind, _: {"type": "string"},
     keys.Flag: lambda kind, _: {"type": "boolean"},
     keys.Listing: _listing,
-    keys.Named: lambda kind, definitions: {
-        "type": "object",
-        "additionalProperties": _schema(kind.item, definitions),
-    },
+    keys.Named: _named,
     keys.Number: lambda kind, _: {"type": "number"},
     keys.OneOr: _one_or,
     keys.Planes: _planes,

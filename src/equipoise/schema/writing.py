@@ -76,7 +76,7 @@ def _beside(kind: keys.Kind, value: Any, place: Place) -> Iterator[tuple[str, st
     elif isinstance(kind, keys.Tables):
         for number, item in enumerate(value):
             yield from _beside(kind.item, item, (*place, number))
-    elif isinstance(kind, keys.Named):
+    elif isinstance(kind, keys.Named) and isinstance(value, Mapping):
         for name, item in value.items():
             yield from _beside(kind.item, item, (*place, name))
     elif isinstance(kind, keys.Table):
@@ -105,6 +105,8 @@ def tidy(value: float) -> float:
 
 
 def _point(kind: keys.Point, value: Any, place: Place, writer: Writer) -> Any:
+    if isinstance(value, str):
+        return value
     if kind.space and value[2]:
         return [format_exact(one, "length") for one in value]
     return written_point((value[0], value[1]))
@@ -118,6 +120,12 @@ def _direction(kind: keys.Direction, value: Any, place: Place, writer: Writer) -
 
 def _listing(kind: keys.Listing, value: Any, place: Place, writer: Writer) -> Any:
     return [writer.plain(kind.item, one, place) for one in value]
+
+
+def _named(kind: keys.Named, value: Any, place: Place, writer: Writer) -> Any:
+    if isinstance(value, tuple):
+        return [*value]
+    return {name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()}
 
 
 def _one_or(kind: keys.OneOr, value: Any, place: Place, writer: Writer) -> Any:
@@ -140,9 +148,7 @@ WRITERS: dict[type[keys.Kind], Callable[[Any, Any, Place, Writer], Any]] = {
     keys.File: lambda kind, value, place, writer: writer.names[written_place(place)],
     keys.Flag: lambda kind, value, place, writer: value,
     keys.Listing: _listing,
-    keys.Named: lambda kind, value, place, writer: {
-        name: writer.plain(kind.item, one, (*place, name)) for name, one in value.items()
-    },
+    keys.Named: _named,
     keys.Number: lambda kind, value, place, writer: tidy(value),
     keys.OneOr: _one_or,
     keys.Planes: _planes,
@@ -179,7 +185,8 @@ def _headed(name: str, kind: keys.Kind, value: Any) -> Iterator[str]:
         yield "".join([f"[{name}]\n", *_lines(value)])
     elif isinstance(kind, keys.Named):
         for key, item in value.items():
-            yield from _blocks(f"[{name}.{_key(key)}]", name, kind.item.type, item)  # type: ignore[attr-defined]
+            inner = f"{name}.{_key(key)}"
+            yield from _blocks(f"[{inner}]", inner, kind.item.type, item)  # type: ignore[attr-defined]
     elif isinstance(kind, keys.Table):
         yield from _blocks(f"[{name}]", name, kind.type, value)
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import cos, floor, isfinite, log10, pi, sin
 from types import MappingProxyType
+from typing import Any
 
 from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.balance import Balance
+from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector
 from equipoise.quantities import parse, rounded
 from equipoise.quantities.units import HUGE, TINY, Dimension
@@ -82,8 +83,10 @@ class Design:
         for name, weight in self.counterweights.items():
             if weight.mass:
                 link = joined(machine.links[name], weight, place_of_pin(machine, name))
-                values = {"center_of_mass": link.center_of_mass, "inertia": link.inertia}
-                machine = machine.with_link(name, mass=link.mass, **values)
+                values: dict[str, Any] = {"bodies": link.bodies}
+                if not link.bodies:
+                    values = {one: getattr(link, one) for one in MASS_FIELDS}
+                machine = machine.with_link(name, **values)
         return machine
 
     def weight_on(self, link: str) -> Counterweight:
@@ -156,21 +159,15 @@ def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
 
     pin : from which the weight's place is told, in the link's axes, m.
     """
-    assert link.mass is not None and link.center_of_mass is not None and link.inertia is not None
     if not weight.mass:
         return link
-    center, place = complex(*link.center_of_mass), pin + weight.arm
-    whole = link.mass + weight.mass
-    common = (link.mass * center + weight.mass * place) / whole
-    _, _, own = kernels.about(link.mass, 0.0, link.inertia, common - center)
-    turning = weight.mass * weight.gyration**2
-    _, _, added = kernels.about(weight.mass, 0.0, turning, common - place)
-    return replace(
-        link,
-        mass=clean(whole),
-        center_of_mass=clean_place(common),
-        inertia=clean(float(own + added)),
-    )
+    place, inertia = pin + weight.arm, weight.mass * weight.gyration**2
+    if link.bodies:
+        return link.with_added(weight.mass, clean_place(place), clean(inertia))
+    made = link.with_added(weight.mass, (place.real, place.imag), inertia)
+    assert made.mass is not None and made.center_of_mass is not None and made.inertia is not None
+    center = clean_place(complex(*made.center_of_mass))
+    return replace(made, mass=clean(made.mass), center_of_mass=center, inertia=clean(made.inertia))
 
 
 MOST_STEPS = 500

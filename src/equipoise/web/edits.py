@@ -112,7 +112,7 @@ def _moved(base: Solved, design: Design, change: Drag) -> Design:
     for name, link in links.items():
         if change.name in link.points and len(link.points) > 1:
             place = _local(motion, name, change.at, to)
-            links[name] = replace(link, points={**link.points, change.name: place})
+            links[name] = link.altered(points={**link.points, change.name: place})
     position = _position(motion, change) if machine.position is not None else None
     return design.with_machine(replace(machine, frame=frame, links=links, position=position))
 

@@ -9,7 +9,8 @@ from math import pi
 from typing import Any
 
 from equipoise.keys import Frozen, Quantity, quantities_of
-from equipoise.mechanism.model import Machine, Vector, size_of
+from equipoise.mechanism.links import MASS_FIELDS
+from equipoise.mechanism.model import Link, Machine, Vector, size_of
 from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
 from equipoise.quantities import Display, format_exact, in_unit, rounded, typeset
 from equipoise.quantities.units import KINDS, Dimension
@@ -152,12 +153,27 @@ def _drive(machine: Machine) -> Iterator[Field]:
 def _links(machine: Machine) -> Iterator[Field]:
     for name, link in machine.links.items():
         where = ("links", name)
-        if link.mass is not None and link.inertia is not None:
-            yield from _numbers(where, name, "", link)
+        yield from _numbers(where, name, "", link, (*MASS_FIELDS,) if link.bodies else ())
+        yield from _bodies(where, name, link)
+        for side, length in link.sides.items():
+            yield _field((*where, "sides", side), name, side, "length", length)
+        if link.has_mass and not link.bodies:
             center = link.center_of_mass or CENTER
             yield from _point((*where, "center_of_mass"), name, "centre of mass", center)
-        for point, place in link.points.items():
+        measured = link.length is not None or link.sides
+        for point, place in link.points.items() if not measured else ():
             yield from _point((*where, "points", point), name, point, place)
+
+
+def _bodies(where: Place, name: str, link: Link) -> Iterator[Field]:
+    for number, body in enumerate(link.bodies, 1):
+        place = (*where, "bodies", str(number))
+        of = f"{body.shape} {number}, "
+        known = quantities_of(body).items()
+        left_out = (key for key, one in known if getattr(body, key) == one.default)
+        yield from _numbers(place, name, of, body, (*left_out,))
+        if body.at is not None and not isinstance(body.at, str):
+            yield from _point((*place, "at"), name, f"{of}centre", body.at)
 
 
 def _frame(machine: Machine) -> Iterator[Field]:

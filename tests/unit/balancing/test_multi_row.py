@@ -14,6 +14,7 @@ import pytest
 import equipoise as eq
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import of_all_rows
+from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_search import choose_phases
 from equipoise.balancing.problem import Problem
 from equipoise.errors import UsageError
@@ -125,8 +126,10 @@ def test_phases_alone() -> None:
     assert (change.kind, change.link) == ("phases", "rows")
     assert change.values["phases"] == tuple(row.phase for row in found.machine.rows)
     assert found.cost == pytest.approx(after / before)
-    assert (found.bound, found.gap) == (None, None)
-    assert "arrangements of the rows" in str(found.method)
+    assert found.bound == phasing.bound
+    assert 0 <= found.gap <= CLOSE
+    assert found.proved
+    assert str(found.method) == "branch and bound over all phases of the rows"
     assert found.machine.links == TRANSPLANTER.links
     told = json.loads(json.dumps(found.to_dict(), default=np.ndarray.tolist))
     assert told["rows"]["phases"] == list(phasing.phases)

@@ -20,6 +20,7 @@ from equipoise.balancing.patterns import (
     pattern_named,
     patterns_for,
 )
+from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
 from equipoise.balancing.phase_search import PhaseSearch, choose_phases
 from equipoise.errors import EquipoiseError, UsageError
@@ -276,6 +277,8 @@ def test_many_rows_are_noted() -> None:
     assert "a grid of 5 deg has too many arrangements: one of 10 deg" in str(found.notes[0])
     more = choose_phases(rows(13), [FORCE, ROLL], combine="squares")
     assert more.combinations == 0
+    assert 0 <= more.bound < more.combined[1]
+    assert "before it had proved that nothing better exists" in str(more.notes[-1])
     assert "too many rows for a grid" in str(more.notes[0])
     assert more.combined[1] < 0.2
 
@@ -308,6 +311,8 @@ def test_values() -> None:
     assert values["remaining_orders"][:3] == [2.0, 4.0, 6.0]
     assert values["lateral"]["roll_moment"]["before"] == 0.0
     assert values["combinations"] == 72
+    assert 0 <= values["combined"]["after"] - values["bound"] <= CLOSE
+    assert values["looked_at"] > 1
     assert values["notes"] == []
 
 

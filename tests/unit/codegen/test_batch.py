@@ -17,7 +17,7 @@ from equipoise.codegen.batch import Batch
 from equipoise.codegen.figures import GATHERED, PLACES, Figure, Gathered, figure_of
 from equipoise.errors import ChangePointError, RangeError, UsageError
 from equipoise.mechanism.linkage import assemble
-from equipoise.mechanism.model import Gear, Load, Machine, Slider
+from equipoise.mechanism.model import Gear, Load, LoadTable, Machine, Slider
 from support.batches import by_numpy, known_of, wanted_of
 from support.designs import (
     Array,
@@ -343,6 +343,21 @@ def test_base_need_not_turn() -> None:
     assert list(reasons) == [2, 0]
     known = known_of(design(base, numbers, values[1]), 60, SIGNALS)
     assert figures[1] == pytest.approx([known[s].figures.rms for s in SIGNALS], rel=1e-10)
+
+
+@pytest.mark.parametrize("driver", [None, "crank"])
+def test_a_load_of_two_turns(driver: str | None, numpy_engine: None) -> None:
+    """Loops go round its whole cycle, with gears of another and without any."""
+    table = LoadTable((0.0, pi, 4 * pi), ((0.0, 40.0, 0.0),))
+    base = with_gear(driver, -1.5) if driver else FOUR
+    base = replace(base, loads=(Load("coupler", table=table),))
+    assert assemble(base).cycle.turns == 2
+    numbers = named(base, *LENGTHS)
+    values = np.array([[one.value for one in numbers]])
+    figures, reasons = Batch(base, paths_of(numbers), wanted_of(SIGNALS, "rms"), angles=60)(values)
+    known = known_of(design(base, numbers, values[0]), 60, SIGNALS)
+    assert list(reasons) == [0]
+    assert figures[0] == pytest.approx([known[s].figures.rms for s in SIGNALS], rel=1e-10)
 
 
 # -- how many crank angles -------------------------------------------------------------------------

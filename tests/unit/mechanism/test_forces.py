@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from math import pi, radians
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -12,8 +12,8 @@ import pytest
 import equipoise as eq
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.assessment import remarks
+from equipoise.mechanism.loads import load_at, work_in_cycle
 from equipoise.mechanism.model import FRAME
-from equipoise.mechanism.reactions import load_at
 from laws.transforms import renamed
 from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
 
@@ -165,19 +165,19 @@ def test_windows(start: float, stop: float) -> None:
 def test_tables_are_closed_polygons() -> None:
     table = eq.mechanism.LoadTable((pi / 2, pi), ((2.0, 6.0),))
     want = np.interp(CIRCLE, [-pi, pi / 2, pi, 5 * pi / 2], [6.0, 2.0, 6.0, 2.0])
-    np.testing.assert_allclose(torque_of(eq.Load("crank", table=table)), want)
+    np.testing.assert_allclose(torque_of(eq.Load("crank", table=table, outside="wrap")), want)
 
 
 def test_tables_may_begin_before_0() -> None:
     one = eq.mechanism.LoadTable((-1.0, 1.0, 2.0), ((1.0, 5.0, -3.0),))
     other = eq.mechanism.LoadTable((1.0, 2.0, 2 * pi - 1.0), ((5.0, -3.0, 1.0),))
-    np.testing.assert_allclose(
-        torque_of(eq.Load("crank", table=one)), torque_of(eq.Load("crank", table=other))
-    )
+    both = [torque_of(eq.Load("crank", table=t, outside="wrap")) for t in (one, other)]
+    np.testing.assert_allclose(*both)
 
 
 def test_tables_in_a_window() -> None:
-    load = eq.Load("crank", table=eq.mechanism.LoadTable((0.0,), ((4.0,),)), start=1.0, stop=2.0)
+    table = eq.mechanism.LoadTable((0.0,), ((4.0,),))
+    load = eq.Load("crank", table=table, outside="hold", start=1.0, stop=2.0)
     np.testing.assert_allclose(torque_of(load), np.where((CIRCLE >= 1) & (CIRCLE < 2), 4.0, 0.0))
 
 
@@ -271,15 +271,24 @@ def test_axes_that_a_slider_does_not_turn_are_not_noted() -> None:
 # -- load tables -----------------------------------------------------------------------------------
 
 
-def table(degrees_: tuple[float, ...], torques: tuple[float, ...]) -> eq.Load:
+Outside = Literal["zero", "hold", "wrap"]
+
+
+def table(
+    degrees_: tuple[float, ...], torques: tuple[float, ...], outside: Outside | None = "wrap"
+) -> eq.Load:
     angles = tuple(float(np.radians(d)) for d in degrees_)
-    return eq.Load("coupler", table=eq.mechanism.LoadTable(angles, (torques,)))
+    return eq.Load("coupler", table=eq.mechanism.LoadTable(angles, (torques,)), outside=outside)
 
 
 @pytest.mark.parametrize(
     ("given", "at", "torque"),
     [
-        (table((0, 180, 360), (1.0, 2.0, 3.0)), (0, 90, 270, 359.999), (1.0, 1.5, 2.5, 3.0)),
+        (table((0, 180, 360), (1.0, 2.0, 1.0), None), (0, 90, 270, 360), (1.0, 1.5, 1.5, 1.0)),
+        (table((0, 180, 720), (1.0, 2.0, 1.0), None), (0, 90, 450, 810), (1.0, 1.5, 1.5, 1.5)),
+        (table((0, 180), (1.0, 2.0), "hold"), (0, 180, 270, 359), (1.0, 2.0, 2.0, 2.0)),
+        (table((0, 180), (1.0, 2.0), "zero"), (0, 180, 180.1, 359), (1.0, 2.0, 0.0, 0.0)),
+        (table((90, 180), (1.0, 2.0), "hold"), (90, 270, 450, 0), (1.0, 2.0, 1.0, 2.0)),
         (table((0, 180), (1.0, 2.0)), (90, 270, 359.999), (1.5, 1.5, 1.0)),
         (table((-90, 90), (1.0, 3.0)), (-90, 0, 90, 180, 270), (1.0, 2.0, 3.0, 2.0, 1.0)),
         (table((45,), (4.0,)), (0, 45, 200), (4.0, 4.0, 4.0)),
@@ -290,3 +299,63 @@ def test_tables_between_their_rows(
 ) -> None:
     found = load_at(given, np.radians(at))[1]
     np.testing.assert_allclose(found, torque, atol=1e-4)
+
+
+# -- work ------------------------------------------------------------------------------------------
+
+ROWS = ((30, 100, 250), (3.0, -1.0, 4.0))
+AREA = radians(70) * 1.0 + radians(150) * 1.5
+"""Under the rows, N m: two trapezoids."""
+
+
+@pytest.mark.parametrize(
+    ("outside", "rest"), [("zero", 0.0), ("hold", radians(140) * 4.0), ("wrap", radians(140) * 3.5)]
+)
+@pytest.mark.parametrize("speed", [3.0, -3.0])
+def test_the_work_of_a_torque_is_the_area_under_its_table(
+    outside: Outside, rest: float, speed: float
+) -> None:
+    given = machine({"A": ORIGIN}, {"crank": eq.Link({"A": ORIGIN}, 0.0, ORIGIN, 0.0)})
+    load = replace(table(*ROWS, outside), link="crank")
+    given = replace(given, loads=(load,)).with_drive(speed=speed)
+    work, _, largest = work_in_cycle(given, load)
+    assert work == pytest.approx((AREA + rest) * np.sign(speed), rel=1e-12)
+    assert largest == pytest.approx(4.0)
+    # what the drive does in the same cycle, from samples of power between the jumps
+    torque = eq.analyze(given, (np.arange(3600) + 0.5) * (2 * pi / 3600)).forces.drive_torque
+    assert np.mean(torque) * 2 * pi * np.sign(speed) == pytest.approx(-work, rel=1e-6)
+
+
+@pytest.mark.parametrize("outside", ["zero", "hold", "wrap"])
+def test_what_loads_do_in_a_cycle_is_what_the_drive_does(outside: Outside) -> None:
+    """Weights and inertia give back what they take."""
+    angles = tuple(np.radians((40.0, 100.0, 200.0)))
+    forces_ = eq.mechanism.LoadTable(angles, ((3.0, -9.0, 4.0), (1.0, 5.0, -2.0)))
+    loads = (
+        eq.Load("coupler", "C", table=forces_, outside=outside),
+        eq.Load("rocker", torque=2.0, start=1.0, stop=2.5),
+        table(*ROWS, outside),
+    )
+    given = replace(crank_rocker(), loads=loads)
+    work = sum(work_in_cycle(given, load)[0] for load in loads)
+    samples = (np.arange(36_000) + 0.5) * (2 * pi / 36_000)
+    torque = eq.analyze(given, samples).forces.drive_torque
+    assert abs(work) > 0.1
+    assert np.mean(torque) * 2 * pi == pytest.approx(-work, abs=2e-3)
+
+
+def test_a_load_of_two_turns_makes_a_cycle_of_two() -> None:
+    """Of four strokes one works; half orders appear, and so does all of the work in two turns."""
+    stroke = table((0, 180, 360, 540, 720), (0.0, 5.0, 0.0, 0.0, 0.0), None)
+    once = replace(crank_rocker(), loads=(replace(stroke, link="crank"),))
+    found = eq.analyze(once, 720)
+    assert found.motion.turns == 2
+    plain = eq.analyze(replace(once, loads=()), 720)
+    first, second = found.forces.drive_torque.reshape(2, -1) - plain.forces.drive_torque
+    assert np.max(np.abs(first)) == pytest.approx(5.0)
+    np.testing.assert_allclose(second, 0.0, atol=1e-12)
+    assert work_in_cycle(once, once.loads[0])[0] == pytest.approx(5.0 * pi)
+    assert np.mean(found.forces.drive_torque) * 4 * pi == pytest.approx(-5.0 * pi, rel=1e-4)
+    three = replace(stroke, table=eq.mechanism.LoadTable((0.0, 6 * pi), ((1.0, 1.0),)))
+    both = replace(once, loads=(*once.loads, three))
+    assert eq.mechanism.assemble(both).cycle.turns == 6

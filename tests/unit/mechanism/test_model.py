@@ -47,9 +47,14 @@ def loaded(**changes: Any) -> eq.Machine:
     return replace(FOUR, loads=(replace(FORCE, **changes),))
 
 
-def tabled(angles: tuple[float, ...], *values: tuple[float, ...], point: str = "") -> eq.Machine:
+def tabled(
+    angles: tuple[float, ...],
+    *values: tuple[float, ...],
+    point: str = "",
+    outside: str | None = None,
+) -> eq.Machine:
     table = eq.mechanism.LoadTable(angles, values)
-    return loaded(force=None, table=table, point=point or None)
+    return loaded(force=None, table=table, point=point or None, outside=outside)
 
 
 def placed(**position: Any) -> eq.Machine:
@@ -175,8 +180,19 @@ LOADS: list[tuple[str, str, Any]] = [
      lambda: tabled((0.0, 0.0), (1.0, 2.0))),
     ("loads[1].table", "the crank angles must rise from row to row",
      lambda: tabled((1.0, 0.5), (1.0, 2.0))),
-    ("loads[1].table", "the crank angles cover more than one turn",
-     lambda: tabled((0.0, 6.3), (1.0, 2.0))),
+    ("loads[1].table", "the table covers 101 turns; give at most 100",
+     lambda: tabled((0.0, 202 * pi), (1.0, 1.0))),
+    ("loads[1].outside", 'missing; the table goes from 0 deg to 180 deg, not round a turn; say '
+     'what acts in the rest: outside = "zero" for nothing, "hold" for what the last row has, or '
+     '"wrap" for a straight line to the first row', lambda: tabled((0.0, pi), (1.0, 2.0))),
+    ("loads[1].outside", "missing; the table goes from -10 deg to 540 deg, not round 2 turns; ...",
+     lambda: tabled((-pi / 18, pi, 3 * pi), (1.0, 2.0, 1.0))),
+    ("loads[1].outside", "goes with a table; leave it out", lambda: loaded(outside="zero")),
+    ("loads[1].table", "the table has 1 N m at 0 deg and 2 N m at 360 deg, where the crank "
+     "is back; give the same in both rows, or leave the last one out",
+     lambda: tabled((0.0, 1.0, 2 * pi), (1.0, 5.0, 2.0))),
+    ("loads[1].table", "the table has 1 N at 90 deg and -1 N at 810 deg, ...",
+     lambda: tabled((pi / 2, 1.7, 4.5 * pi), (2.0, 3.0, 2.0), (1.0, 5.0, -1.0), point="C")),
     ("loads[1].table", "the columns differ in length", lambda: tabled((0.0, 1.0), (1.0,))),
 ]  # fmt: skip
 WHOLE: list[tuple[str, str, Any]] = [
@@ -283,7 +299,7 @@ def test_numbers_of_any_kind_become_floats() -> None:
         ({"inertia": 10**400}, "inertia", "a number"),
         ({"center_of_mass": (1, 2, 3)}, "center_of_mass", "two numbers"),
         ({"center_of_mass": 1.0}, "center_of_mass", "two numbers"),
-        ({"points": ["A"]}, "points", "a mapping of names to two numbers"),
+        ({"points": "A"}, "points", "a mapping of names to two numbers"),
     ],
 )
 def test_values_of_the_wrong_kind(changes: dict[str, Any], where: str, wanted: str) -> None:

@@ -56,7 +56,7 @@ def _words_of(kind: keys.Kind) -> str:
         *most, last = (f'`"{name}"`' for name in names)
         return f"{', '.join(most)} or {last}"
     if isinstance(kind, keys.Point):
-        return "place" if kind.space else "point"
+        return "point or name" if kind.named else "place" if kind.space else "point"
     return WORDS.get(type(kind), "text")
 
 
@@ -75,6 +75,8 @@ def _words_of_several(kind: keys.Listing | keys.Named | keys.OneOr | keys.Planes
 
 
 def _plural(words: str) -> str:
+    if " or " in words and words[0] != "`":
+        return " or ".join(map(_plural, words.split(" or ")))
     first, dot, rest = words.partition(" of ")
     ending = {"s": "es", "y": "ies"}.get(first[-1], "s")
     stem = first[:-1] if ending == "ies" and first[-2:] != "ey" else first

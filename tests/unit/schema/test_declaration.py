@@ -16,9 +16,11 @@ from equipoise.handheld import model as tool
 from equipoise.keys import Frozen, Number, Table, Tables, Text, declared, key, wrong_values
 from equipoise.mechanism import (
     balance,
+    bodies,
     counterweights,
     field,
     force_elements,
+    links,
     mounts,
     objectives,
     parts,
@@ -42,7 +44,8 @@ PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
 DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
-        Machine, parts.Drive, force_elements.Motor, Frame, parts.Link, parts.Slider, parts.Gear,
+        Machine, parts.Drive, force_elements.Motor, Frame, links.Link, bodies.Body,
+        bodies.Hole, parts.Slider, parts.Gear,
         force_elements.Load, Spring, Position, field.Planting, field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,

@@ -339,7 +339,7 @@ WITH_TABLES = (
         'points.C = ["71.5 mm", "0 mm"]',
         'points.C = ["71.5 mm", "0 mm"]\npoints.P = ["0.1 m", "-40 mm"]',
     )
-    + '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "force.csv"\n'
+    + '[[loads]]\nlink = "coupler"\npoint = "C"\ntable = "force.csv"\noutside = "wrap"\n'
     + '[planting]\ntip = "P"\nforward_speed = "0.6 m/s"\ndepth = "4 cm"\nsoil.table = "soil.csv"\n'
 )
 
@@ -369,7 +369,7 @@ def test_tables_of_python_need_no_names() -> None:
     """Two of the same name, and one without, stay what they are."""
     tables = [eq.mechanism.LoadTable((0.0, 1.0), ((0.1, n), (0.0, 0.0)), name)
               for n, name in enumerate(("a.csv", "a.csv", ""))]  # fmt: skip
-    loads = tuple(eq.Load("coupler", "C", table=table) for table in tables)
+    loads = tuple(eq.Load("coupler", "C", table=table, outside="zero") for table in tables)
     machine = eq.loads(FOUR_BAR)
     machine = replace(machine, loads=loads)
     assert Template.of(machine).base() == machine

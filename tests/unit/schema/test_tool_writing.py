@@ -152,7 +152,8 @@ def test_linkages_are_saved_beside(tmp_path: Path) -> None:
     lighter = load("scotch-yoke").with_link("yoke", mass=1.0)
     table = LoadTable((0.0, pi), ((1.0, 2.0), (0.0, 1.0)))
     (load_,) = load("slider-crank-engine").loads
-    loaded = replace(load("slider-crank-engine"), loads=(replace(load_, force=None, table=table),))
+    pushed = replace(load_, force=None, table=table, outside="hold")
+    loaded = replace(load("slider-crank-engine"), loads=(pushed,))
     tool = shaken_by(lighter, "scotch-yoke")
     (first,) = tool.excitations
     second = replace(first, name="second", linkage=loaded)

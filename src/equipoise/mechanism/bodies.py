@@ -1,0 +1,311 @@
+"""What a link is made of: bars, plates, discs, rings and points, and what they are together.
+
+A body is as long, or as large, as its amount: the length of a bar, the area of what is cut from a
+plate, 1 of a point.  Its mass is that times a density, or it is given.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import combinations
+from math import pi
+from typing import Any, ClassVar, Literal
+
+from equipoise.keys import (
+    NO_INERTIA,
+    Conditions,
+    Frozen,
+    Keys,
+    Listing,
+    Point,
+    Table,
+    Tables,
+    Text,
+    any_of,
+    declared,
+    key,
+    lacks,
+    needs,
+    not_both,
+)
+from equipoise.mechanism.checks import Vector
+from equipoise.mechanism.materials import material_key, with_density, with_material
+
+Form = Literal["bar", "plate", "disc", "ring", "point"]
+Spot = str | Vector
+"""Name of a point of the link, or x and y in the link's axes."""
+Points = Mapping[str, Vector]
+
+NEEDS: Mapping[str, tuple[str, ...]] = {
+    "bar": ("between",),
+    "plate": ("corners",),
+    "disc": ("at", "radius"),
+    "ring": ("at", "radius", "inner_radius"),
+    "point": ("at", "mass"),
+}
+"""Keys that each shape has to have."""
+_CUT = ("thickness", "material", "density", "mass", "holes")
+_SECTION = ("width", "wall", "outer_diameter", "inner_diameter", "mass_per_length")
+TAKES: Mapping[str, tuple[str, ...]] = {
+    "bar": ("overhang", *_SECTION, *_CUT),
+    "plate": _CUT,
+    "disc": _CUT,
+    "ring": _CUT,
+    "point": ("inertia",),
+}
+"""Keys that each may have."""
+MASSES = ("material", "density", "mass", "mass_per_length")
+"""Keys of which one tells how heavy a body is."""
+
+
+@declared
+class Hole(Frozen):
+    """A round hole, all through."""
+
+    at: Spot = key(Point(named=True), "its centre: a point of the link, or a place", example="B")
+    radius: float = key("length", "of the hole", example="8 mm", above=0)
+
+
+def _of_shape(shape: str) -> dict[str, Any]:
+    own = {*NEEDS[shape], *TAKES[shape]}
+    others = {one for shape in NEEDS for one in (*NEEDS[shape], *TAKES[shape])} - own
+    return {
+        "if": {"properties": {"shape": {"const": shape}}, **needs("shape")},
+        "then": {**needs(*NEEDS[shape]), **lacks(*sorted(others))},
+    }
+
+
+@declared
+class Body(Frozen):
+    """A body of uniform density that a link has; places are in the link's axes.
+
+    between : both ends of a bar.  corners : of a plate, in order around it.
+    """
+
+    beside: ClassVar[Keys] = material_key("", "of the body")
+    file_order = ("shape", "between", "overhang", "width", "wall", "outer_diameter",
+                  "inner_diameter", "corners", "at", "radius", "inner_radius", "thickness",
+                  "material", "density", "mass", "mass_per_length", "inertia")  # fmt: skip
+    conditions: ClassVar[Conditions] = {
+        "allOf": [
+            *map(_of_shape, NEEDS),
+            any_of(*MASSES),
+            *(not_both(*pair) for pair in combinations(MASSES, 2)),
+        ]
+    }
+
+    shape: Form = key(
+        Text((*NEEDS,)),
+        "`bar`: straight, between two places; `plate`: with corners; `disc` and `ring`: round; "
+        "`point`: what is small, or known by its mass and inertia",
+        example="bar",
+    )
+    between: tuple[Spot, ...] = key(
+        Listing(Point(named=True), (2,), "both ends, points of the link by name or places"),
+        "both ends of a bar: points of the link, or places",
+        default=(),
+        example=["B", "C"],
+    )
+    overhang: float = key(
+        "length", "by which a bar reaches beyond both ends", default=0.0, at_least=0
+    )
+    width: float | None = key(
+        "length",
+        "of a bar of rectangular section, in the plane of motion",
+        default=None,
+        example="20 mm",
+        above=0,
+    )
+    wall: float | None = key(
+        "length", "of a rectangular bar that is hollow", default=None, example="2 mm", above=0
+    )
+    outer_diameter: float | None = key(
+        "length", "of a round bar, instead of `width`", default=None, example="12 mm", above=0
+    )
+    inner_diameter: float = key("length", "of a tube; 0 for a rod", default=0.0, at_least=0)
+    corners: tuple[Spot, ...] = key(
+        Listing(Point(named=True), (), "three corners or more, points of the link or places"),
+        "of a plate, in order around it: points of the link, or places",
+        default=(),
+        example=["B", "C", ["20 mm", "-30 mm"]],
+    )
+    at: Spot | None = key(
+        Point(named=True),
+        "centre of a disc, ring or point: a point of the link, or a place",
+        default=None,
+        example="A",
+    )
+    radius: float | None = key(
+        "length", "of a disc, and outer one of a ring", default=None, example="60 mm", above=0
+    )
+    inner_radius: float | None = key("length", "of a ring", default=None, example="20 mm", above=0)
+    thickness: float | None = key(
+        "length", "across the plane of motion", default=None, example="5 mm", above=0
+    )
+    density: float | None = key("density", "instead of `material`", default=None, above=0)
+    mass: float | None = key(
+        "mass", "of the body, instead of `material`", default=None, example="120 g", above=0
+    )
+    mass_per_length: float | None = key(
+        "mass per length", "of a bar, instead of `material`", default=None, above=0
+    )
+    inertia: float = key(
+        "inertia",
+        "of what is taken as a point, about its own centre",
+        default=0.0,
+        at_least=0,
+        why=NO_INERTIA,
+    )
+    holes: tuple[Hole, ...] = key(Tables(Table(Hole)), "round holes, all through", default=())
+
+    @classmethod
+    def from_table(cls, given: dict[str, Any]) -> Body:
+        return cls(**with_density(given))
+
+    @classmethod
+    def to_table(cls, value: Body) -> dict[str, Any]:
+        return with_material(super().to_table(value))
+
+
+# -- mass, centre and inertia ----------------------------------------------------------------------
+
+
+def place_of(spot: Any, points: Points) -> Any:
+    """A spot in the link's axes, complex, m; a column where numbers are."""
+    x, y = points[spot] if isinstance(spot, str) else spot
+    return x + 1j * y
+
+
+def inertia_of(body: Body, points: Points) -> tuple[Any, Any, Any]:
+    """Mass (kg), centre (complex, m) and moment of inertia about it (kg m2) of a body."""
+    amount, center, second = _gross(body, points)
+    parts = [(amount, center, second)]
+    for hole in body.holes:
+        area, polar = _round(hole.radius, 0.0, 1 / (1.0 if body.width is None else body.width))
+        parts.append((-area, place_of(hole.at, points), -polar))
+    amount, center, second = together(parts)
+    mass = amount * _per_amount(body) if body.mass is None else body.mass
+    return mass, center, second * (mass / amount) + body.inertia
+
+
+def together(parts: Sequence[tuple[Any, Any, Any]]) -> tuple[Any, Any, Any]:
+    """Amounts, centres and second moments about these, added up by Steiner's theorem."""
+    if len(parts) == 1:
+        return parts[0]
+    whole = sum(amount for amount, _, _ in parts)
+    center = sum(amount * place for amount, place, _ in parts) / whole
+    second = sum(j + amount * abs(place - center) ** 2 for amount, place, j in parts)
+    return whole, center, second
+
+
+def weighed(bodies: Sequence[Body], points: Points) -> dict[str, Any]:
+    """Mass, centre of mass and inertia of a link that is made of bodies."""
+    mass, center, inertia = together([inertia_of(body, points) for body in bodies])
+    return {"mass": mass, "center_of_mass": (center.real, center.imag), "inertia": inertia}
+
+
+def _gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
+    """Amount, centre and second moment of a body without its holes."""
+    if body.shape == "bar":
+        first, last = (place_of(end, points) for end in body.between)
+        length = abs(last - first) + 2 * body.overhang
+        return length, (first + last) / 2, length * (length**2 / 12 + _section(body)[1])
+    if body.shape == "plate":
+        return polygon([place_of(corner, points) for corner in body.corners])
+    center = place_of(body.at, points)
+    if body.shape == "point":
+        return 1.0, center, 0.0
+    amount, second = _round(body.radius, body.inner_radius or 0.0)
+    return amount, center, second
+
+
+def _round(outer: Any, inner: Any, scale: Any = 1.0) -> tuple[Any, Any]:
+    """Area and polar second moment of a ring, times a scale."""
+    return pi * (outer**2 - inner**2) * scale, pi / 2 * (outer**4 - inner**4) * scale
+
+
+def polygon(corners: Sequence[complex]) -> tuple[float, complex, float]:
+    """Area (m2), centre (complex, m) and polar second moment about it (m4) of a polygon.
+
+    Sums over its edges after Green's theorem, taken from one of its corners so that no digits are
+    lost far from the origin; e.g. Steger, "On the calculation of arbitrary moments of polygons",
+    1996.
+    """
+    edges = [*edges_of(corners)]
+    area = sum(cross for _, _, cross in edges) / 2
+    center = sum(cross * (one + other) for one, other, cross in edges) / (6 * area)
+    second = sum(
+        cross * (abs(one) ** 2 + (one.conjugate() * other).real + abs(other) ** 2)
+        for one, other, cross in edges
+    )
+    own = abs(second / 12 - area * abs(center) ** 2)
+    return abs(area), corners[0] + center, own
+
+
+def edges_of(corners: Sequence[complex]) -> Iterator[tuple[complex, complex, float]]:
+    """Both ends of each edge of a polygon, from its first corner, and twice the area it adds."""
+    arms = [corner - corners[0] for corner in corners]
+    for one, other in zip(arms, [*arms[1:], arms[0]], strict=True):
+        yield one, other, (one.conjugate() * other).imag
+
+
+def _section(body: Body) -> tuple[Any, Any]:
+    """Area of a bar's section (m2), and its mean square distance (m2) from the bar's axis in the
+    plane of motion; 0 of what is not given.
+    """
+    if body.outer_diameter is not None:
+        outer, inner = body.outer_diameter, body.inner_diameter
+        return pi / 4 * (outer**2 - inner**2), (outer**2 + inner**2) / 16
+    width: Any = 0.0 if body.width is None else body.width
+    thickness: Any = 0.0 if body.thickness is None else body.thickness
+    if body.wall is None:
+        return width * thickness, width**2 / 12
+    inside, through = width - 2 * body.wall, thickness - 2 * body.wall
+    area = width * thickness - inside * through
+    return area, (width**3 * thickness - inside**3 * through) / (12 * area)
+
+
+def _per_amount(body: Body) -> Any:
+    """Mass of a unit of a body's amount."""
+    if body.mass_per_length is not None:
+        return body.mass_per_length
+    measure: Any = _section(body)[0] if body.shape == "bar" else body.thickness
+    return body.density * measure
+
+
+# -- from the side ---------------------------------------------------------------------------------
+
+Outline = tuple[list[complex], float]
+"""Corners, complex, m, and no radius; or a centre, and the radius of a circle, which is below 0
+where the body lies outside of it."""
+
+
+def outlines(body: Body, points: Points) -> list[Outline]:
+    """Edges of a body as it is seen from the side, without its holes; none of a point and of a bar
+    of which no section is given.
+    """
+    if body.shape == "plate":
+        return [([place_of(corner, points) for corner in body.corners], 0.0)]
+    if body.shape == "bar":
+        half = (body.width or body.outer_diameter or 0.0) / 2
+        first, last = (place_of(end, points) for end in body.between)
+        way = (last - first) / abs(last - first)
+        aside, beyond = 1j * half * way, body.overhang * way
+        one, other = first - beyond, last + beyond
+        sides = [one - aside, other - aside, other + aside, one + aside]
+        return [(sides, 0.0)] if half else []
+    if body.radius is None:
+        return []
+    center = [place_of(body.at, points)]
+    return [(center, body.radius)] + [(center, -r) for r in (body.inner_radius,) if r]
+
+
+def outlined_by_columns(body: Body, points: Points) -> bool:
+    """Whether its outline or its holes depend on columns, of which nobody can tell whether they
+    fit.
+    """
+    spots = [place_of(spot, points) for spot in (*body.corners, *(h.at for h in body.holes))]
+    if body.holes:
+        spots += [place_of(spot, points) for spot in (*body.between, body.at) if spot is not None]
+        spots += [body.overhang, body.width, body.radius, body.inner_radius]
+    return any(getattr(spot, "ndim", 0) for spot in spots)

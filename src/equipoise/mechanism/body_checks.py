@@ -1,0 +1,192 @@
+"""What is wrong with the bodies of a link: their keys, numbers, corners and holes."""
+
+from __future__ import annotations
+
+from cmath import phase
+from collections.abc import Iterator, Sequence
+from itertools import combinations
+from math import pi
+from typing import Any
+
+from equipoise.errors import ModelError
+from equipoise.keys import quantities_of
+from equipoise.mechanism.bodies import (
+    MASSES,
+    NEEDS,
+    TAKES,
+    Body,
+    Outline,
+    Points,
+    edges_of,
+    outlines,
+    place_of,
+)
+from equipoise.mechanism.checks import numbered, too_many, unknown
+
+MOST = {"bodies": 100, "corners": 500, "holes": 200}
+"""Far beyond any link."""
+ROUNDING = 1e-9
+"""Over a radius: a hole may come so far over an edge, and a square below zero."""
+
+
+def wrong_bodies(bodies: Sequence[Body], points: Points) -> Iterator[ModelError]:
+    """Everything that is wrong with the bodies of a link, the first things first."""
+    yield from too_many("bodies", bodies, MOST["bodies"])
+    for where, body in numbered("bodies", bodies):
+        for wrong in (_wrong_keys, _wrong_spots, _wrong_mass, _wrong_numbers, _wrong_outline):
+            for name, what in wrong(body, points):
+                yield ModelError(f"{where}.{name}", what)
+
+
+Wrong = Iterator[tuple[str, str]]
+"""Keys, and what is wrong with each."""
+
+
+def _wrong_keys(body: Body, _: Points) -> Wrong:
+    known = (*NEEDS[body.shape], *TAKES[body.shape])
+    given = body.to_table(body)
+    for name in NEEDS[body.shape]:
+        if name not in given:
+            yield name, f"missing; a {body.shape} needs it"
+    for name in given:
+        if name not in ("shape", *known):
+            yield name, f"a {body.shape} has none; it can have {', '.join(known)}"
+    if body.shape == "plate" and len(body.corners) < 3:
+        yield "corners", f"got {len(body.corners)}; give three or more"
+
+
+def _wrong_spots(body: Body, points: Points) -> Wrong:
+    spots = [("at", body.at)] if body.at is not None else []
+    spots += [*numbered("between", body.between), *numbered("corners", body.corners)]
+    spots += [(f"{where}.at", hole.at) for where, hole in numbered("holes", body.holes)]
+    for where, spot in spots:
+        if isinstance(spot, str) and spot not in points:
+            yield where, unknown(spot, points, "point of the link")
+
+
+def _wrong_mass(body: Body, _: Points) -> Wrong:
+    """What tells the mass has to be given once, and a density needs the body's measures."""
+    given = [name for name in MASSES if getattr(body, name, None) is not None]
+    if len(given) > 1:
+        yield given[1], f"given beside {given[0]}; give one of both"
+    if not given:
+        yield "material", 'missing; give a material such as "steel", a density, or the mass'
+    bar = body.shape == "bar"
+    if body.density is None or (bar and body.outer_diameter is not None):
+        return
+    if bar and body.width is None:
+        yield "width", "missing; with a material give width and thickness, or outer_diameter"
+    elif body.thickness is None:
+        yield "thickness", "missing; with a material give it, or give the mass instead"
+
+
+def _wrong_numbers(body: Body, points: Points) -> Wrong:
+    flat = body.shape != "bar" or (body.width is not None and body.wall is None)
+    if body.holes and not flat:
+        yield "holes", "of a bar need its width, and no wall; leave them out"
+    if body.width is not None and body.outer_diameter is not None:
+        yield "outer_diameter", "given beside width; give one of both"
+    if body.wall is not None and None in (body.width, body.thickness):
+        yield "wall", "goes with width and thickness of a bar"
+    elif body.inner_diameter and body.outer_diameter is None:
+        yield "inner_diameter", "goes with outer_diameter"
+    else:
+        for name, right, what in _rules(body, points):
+            if not right:
+                yield name, what
+
+
+def _rules(body: Body, points: Points) -> Iterator[tuple[str, Any, str]]:
+    """What has to be true of numbers, each with its key and what is said where it is not; of
+    columns, columns of it.
+    """
+    if body.shape == "bar":
+        first, last = (place_of(end, points) for end in body.between)
+        yield "between", abs(last - first) > 0, "both ends lie at the same place; set them apart"
+    if body.inner_radius is not None and body.radius is not None:
+        yield "inner_radius", body.inner_radius < body.radius, "give less than the radius"
+    if body.outer_diameter is not None:
+        right = body.inner_diameter < body.outer_diameter
+        yield "inner_diameter", right, "give less than outer_diameter"
+    if body.wall is not None and body.width is not None and body.thickness is not None:
+        right = (2 * body.wall < body.width) & (2 * body.wall < body.thickness)
+        yield "wall", right, "give less than half of width and thickness"
+
+
+def demands(body: Body, points: Points) -> Iterator[Any]:
+    """What has to be true of the numbers of a body: flags, or columns of them."""
+    for name, one in quantities_of(body).items():
+        value = getattr(body, name)
+        if value is not None:
+            yield one.allows(value)
+    for _, right, _ in _rules(body, points):
+        yield right
+
+
+def _wrong_outline(body: Body, points: Points) -> Wrong:
+    for name in ("corners", "holes"):
+        for error in too_many(name, getattr(body, name), MOST[name]):
+            yield name, error.what
+    if body.shape == "plate":
+        corners = [place_of(corner, points) for corner in body.corners]
+        edges = [*edges_of(corners)]
+        size = max(abs(one) for one, _, _ in edges)
+        if crossing := _crossing(edges):
+            yield "corners", crossing
+        elif abs(sum(cross for _, _, cross in edges)) <= ROUNDING * size**2:
+            yield "corners", "they lie in one line; a plate has an area"
+    yield from _wrong_holes(body, points)
+
+
+Edge = tuple[complex, complex, float]
+
+
+def _crossing(edges: Sequence[Edge]) -> str:
+    """Say which edges of a polygon cross, if some do.
+
+    Edges that only touch are let be: so a cut-out can be reached by a cut from the edge.
+    """
+    count = len(edges)
+    for (i, one), (j, other) in combinations(enumerate(edges), 2):
+        if _parted(one, other) and _parted(other, one):
+            ends = (i + 1, (i + 1) % count + 1, j + 1, (j + 1) % count + 1)
+            crossed = "the edge from corner {} to {} crosses that from {} to {}".format(*ends)
+            return f"{crossed}; give the corners in order around the plate"
+    return ""
+
+
+def _parted(edge: Edge, other: Edge) -> bool:
+    """Whether both ends of another edge lie on different sides of the line of an edge."""
+    along = (edge[1] - edge[0]).conjugate()
+    one, two = ((along * (end - edge[0])).imag for end in other[:2])
+    return one * two < 0
+
+
+def _wrong_holes(body: Body, points: Points) -> Wrong:
+    """A hole lies in its body, and no two have a part in common."""
+    if not body.holes:
+        return
+    outline = outlines(body, points)
+    holes = [(place_of(hole.at, points), hole.radius) for hole in body.holes]
+    for number, (center, radius) in enumerate(holes, 1):
+        if any(not _fits(center, radius * (1 - ROUNDING), one) for one in outline):
+            yield f"holes[{number}]", f"does not lie within the {body.shape}; move it, or smaller"
+    for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
+        if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
+            yield f"holes[{j}]", f"cuts into holes[{i}]; set them apart"
+
+
+def _fits(center: complex, radius: float, outline: Outline) -> bool:
+    """Whether a circle lies on the body's side of an outline."""
+    corners, size = outline
+    if size:
+        away = abs(center - corners[0])
+        return away + radius <= size if size > 0 else away - radius >= -size
+    turned = 0.0
+    for corner, ahead in zip(corners, [*corners[1:], corners[0]], strict=True):
+        along, arm = ahead - corner, center - corner
+        share = (arm * along.conjugate()).real / (abs(along) ** 2 or 1.0)
+        if abs(arm - min(max(share, 0.0), 1.0) * along) < radius:
+            return False
+        turned += phase((ahead - center) / (corner - center))
+    return abs(turned) > pi

@@ -1,0 +1,67 @@
+"""What `equipoise check` tells of a study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
+from equipoise.signals import Array
+from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
+from equipoise.studies.evaluate import evaluator
+from equipoise.studies.outcomes import Outcome
+
+if TYPE_CHECKING:
+    from equipoise.studies.study import Study
+
+FAST, SLOW = "many at once, in compiled loops", "one after the other"
+
+
+def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
+    """Everything about a study that can be told before it is computed."""
+    compute = evaluator(study)
+    own = np.array([study.model.number(path)[0] for path in study.paths], dtype=float)
+    outcome = compute(own[None])
+    sampling = study.sampling
+    seed = "" if sampling.method == "grid" else f", seed {sampling.seed}"
+    yield Text(f"model: {study.model.base().title}")
+    yield Text(f"{study.size} designs, {sampling.method}{seed}")
+    varied = _varied(study, units, own)
+    yield Table.of("What varies", ("", "model", "in the study"), varied)
+    for one in study.correlations:
+        yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
+    heads = ("", "of", "model", "at least", "at most", "make")
+    yield Table.of("What is computed", heads, _computed(study, units, outcome))
+    yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
+    if outcome.reason[0] != COMPUTED:
+        reason = REASONS[int(outcome.reason[0])]
+        yield Notes((f"the model itself has no figures ({reason})",))
+    yield Listing("", "\n".join(_ready(study, file)))
+
+
+def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
+    for one, value in zip(study.vary, own.tolist(), strict=True):
+        unit = units[one.path]
+        spread = spread_told(one.spread, unit)
+        yield labelled(one.path, unit.name), in_unit(value, unit), spread
+
+
+def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Cell, ...]]:
+    for output, figure in zip(study.outputs, outcome.figures[0].tolist(), strict=True):
+        unit = units[output.name]
+        ends = (in_unit(end, unit) for end in (output.at_least, output.at_most))
+        own = in_unit(figure, unit)
+        yield labelled(output.name, unit.name), output.of, own, *ends, output.make or ""
+
+
+def _ready(study: Study, file: str) -> Iterator[str]:
+    """Commands that take it."""
+    yield f"ready for: equipoise sweep {file} -o designs.zarr"
+    tolerances = [one.spread.tolerance for one in study.vary]
+    if all(tolerances):
+        yield f"ready for: equipoise tolerance {file}"
+    if not any(tolerances) and study.objectives:
+        yield f"ready for: equipoise search {file}"
