@@ -231,14 +231,14 @@ def test_a_range_of_ratios_is_proved_one_by_one() -> None:
 def test_phases_of_rows() -> None:
     text = run("four-row-transplanter", "-o", "rows.toml")
     assert "  Rows: set the phases to 0, 180, 270, 90 deg" in text.splitlines()
-    assert "Found among 64824 arrangements" in text
-    assert "that other phases of the rows can do no more for all rows: " in text
+    assert "Proof, by branch and bound over all phases of the rows: with other phases" in text
+    assert "no choice makes all rows: shaking force, RMS at 200 rpm smaller than here" in text
     speeds = text.partition("Speed at which it shakes as before")[2]
     assert cells(speeds, "all rows: shaking force, RMS") == ["501.4"]
     phases = [math.degrees(row.phase) for row in eq.load("rows.toml").rows]
     assert phases == pytest.approx([0, 180, 270, 90])
     content = told("four-row-transplanter")
-    assert (content["bound"], content["gap"]) == (None, None)
+    assert 0 <= content["gap"] < 1e-3
     assert content["rows"]["remaining_orders"][:2] == [4, 8]
     assert [math.degrees(phase) for phase in content["rows"]["phases"]] == pytest.approx(phases)
 

@@ -10,10 +10,11 @@ from operator import eq
 from typing import TYPE_CHECKING
 
 from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.workshop import sentences
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.mechanism.outputs import GROUPS
-from equipoise.quantities import PER_RPM, brief, number, percent
+from equipoise.quantities import PER_RPM, brief, change, number, percent
 from equipoise.results.blocks import Block, Change, Column, Table, Text
 from equipoise.results.outputs import (
     MEASURES,
@@ -259,3 +260,51 @@ def good_already(found: Balanced) -> str:
     if found.tried:
         return say("already as small as what was tried can make it")
     return say("already as small as what may be changed can make it")
+
+
+# -- what helps most -------------------------------------------------------------------------------
+
+LARGE = 0.5
+"""Added mass over that of all links from which it is told."""
+
+
+def helps_told(balanced: Balanced) -> Iterator[str]:
+    """What to change, what that brings, and what it costs."""
+    if not balanced.helps:
+        yield from nothing_told(balanced)
+        return
+    for made in balanced.changes:
+        first, *pieces = sentences(made)
+        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.tried else first)
+    yield from _heavy(balanced)
+    for one, (before, after) in balanced.aims.items():
+        scale, unit = scaled(unit_of(one, balanced.original))
+        yield say(
+            "{what}: {before} → {after} {unit} ({change}).",
+            what=capital(objective_named(one, len(balanced.original.rows))),
+            before=brief(before * scale),
+            after=brief(after * scale, before * scale),
+            unit=unit,
+            change=change(before, after) or percent(0),
+        )
+    yield from worse_told(balanced)
+    yield proof_told(balanced)
+    if balanced.planting_kept:
+        yield say("The planting figures stay as they are.")
+
+
+def _heavy(balanced: Balanced) -> Iterator[str]:
+    """That the mass to be added is large, where it is."""
+    links = balanced.original.mass
+    added = sum(
+        float(dict(change.values)["mass"])
+        for change in balanced.changes
+        if change.kind == "added mass"
+    )
+    if added > LARGE * links > 0:
+        yield say(
+            "That is a large mass for this linkage: all its links together have {links} kg, and "
+            "{added} kg are added.",
+            links=brief(links),
+            added=brief(added),
+        )

@@ -9,14 +9,13 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
-from equipoise.balancing.told import capital, good_already
+from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
-from equipoise.present.remedies import helps_told
 from equipoise.quantities import PER_RPM, angle, brief, change, percent
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, scaled
@@ -93,8 +92,8 @@ def answers(found: Findings) -> Iterator[Answer]:
         shaking = Shaking.of(found)
         yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
         yield Answer(say("Why"), tuple(_why(found)))
-        if helps := tuple(helps_told(found)):
-            yield Answer(say("What helps most"), helps)
+        if found.balanced is not None:
+            yield Answer(say("What helps most"), tuple(helps_told(found.balanced)))
     if vibration := tuple(vibration_told(found)):
         yield Answer(say("What that does to the support"), vibration)
     if planting := tuple(planting_told(found)):
