@@ -194,9 +194,9 @@ export interface ResponseMessage {
   notes: string[];
 }
 
-/** Figures of a planting finger; null where they are not finite. */
+/** Figures of a planting finger, or of sliders and rockers; null where they are not finite. */
 export interface Planted {
-  type: "planting";
+  type: "planting" | "strokes";
   figures: { name: string; label: string; unit: string; value: number | null; text: string }[];
   notes: string[];
 }

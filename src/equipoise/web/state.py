@@ -122,7 +122,7 @@ def _add_outputs(block: Block, analysis: Analysis, names: Sequence[str], prefix:
     """Outputs that the page has asked for, in the unit in which it reads them."""
     for name in names:
         if name in analysis.outputs:
-            block.add(f"{prefix}output.{name}", analysis.outputs[name].values)
+            block.add(f"{prefix}output.{name}", analysis.outputs[name].drawn)
 
 
 def _add_signals(
