@@ -29,6 +29,7 @@ from equipoise.mechanism.balance import (
 )
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.vibration.forced import usual_step
 from equipoise.vibration.linear import Linear, gauges_of
 from equipoise.vibration.resonance import resonances
@@ -36,7 +37,8 @@ from equipoise.vibration.resonance import resonances
 Solve = Callable[[Machine, Balance], Balanced]
 
 SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m."""
+"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
+that is smaller."""
 THICK, HUB = 0.3, 0.2
 """Over a link's reach: the thickest plate, and the inner radius, inside which the shaft is."""
 THICKEST = 0.1
@@ -167,7 +169,7 @@ def pin_of(machine: Machine, link: str) -> str:
 
 def reach_of(machine: Machine, link: str) -> float:
     """Distance of a link's farthest point from its pin, m."""
-    return _reach(machine, link) or SMALLEST
+    return _reach(machine, link) or min(SMALLEST, float(size_of_bodies(machine)))
 
 
 def _reach(machine: Machine, link: str) -> float:
