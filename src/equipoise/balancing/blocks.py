@@ -25,7 +25,7 @@ from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
 
 MOST_ORDERS = 8
 """That are named one by one."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import groupby
-from math import ceil, floor, log10
+from math import ceil, floor, isinf, log10
 from operator import eq
 from typing import TYPE_CHECKING
 
@@ -14,13 +14,13 @@ from equipoise.balancing.workshop import sentences
 from equipoise.i18n import Note, say, to_say
 from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
 from equipoise.mechanism.outputs import GROUPS
-from equipoise.quantities import PER_RPM, brief, change, number, percent
+from equipoise.quantities import PER_RPM, brief, change, percent, told
 from equipoise.results.blocks import Block, Change, Column, Table, Text
 from equipoise.results.outputs import (
     MEASURES,
     objective_named,
     output_named,
-    scaled,
+    shown_in,
     unit_of_measure,
 )
 
@@ -72,10 +72,9 @@ def _grown(found: Balanced, one: Worse) -> str:
     if one.before > 0:
         share = percent(one.growth, 1 if one.growth < FEW else 0)
         return say("{what}, by {share} %", what=what, share=share)
-    scale, unit = scaled(figure_unit(found, f"{aim.output}.{aim.measure}"))
-    return say(
-        "{what}, from 0 to {size} {unit}", what=what, size=brief(one.after * scale), unit=unit
-    )
+    unit = shown_in(figure_unit(found, f"{aim.output}.{aim.measure}"), [one.after])
+    size = unit.text(one.after, digits=3)
+    return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
 
 
 def figure_named(name: str, rows: int) -> str:
@@ -182,22 +181,25 @@ SHAPES = {
 
 def _room(weight: Weight) -> str:
     """A weight: its shape, the plate that it is cut from, and its room."""
-    told = {"shape": say(SHAPES[weight.shape])}
+    shape = say(SHAPES[weight.shape])
     if weight.mass is not None:
-        told["shape"] = say("{shape} of {mass} g", mass=number(1e3 * weight.mass), **told)
+        shape = say("{shape} of {mass}", shape=shape, mass=told(weight.mass, "mass"))
+    if isinf(weight.radius):
+        return shape
+    outer = told(weight.radius, "length", "mm")
     if weight.shape in CUT:
-        stuff = material_of(weight.density or 0.0) or f"{number(weight.density or 0.0)} kg/m^3"
+        density = weight.density or 0.0
         return say(
-            "{shape} of {thickness} mm {stuff} plate from {inner} to {outer} mm",
-            thickness=number(1e3 * (weight.thickness or 0.0)),
-            stuff=say(stuff),
-            inner=number(1e3 * weight.inner_radius),
-            outer=number(1e3 * weight.radius),
-            **told,
+            "{shape} of {thickness} {stuff} plate from {inner} to {outer}",
+            shape=shape,
+            thickness=told(weight.thickness or 0.0, "length", "mm"),
+            stuff=say(material_of(density) or told(density, "density")),
+            inner=told(weight.inner_radius, "length", "mm"),
+            outer=outer,
         )
-    if weight.radius < float("inf"):
-        return say("{shape} within {outer} mm", outer=number(1e3 * weight.radius), **told)
-    return told["shape"]
+    return (
+        shape if isinf(weight.radius) else say("{shape} within {outer}", shape=shape, outer=outer)
+    )
 
 
 # -- what was tried --------------------------------------------------------------------------------
@@ -244,12 +246,12 @@ def nothing_told(found: Balanced) -> Iterator[str]:
         )
     else:
         for one, (before, _) in found.aims.items():
-            scale, unit = scaled(unit_of(one, found.original))
+            unit = shown_in(unit_of(one, found.original), [before])
             yield say(
                 "{what}, {value} {unit}, is {already}.",
                 what=capital(objective_named(one, len(found.original.rows))),
-                value=brief(before * scale),
-                unit=unit,
+                value=unit.text(before, digits=3),
+                unit=unit.name,
                 already=good_already(found),
             )
     yield proof_told(found)
@@ -278,13 +280,13 @@ def helps_told(balanced: Balanced) -> Iterator[str]:
         yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.tried else first)
     yield from _heavy(balanced)
     for one, (before, after) in balanced.aims.items():
-        scale, unit = scaled(unit_of(one, balanced.original))
+        unit = shown_in(unit_of(one, balanced.original), [before])
         yield say(
             "{what}: {before} → {after} {unit} ({change}).",
             what=capital(objective_named(one, len(balanced.original.rows))),
-            before=brief(before * scale),
-            after=brief(after * scale, before * scale),
-            unit=unit,
+            before=unit.text(before, digits=3),
+            after=unit.text(after, before, 3),
+            unit=unit.name,
             change=change(before, after) or percent(0),
         )
     yield from worse_told(balanced)
@@ -303,8 +305,8 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
     )
     if added > LARGE * links > 0:
         yield say(
-            "That is a large mass for this linkage: all its links together have {links} kg, and "
-            "{added} kg are added.",
-            links=brief(links),
-            added=brief(added),
+            "That is a large mass for this linkage: all its links together have {links}, and "
+            "{added} are added.",
+            links=told(links, "mass", "kg", digits=3),
+            added=told(added, "mass", "kg", digits=3),
         )

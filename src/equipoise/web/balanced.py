@@ -26,8 +26,8 @@ from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
-from equipoise.quantities import number
-from equipoise.results.outputs import objective_named, scaled
+from equipoise.quantities import display, told
+from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.figures import compared, figures_of, signals_of
@@ -35,7 +35,7 @@ from equipoise.web.figures import compared, figures_of, signals_of
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
 """Measures that come first."""
-ROUNDED = 1e-9
+ROUNDED = 1e-7
 GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
@@ -121,10 +121,10 @@ def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
             beyond = values["inertia"] / values["mass"] - values["radius"] ** 2
             point = beyond <= SPREAD * values["radius"] ** 2
             weights[link] = Counterweight(
-                clean(values["mass"]),
-                clean(values["radius"]),
+                clean(values["mass"], "mass"),
+                clean(values["radius"], "length"),
                 clean(values["direction"], "angle"),
-                0.0 if point else clean(sqrt(beyond)),
+                0.0 if point else clean(sqrt(beyond), "length"),
             )
     return weights
 
@@ -174,7 +174,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
 
 
 def _taken_off(link: str, weight: Counterweight) -> str:
-    return f"{link}: take off the counterweight of {number(1e3 * weight.mass)} g"
+    return f"{link}: take off the counterweight of {told(weight.mass, 'mass')}"
 
 
 def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
@@ -189,26 +189,26 @@ def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
 
 def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, float]]) -> Values:
     """What was to become small."""
-    factor, unit = scaled(si_unit(one, found.original))
     rows, pair = len(found.machine.rows), found.aims[one]
     if not (one.about or one.orders or one.speeds):
         name = f"{one.output}.{one.measure}"
         pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
-    before, after = (factor * value for value in pair)
-    return {"label": objective_named(one, rows), "unit": unit, **compared(before, after)}
+    unit = shown_in(si_unit(one, found.original), pair)
+    before, after = (unit.factor * value for value in pair)
+    return {"label": objective_named(one, rows), "unit": unit.name, **compared(before, after)}
 
 
 def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
     """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
     main = True
     if name == "mass":
-        label, factor, unit = "mass of the links", 1e3, "g"
+        label, unit = "mass of the links", display("mass", [before, after])
     else:
         output, _, measure = name.rpartition(".")
         one, _ = declared(output) or (None, "")
         whole = one is not None and one.part not in ("x", "y") and one.group in ("forces", "rows")
         main = whole and measure in MAIN
         label = figure_named(name, len(found.machine.rows))
-        factor, unit = scaled(figure_unit(found, name))
-    values = compared(factor * before, factor * after)
-    return {"label": label, "unit": unit, "main": main, **values}
+        unit = shown_in(figure_unit(found, name), [before, after])
+    values = compared(unit.factor * before, unit.factor * after)
+    return {"label": label, "unit": unit.name, "main": main, **values}
