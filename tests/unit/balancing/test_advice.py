@@ -148,7 +148,8 @@ def test_a_proof_names_what_it_is_a_proof_of() -> None:
     told = proof_told(advise(eq.load("exudyn-slider-crank").with_balance(None)))
     assert told.startswith(
         "Proof, by cone program: with a sector of 30.00 mm steel plate from 20.00 mm to "
-        "100.0 mm on crank about A, no choice makes the sum, each over its value before, of reading at x and "
+        "100.0 mm on crank about A, no choice makes the sum, each over its value before, of "
+        "reading at x and "
         "y, RMS about the mean at 300 rpm smaller than here by more than "
     )
 
