@@ -153,7 +153,7 @@ def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
         return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
-        return context.wrong(place, given, "give a table")
+        return context.wrong(place, given, "give a table" + ", or a list of names" * kind.listed)
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
 
