@@ -35,7 +35,7 @@ def random_machine(kind: str, seed: int) -> eq.Machine:
     machine = supported(load_free(make(kind, seed).machine), seed, rows=ROWS[seed % 3])
     rng = np.random.default_rng([seed, 5])
     (first,) = list(machine.support.gauges.values())[:1] or (Gauge((0.0, 0.0, 0.0)),)  # type: ignore[union-attr]
-    place = tuple(np.array(first.point or (0.0, 0.0, 0.0)) + [*rng.normal(size=2), 0.0])
+    place = tuple(np.array(first.point or (0.0, 0.0, 0.0)) + np.append(rng.normal(size=2), 0.0))
     gauges = {"cab": Gauge(place), "sill": Gauge(place, 0.0)}
     machine = machine.with_support(gauges=gauges).with_drive(acceleration=0.0)
     speed = abs(machine.drive.speed)
