@@ -178,7 +178,7 @@ def place_of(spot: Any, points: Points) -> Any:
 
 def inertia_of(body: Body, points: Points) -> tuple[Any, Any, Any]:
     """Mass (kg), centre (complex, m) and moment of inertia about it (kg m2) of a body."""
-    amount, center, second = _gross(body, points)
+    amount, center, second = gross(body, points)
     parts = [(amount, center, second)]
     for hole in body.holes:
         area, polar = _round(hole.radius, 0.0, 1 / (1.0 if body.width is None else body.width))
@@ -204,7 +204,7 @@ def weighed(bodies: Sequence[Body], points: Points) -> dict[str, Any]:
     return {"mass": mass, "center_of_mass": (center.real, center.imag), "inertia": inertia}
 
 
-def _gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
+def gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
     """Amount, centre and second moment of a body without its holes."""
     if body.shape == "bar":
         first, last = (place_of(end, points) for end in body.between)
@@ -221,7 +221,8 @@ def _gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
 
 def _round(outer: Any, inner: Any, scale: Any = 1.0) -> tuple[Any, Any]:
     """Area and polar second moment of a ring, times a scale."""
-    return pi * (outer**2 - inner**2) * scale, pi / 2 * (outer**4 - inner**4) * scale
+    area = pi * (outer - inner) * (outer + inner) * scale
+    return area, area * (outer**2 + inner**2) / 2
 
 
 def polygon(corners: Sequence[complex]) -> tuple[float, complex, float]:
@@ -255,14 +256,14 @@ def _section(body: Body) -> tuple[Any, Any]:
     """
     if body.outer_diameter is not None:
         outer, inner = body.outer_diameter, body.inner_diameter
-        return pi / 4 * (outer**2 - inner**2), (outer**2 + inner**2) / 16
+        return pi / 4 * (outer - inner) * (outer + inner), (outer**2 + inner**2) / 16
     width: Any = 0.0 if body.width is None else body.width
     thickness: Any = 0.0 if body.thickness is None else body.thickness
     if body.wall is None:
         return width * thickness, width**2 / 12
-    inside, through = width - 2 * body.wall, thickness - 2 * body.wall
-    area = width * thickness - inside * through
-    return area, (width**3 * thickness - inside**3 * through) / (12 * area)
+    inside = width - 2 * body.wall  # thin walls lose no digits so
+    squares = thickness * (width**2 + width * inside + inside**2) + inside**3
+    return 2 * body.wall * (thickness + inside), squares / (12 * (thickness + inside))
 
 
 def _per_amount(body: Body) -> Any:

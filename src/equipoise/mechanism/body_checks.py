@@ -18,6 +18,7 @@ from equipoise.mechanism.bodies import (
     Outline,
     Points,
     edges_of,
+    gross,
     is_column,
     outlines,
     place_of,
@@ -186,6 +187,9 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
     for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
         if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
             yield f"holes[{j}]", f"cuts into holes[{i}]; set them apart"
+    area = gross(body, points)[0] * (1.0 if body.width is None else body.width)
+    if sum(pi * radius**2 for _, radius in holes) >= area * (1 - ROUNDING):
+        yield "holes", f"leave nothing of the {body.shape}; make them smaller"
 
 
 def _fits(center: complex, radius: float, outline: Outline) -> bool:
