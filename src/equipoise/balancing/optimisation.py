@@ -27,6 +27,7 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
@@ -79,7 +80,8 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
 
 
 SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m."""
+"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
+that is smaller."""
 
 
 def default_plan(machine: Machine) -> Balance:
@@ -115,7 +117,8 @@ def reach_of(machine: Machine, link: str) -> float:
     """Distance of a link's farthest point from its pin, m."""
     points = machine.links[link].points
     center = complex(*points[pin_of(machine, link)])
-    return max(abs(complex(*point) - center) for point in points.values()) or SMALLEST
+    found = max(abs(complex(*point) - center) for point in points.values())
+    return found or min(SMALLEST, float(size_of_bodies(machine)))
 
 
 LARGE = 1e300

@@ -15,10 +15,10 @@ from equipoise.results.machine_blocks import place
 
 Piece = dict[str, Any]
 
-NOTHING = 1e-9
-"""kg: less than this is no piece."""
 SPREAD = 1e-7
 """Over the squared distance: inertia beyond that of one point that is taken for rounding."""
+SIZE_OF_0 = 1e-15
+"""Of the sine of half a turn, which is 0 but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def pieces_of(
     mass, moment, inertia : kg, kg m and kg m2, the last two about the centre of the room.
     center : of the room in the link's axes, m.  Places are in the link's axes too.
     """
-    if mass < NOTHING:
+    if mass <= 0:
         return []
     plate = (weight.thickness or 0.0) * (weight.density or 0.0)
     if weight.shape == "ring":
@@ -89,7 +89,7 @@ def _sectors(
     half = min(mass / (plate * (outer**2 - inner**2)), pi)
     most = 2 / 3 * plate * (outer**3 - inner**3)
     middle = phase(moment) if moment else 0.0
-    if abs(moment) >= most * sin(half) * (1 - SPREAD) - 1e-15:
+    if abs(moment) >= most * (sin(half) * (1 - SPREAD) - SIZE_OF_0):
         return [_sector(weight, mass, half, middle, center)]
     aside = acos(min(1.0, abs(moment) / (2 * most * sin(half / 2))))
     return [_sector(weight, mass / 2, half / 2, middle + s * aside, center) for s in (1, -1)]

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-import sys
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +13,7 @@ from equipoise.cli.outputs import (
     check_new,
     check_result_file,
     write_model,
+    wrote,
 )
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
@@ -23,7 +21,6 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.studies.store import Store
     from equipoise.studies.study import Study
 
     Array = np.ndarray[Any, Any]
@@ -69,7 +66,7 @@ def best(
     found = of_stores.best(opened, most, ways)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(opened, first)
-    title, units = title_of(opened), units_in(opened)
+    title, units = opened.title, units_in(opened)
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
@@ -77,7 +74,7 @@ def best(
     outputs.print(
         title,
         lambda: {"title": title, **found.to_dict()},
-        lambda: found.blocks(outputs=of_stores.outputs_of(opened), units=units),
+        lambda: found.blocks(outputs=opened.wishes, units=units),
     )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
@@ -99,7 +96,6 @@ def export(
     kept
         Only designs that keep every limit.
     """
-    from equipoise.schema.files import printable
     from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
@@ -109,7 +105,7 @@ def export(
         raise UsageError(f"--out: {got}; give the name of a file that ends in .parquet or .csv")
     check_result_file("--out", out, [])
     rows = of_stores.export(opened, out, kept=kept)
-    print(f"wrote {rows} designs to {printable(os.fspath(out))}", file=sys.stderr)
+    wrote(f"{rows} designs to {out}")
 
 
 def search(
@@ -194,11 +190,6 @@ def _columns(
 
     told = [(name, units.get(name) or "", values) for name, values in columns.items()]
     return [("design", "", np.array([*designs])), *told]
-
-
-def title_of(store: Store) -> str:
-    """Title of the study in a store."""
-    return str(json.loads(store.texts["study"])["title"])
 
 
 def _si_units(study: Study) -> dict[str, str]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from equipoise.cli.options import count, file_named, naming
+from equipoise.cli.outputs import wrote
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -101,7 +102,7 @@ def new(
     start = files("equipoise").joinpath("schema", name).read_text(encoding="utf-8")
     path = usual if file is None else file
     write(path, start, replace=False)
-    print(f"wrote {path}; next: {command.format(path)}", file=sys.stderr)
+    wrote(f"{path}; next: {command.format(path)}")
 
 
 def _kind(tool: bool, study: bool) -> Literal["linkage", "tool", "study"]:

@@ -6,12 +6,13 @@ import os
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 from cyclopts import Parameter
 
 from equipoise.cli.options import Out, check_belonging, count
 from equipoise.errors import UsageError
+from equipoise.partial import afterwards
 
 if TYPE_CHECKING:
     import numpy as np
@@ -138,10 +139,23 @@ class Chosen:
 
 def write_text(path: str, text: str) -> None:
     """Write a file, and say so."""
-    from equipoise.schema.files import printable, write
+    from equipoise.schema.files import write
 
     write(path, text)
-    print(f"wrote {printable(path)}", file=sys.stderr)
+    wrote(path)
+
+
+def wrote(what: str) -> None:
+    """Say what was written, once it is in its place."""
+    tell(f"wrote {what}", sys.stderr)
+
+
+def tell(line: str, stream: TextIO | None = None) -> None:
+    """Print a line of which any terminal can print every sign, once everything is written."""
+    from equipoise.schema.files import printable
+
+    shown = "".join(map(printable, line))
+    afterwards(lambda: print(shown, file=stream))
 
 
 def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> None:
@@ -156,7 +170,7 @@ def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> N
 def tell_pictures(number: int, folder: str) -> None:
     """Say how many pictures were written."""
     pictures = "1 picture" if number == 1 else f"{number} pictures"
-    print(f"wrote {pictures} to {folder}", file=sys.stderr)
+    wrote(f"{pictures} to {folder}")
 
 
 def write_model(
@@ -167,7 +181,6 @@ def write_model(
     title : added to its own; origin : sentences in front of its description.
     """
     from equipoise.schema.documents import save
-    from equipoise.schema.files import printable
     from equipoise.schema.models import files_of
 
     start = f"{origin} Started from: " if origin else ""
@@ -175,8 +188,7 @@ def write_model(
     titled = f"{model.title.removesuffix(title)}{title}"
     made: Any = replace(model, title=titled, description=description)
     save(made, path)
-    written = " and ".join(map(printable, files_of(made, path)))
-    print(f"wrote {written}{what_next}", file=sys.stderr)
+    wrote(" and ".join(map(os.fspath, files_of(made, path))) + what_next)
 
 
 # -- where results may go --------------------------------------------------------------------------

@@ -24,7 +24,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, check_folder, tell_pictures, write_pictures
+from equipoise.cli.outputs import Kind, check_folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -104,9 +104,9 @@ def plot(
         for picture in chosen:
             name = f"{picture.name}.{format}"
             write_all(folder, {name: render(picture.draw(), format)})
-            print(f"{os.path.join(folder, name)}  {picture.caption}")
+            tell(f"{os.path.join(folder, name)}  {picture.caption}")
     for part, why in found.failed.items():
-        print(f"{part}: left out, {why}", file=sys.stderr)
+        tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)
 
 
@@ -195,9 +195,9 @@ def landscape(
     pictures = {"landscape": drawn_map(found)}
     write_pictures(pictures, folder, format)
     for name in pictures:
-        print(os.path.join(folder, f"{name}.{format}"))
+        tell(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    print(told_best(found) + "".join(edge))
+    tell(told_best(found) + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shlex
-import sys
 from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -21,7 +20,7 @@ from equipoise.cli.options import (
     naming,
     quantity,
 )
-from equipoise.cli.outputs import check_result_file, sources_of
+from equipoise.cli.outputs import check_result_file, sources_of, wrote
 from equipoise.cli.pictures import default_name
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
@@ -95,7 +94,7 @@ def animate(
         found = analyze(machine, _angles_of(kind, seconds))
         data = _animated(found, kind, force, options)
     write(name, data)
-    print(f"wrote {name}", file=sys.stderr)
+    wrote(name)
 
 
 def _kind(out: str) -> str:
@@ -165,7 +164,6 @@ def report(
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
     from equipoise.present.composition import build, check, write_document
     from equipoise.present.findings import find
-    from equipoise.schema.files import printable
 
     check(paths, language)
 
@@ -174,7 +172,7 @@ def report(
         document = build(found, language, _command(file, language, speed), together=True)
     write_document(document, paths)
     for path in paths:
-        print(f"wrote {printable(path)}", file=sys.stderr)
+        wrote(path)
 
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:

@@ -22,8 +22,9 @@ from equipoise.cli.options import (
     naming,
 )
 from equipoise.cli.outputs import Drawn, Printed
-from equipoise.cli.progress import Watched, rate_told, swept, time_told
+from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Summary, Unit
@@ -138,12 +139,10 @@ def _going_on(store: str) -> Iterator[None]:
 
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
-    from equipoise.cli.designs import title_of
     from equipoise.studies.blocks import Summary
-    from equipoise.studies.selection import best, outputs_of
+    from equipoise.studies.selection import best
 
-    outputs = outputs_of(store)
-    title = title_of(store)
+    outputs, title = store.wishes, store.title
     aimed = any(output.make for output in outputs)
     try:
         found = best(store, TOLD, None if aimed else {store.numbers[0]: None})

@@ -326,7 +326,7 @@ def front(found: Front) -> Chart:
         marks.append(Mark.of(complex(*before), text, "own", 90.0))
     for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
         text = f"{x.quantity(values[k, 0])}, {y.quantity(values[k, 1])}"
-        if (added := found.points[k].added_mass) > 1e-9:
+        if (added := found.points[k].added_mass) > NOTHING * found.original.mass:
             text += "\n" + say("with {mass} more", mass=grams(added))
         marks.append(Mark.of(complex(*values[k]), text, "best", wish, sign=False))
     curve = Curve(values[:, 0], values[:, 1], "", "best")
@@ -340,5 +340,5 @@ def _objective_axis(label: str, unit: str, values: Array) -> Axis:
     """An axis with room on which a displacement is told in mm or mrad, anything else as it is."""
     shown_in = {"m": "mm", "rad": "mrad"}.get(unit, unit)
     low, high = float(np.min(values)), float(np.max(values))
-    room = MARGIN * (high - low if high > low else max(abs(high), 1e-12))
+    room = MARGIN * (high - low if high > low else abs(high) or 1.0)
     return Axis(label, in_unit(shown_in), low=low - room, high=high + room)

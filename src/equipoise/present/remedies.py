@@ -13,7 +13,7 @@ from equipoise.quantities import brief, change, percent
 from equipoise.results.outputs import objective_named, output_named, scaled, unit_of_measure
 
 WORSE, MOST_WORSE = 0.1, 3
-NOTHING = 1e-9
+NOTHING, ROUNDING = 1e-9, 1e-12
 LARGE = 0.5
 """Added mass over that of all links from which it is told."""
 
@@ -97,10 +97,11 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
 
 def _worse(found: Findings, balanced: Balanced) -> list[str]:
     """Peaks of outputs that grow by more than a tenth, the most first, and those from nothing."""
+    least = ROUNDING * max(balanced.before.values(), default=0.0)
     grown = {
         name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
         for name, old in balanced.before.items()
-        if old > 1e-12 and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
+        if old > least and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
     }
     worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
     rows = len(found.machine.rows)

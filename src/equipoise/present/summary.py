@@ -155,7 +155,7 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
     summary = found.analysis.summary
-    if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
+    if size.peak <= 1e-9 * summary["frame_force"].peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
         of_rows = to_say(

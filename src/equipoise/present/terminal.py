@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 import shutil
 import sys
@@ -33,7 +34,7 @@ def print_blocks(
     width: int | None = None,
     units: Units | None = None,
 ) -> None:
-    """Print a title and what stands below it.
+    """Print a title and what stands below it; all of it, or nothing where a block has an error.
 
     title : none if empty; None where it goes on below something else.
     width : signs in a line; those of the terminal if None.
@@ -41,8 +42,12 @@ def print_blocks(
     """
     if width is None:
         width = shutil.get_terminal_size().columns
+    if sys.stdout is None:  # where the shell has closed it
+        return
+    printed = io.StringIO()
     console = Console(
-        file=sys.stdout,
+        file=printed,
+        force_terminal=sys.stdout.isatty() or None,
         width=max(width, LEAST),
         highlight=False,
         markup=False,
@@ -53,6 +58,7 @@ def print_blocks(
     if title:
         printer.words(title, "bold")
     printer.blocks(blocks)
+    sys.stdout.write(printed.getvalue())
 
 
 class _Printer:

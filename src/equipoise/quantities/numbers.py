@@ -70,6 +70,24 @@ def span(values: Iterable[float], scale: float = 0.0, to: str = " to ") -> str:
     return f"{number(low, scale)}{to}{number(high, scale)}"
 
 
+def rate_told(rate: float | None) -> str:
+    """Designs a second."""
+    if not rate:
+        return ""
+    return f"{float(f'{rate:.3g}'):.0f} designs/s" if rate >= 100 else f"{rate:.3g} designs/s"
+
+
+def time_told(seconds: float) -> str:
+    """A time as one says it."""
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 60:
+        return f"{minutes} min {rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min"
+
+
 def typeset(text: str) -> str:
     """A number or unit as print has it: a true minus, ``10⁻⁴`` for ``e-04``, ``m²`` for ``m^2``."""
     digits, power, exponent = text.partition("e")

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.partial import made, replaced
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -87,12 +88,8 @@ def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = Tr
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"
             raise UsageError(f"{shown}: this is {kind}; give the name of a file")
-        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        try:
-            _write_synced(temporary, data, like=target)
-            os.replace(temporary, target)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with replaced(target) as begun:
+            _write_synced(begun, data, like=target)
     except (OSError, ValueError) as error:
         what = f"the file cannot be written ({reason(error)})"
         raise UsageError(f"{shown}: {what}; choose another place or name") from error
@@ -115,7 +112,7 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> Non
     UsageError : they cannot be written.
     """
     try:
-        os.makedirs(folder, exist_ok=True)
+        made(folder)
     except FileExistsError as error:
         shown = printable(folder)
         raise UsageError(f"{shown}: this is a file; give the name of a folder") from error

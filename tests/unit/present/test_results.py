@@ -216,7 +216,7 @@ def test_what_breaks_a_limit_stands_out(monkeypatch: pytest.MonkeyPatch) -> None
     assert [row[1].strong for row in grid(table).rows] == [True, False, True]
 
     def coloured(**options: Any) -> Console:
-        return Console(**options, force_terminal=True, color_system="standard")
+        return Console(**{**options, "force_terminal": True}, color_system="standard")
 
     monkeypatch.setattr(terminal, "Console", coloured)
     text = shown([table])
