@@ -24,7 +24,8 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
-from equipoise.mechanism.bodies import Body, outlined_by_columns
+from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.body_checks import outlined_by_columns
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u

@@ -145,6 +145,7 @@ class Link(Frozen):
         return found
 
     def follow(self) -> None:
+        """Set places and masses anew, of which columns may be some; nothing is checked."""
         if self.length is not None or self.sides:
             self.__dict__["points"] = placed(tuple(self.points), self.length, self.sides)
         if self.bodies:
