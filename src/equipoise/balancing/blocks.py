@@ -18,7 +18,7 @@ from equipoise.results.outputs import MEASURES, objective_named, output_named, u
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
 
 EXACT, SMALL = 1e-12, 1.01e-4
 """Gap below which nothing more is told of it; above which it is told in percent."""
