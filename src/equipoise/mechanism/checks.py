@@ -16,6 +16,7 @@ __all__ = [
     "Named",
     "Vector",
     "bodies_at",
+    "check_kept",
     "form_of",
     "meant",
     "numbered",
@@ -60,6 +61,14 @@ def bodies_at(bodies: Bodies) -> dict[str, list[str]]:
         for point in points:
             found.setdefault(point, []).append(body)
     return found
+
+
+def check_kept(where: str, old: Iterable[str], new: Any) -> None:
+    """Refuse points that leave some of the old ones out, which nobody would notice."""
+    lost = [one for one in old if one not in new] if new and isinstance(new, Mapping) else ()
+    if lost:
+        all_of_them = "give all points, or move one by with_point"
+        raise ModelError(where, f"{', '.join(lost)} would be lost; {all_of_them}")
 
 
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:
