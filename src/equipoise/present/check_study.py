@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.codegen.backends import engine
+from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import lacking
 from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
-from equipoise.studies.estimate import estimate
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Outcome
+from equipoise.studies.outcomes import Outcome, estimated
+from equipoise.studies.run import Route
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
@@ -52,7 +53,9 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
 
 def _time(study: Study) -> str:
     """How long all designs take, and what that was taken from."""
-    found = estimate(study)
+    route = Route.of(study)
+    compute = partial(route.task.function, route.task.study)
+    found = estimated(compute, study.size, route.chunk, processors())
     total = f"about {time_told(found.seconds)}" if found.seconds >= 1 else "less than 1 s"
     here = "one processor" if found.workers == 1 else f"{found.workers} processors"
     one = "1 design" if found.designs == 1 else f"{found.designs} designs"

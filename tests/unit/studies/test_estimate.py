@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import pytest
 
-from equipoise.studies import estimate as module
-from equipoise.studies.estimate import Estimate, estimate
-from equipoise.studies.executors import Task
-from equipoise.studies.run import Route
-from unit.studies.samples import study
+from equipoise.studies import outcomes
+from equipoise.studies.outcomes import Estimate, estimated
 
 
 @pytest.mark.parametrize(
@@ -34,30 +29,15 @@ def test_from_as_much_of_a_chunk_as_is_quick(
 ) -> None:
     clock, asked = [0.0], list[range]()
 
-    def compute(packed: bytes, designs: range) -> Any:
+    def compute(designs: range) -> None:
         asked.append(designs)
         # the first one takes longer, as what is loaded and compiled does
         clock[0] += len(designs) * each + (100.0 if len(asked) == 1 else 0.0)
 
-    route = Route(Task(compute, b""), False, "general", chunk)
-    monkeypatch.setattr(module.Route, "of", lambda given: route)
-    monkeypatch.setattr(module, "perf_counter", lambda: clock[0])
-    monkeypatch.setattr(module, "processors", lambda: processors)
-    given = study(designs=1000)
-    found = estimate(given)
-    assert found == Estimate(
-        computed,
-        pytest.approx(1 / each),
-        min(processors, -(-1000 // chunk)),
-        pytest.approx(seconds),
-    )
+    monkeypatch.setattr(outcomes, "perf_counter", lambda: clock[0])
+    found = estimated(compute, 1000, chunk, processors)
+    workers = min(processors, -(-1000 // chunk))
+    assert found == Estimate(computed, pytest.approx(1 / each), workers, pytest.approx(seconds))
     assert asked[-1] == range(asked[0].start, asked[0].start + computed)
     assert asked[0].start % chunk == 0
-    assert asked[0].start + computed <= given.size
-
-
-def test_of_a_study_as_it_is() -> None:
-    found = estimate(study(designs=100))
-    assert found.designs > 0
-    assert 0 < found.seconds < 100
-    assert found.seconds == pytest.approx(100 / found.rate / found.workers)
+    assert asked[0].start + computed <= 1000
