@@ -298,7 +298,8 @@ def march_numpy(
         for one in source.slots
     ]
     carried = [np.full(len(table), one.start) for one in source.carried]
-    signals = source.gathered.signals[: len(source.gathered.signals) - len(source.ends)]
+    last = {one.next for one in source.carried}
+    signals = [one for one in source.gathered.signals if one not in last]
     found: dict[int, list[Array]] = {}
     for place, *rows in grid.T:
         values = state(*rows, *own, *carried)
@@ -308,6 +309,6 @@ def march_numpy(
     in_order = [found[k] for k in sorted(found)]
     stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
     values = dict(zip(signals, stacks, strict=True))
-    last = {one.next: value for one, value in zip(source.carried, carried, strict=True)}
+    ends = {one.next: value for one, value in zip(source.carried, carried, strict=True)}
     for k, (signal, kind) in enumerate(source.gathered.columns):
-        out[:, k] = KINDS[kind].of(values[signal]) if signal in values else last[signal]
+        out[:, k] = KINDS[kind].of(values[signal]) if signal in values else ends[signal]

@@ -212,10 +212,11 @@ class Batch:
     def _at(self, table: Array, theta: Array) -> Array:
         """What is gathered (P, R) at crank angles (N,); places are angles, not numbers."""
         found = self._run(table, self._grid(theta))
-        for step in STEPS[1:] if self.march else ():
-            loose = self.march.unsettled(found)
-            if loose.size:
-                found[loose] = self._run(table[loose], self.march.grid(theta, step))
+        if self.march:
+            for step in STEPS[1:]:
+                loose = self.march.unsettled(found)
+                if loose.size:
+                    found[loose] = self._run(table[loose], self.march.grid(theta, step))
         for k, (_, kind) in enumerate(self.gathered.columns):
             if kind.endswith("_at"):
                 found[:, k] = theta[found[:, k].astype(int)]

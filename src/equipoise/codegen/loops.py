@@ -8,7 +8,7 @@ watched; linear equations are solved by minors, of which most factors are nothin
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass, replace
 from functools import reduce
 from operator import attrgetter, itemgetter
@@ -68,7 +68,7 @@ class _Group:
     def slotted(self, value: Any, name: str, read: Read) -> Any:
         """The same with terms for its numbers."""
 
-        def part(key: Any, get: Read) -> Any:
+        def part(key: Any, get: Callable[[Any], Any]) -> Any:
             return self.slotted(get(value), f"{name} {key}", lambda found: get(read(found)))
 
         if isinstance(value, str):
@@ -135,38 +135,31 @@ class _Group:
             found |= zip(u(link), poses[link].turn, strict=True)
         found |= self.on("unknown", *q) | self.on("first", *first)
         found |= self.on("rate", *w) | self.on("curvature", *a)
-        found |= self.on("open", self.apart(q, first)) | self.on("far", self.misplaced(poses))
         self.carried("open", [0.0])
-        return found | self.settled(determinant, ahead, left, minors.whole)
-
-    def settled(
-        self, start: float, ahead: list[Any], left: list[Any], whole: Any
-    ) -> dict[str, Any]:
-        """Whether Newton's method arrives, without a jump, where the determinant has its sign."""
-        (before,) = self.carried("determinant", [start])
-        (loose,), (astray,) = self.carried("loose", [0.0]), self.carried("astray", [0.0])
+        found |= self.on("open", self.apart(q, first))
         last, jump = (reduce(_greatest, map(abs, self.scaled(steps))) for steps in (left, ahead))
+        (astray,) = self.carried("astray", [0.0])
+        off = reduce(_greatest, self.misplaced(poses), last)
+        found |= self.on("astray", _greatest(astray, self.marked * off))
+        return found | self.settled(determinant, last, jump, minors.whole)
+
+    def settled(self, start: float, last: Any, jump: Any, whole: Any) -> dict[str, Any]:
+        """Whether Newton's method arrives, without a jump, where the determinant has its sign."""
+        (before,), (loose,) = self.carried("determinant", [start]), self.carried("loose", [0.0])
         turned = -(whole * before) / (whole * whole + before * before + 1e-300)
         unsound = _greatest(_greatest(last, jump - 10 * JUMP), turned)
-        return (
-            self.on("determinant", before + self.steady * (whole - before))
-            | self.on("loose", _greatest(loose, self.steady * unsound))
-            | self.on("astray", _greatest(astray, self.marked * last))
+        return self.on("determinant", before + self.steady * (whole - before)) | self.on(
+            "loose", _greatest(loose, self.steady * unsound)
         )
 
-    def misplaced(self, poses: Poses) -> Any:
-        """Above 0 where a point is too far from where the file tells it to be."""
-        (far,) = self.carried("far", [0.0])
-        for place in self.places(poses):
-            far = _greatest(far, self.marked * (place - self.size * self.size * FAR**2))
-        return far
-
-    def places(self, poses: Poses) -> Iterator[Any]:
-        """Distance squared of each point from where the file tells it to be."""
+    def misplaced(self, poses: Poses) -> Iterator[Any]:
+        """Of each point: above 0 where it is too far from where the file tells it to be."""
         machine = self.machine
         assert machine.position is not None
         for link, anchor in zip(self.group.links, self.group.anchors, strict=True):
-            for name in machine.links[link].points.keys() & machine.position.points.keys():
+            for name in machine.links[link].points:
+                if name not in machine.position.points:
+                    continue
 
                 def arm(
                     found: Linkage, link: str = link, name: str = name, to: str = anchor
@@ -177,7 +170,8 @@ class _Group:
                 vector = self.slot(f"arm({link}/{name})", arm, vector=True)
                 at = poses[link].place[0] if name == anchor else poses[link].point(vector)[0]
                 way = at - complex(*machine.position.points[name])
-                yield way.real * way.real + way.imag * way.imag
+                far = way.real * way.real + way.imag * way.imag
+                yield far / (self.size * self.size) - FAR**2
 
     def apart(self, q: list[Any], others: list[Any]) -> Any:
         """How far two sets of unknowns are from each other, squared."""

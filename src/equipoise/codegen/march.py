@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from equipoise.codegen.figures import NO_FULL_TURN, NO_MACHINE, NOT_COMPUTED
+from equipoise.codegen.figures import NO_FULL_TURN, NOT_COMPUTED
 from equipoise.codegen.source import Source
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.newton import JUMP, SETTLED
@@ -73,11 +73,10 @@ class March:
     def reasons(self, reason: Array, found: Array) -> None:
         """Fill in why designs (P,) failed of which this much was gathered (P, R).
 
-        Those that did not arrive, or came back elsewhere, may do otherwise from another start, or
-        after further turns.
+        Those that did not arrive, or came back elsewhere, may do otherwise from the position in the
+        file, or after further turns.
         """
         ends = {key: found[:, columns] for key, columns in self.source.ends.items()}
         reason[~np.all(ends["open"] <= JUMP**2, axis=1)] = NOT_COMPUTED
         reason[self.unsettled(found)] = NO_FULL_TURN
         reason[~np.all(ends["astray"] <= SETTLED, axis=1)] = NOT_COMPUTED
-        reason[np.any(ends["far"] > 0, axis=1) & (reason != NOT_COMPUTED)] = NO_MACHINE

@@ -39,9 +39,9 @@ LANES = 32
 MARCH = ("step", "marked", "steady")
 """What `state` is told of a crank angle in a march: how far it is from the one before; 1 where the
 file tells the pose, else 0; 1 from there on, 0 before."""
-WATCHED = ("loose", "astray", "far", "open")
+WATCHED = ("loose", "astray", "open")
 """Values that are carried on, whose last tells of a design whether Newton's method left its branch;
-did not arrive from the base; arrived too far from where the file tells; came back elsewhere."""
+did not arrive from the base, or too far from where the file tells; came back elsewhere."""
 RESERVED |= {*MARCH, "work", "lane", "begin", "place", "empty", "min"}
 
 

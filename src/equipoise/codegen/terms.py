@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
-from numbers import Number
 from typing import Any
+
+import numpy as np
 
 
 class Term:
@@ -66,7 +67,7 @@ class Term:
 
 
 def _is(value: Any, number: float) -> bool:
-    return isinstance(value, Number) and bool(value == number)
+    return isinstance(value, int | float | complex | np.number) and bool(value == number)
 
 
 class Lines:

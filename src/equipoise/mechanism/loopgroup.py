@@ -240,13 +240,11 @@ def _solve_start(
             start = group.follow(start, known, path[backwards])[0][:, -1]
         if not meshes:
             start[group.turning] = np.angle(np.exp(1j * start[group.turning]))
-    offsets = {name: float(loop.gaps(poses, 0)[0]) for name, loop in meshes.items()}
+    meshed = {
+        name: replace(loop, offset=float(loop.gaps(poses, 0)[0])) for name, loop in meshes.items()
+    }
     loops, equations = (
-        tuple(
-            replace(loop, offset=offsets[loop.name]) if loop.name in offsets else loop
-            for loop in some
-        )
-        for some in (loops, group.equations)
+        tuple(meshed.get(loop.name, loop) for loop in some) for some in (loops, group.equations)
     )
     return replace(group, start=start, equations=equations), loops
 

@@ -147,7 +147,7 @@ class LoopGroup:
         self.check(sizes < SETTLED, theta)
         return q
 
-    def check(self, good: Array, theta: Any) -> None:
+    def check(self, good: Any, theta: Any) -> None:
         """Raise an error that names the first crank angle at which something failed."""
         if not np.all(good):
             raise MotionError(self.failure(np.ravel(theta)[int(np.argmin(good))]))
