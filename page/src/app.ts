@@ -4,7 +4,7 @@ import { Charts } from "./charts";
 import { Conversation, type Events, type Memory } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
-import { follow } from "./format";
+import { follow, measure } from "./format";
 import { Frames } from "./frames";
 import { Hands } from "./hands";
 import { Heading } from "./heading";
@@ -12,7 +12,7 @@ import { helpDialog } from "./help";
 import { Inspector } from "./inspector";
 import { Player } from "./player";
 import type { Asked, FileKind, Hello, Planted, State, Wire } from "./protocol";
-import { BalancePanel, PlantedTable, Readings } from "./readings";
+import { BalancePanel, FigureTable, Readings } from "./readings";
 import { Board } from "./board";
 import { pressed } from "./shortcuts";
 import { type Grip, Stage } from "./stage";
@@ -37,7 +37,8 @@ export class App {
   private readonly charts: Charts;
   private readonly inspector: Inspector;
   private readonly readings = new Readings();
-  private readonly planted = new PlantedTable();
+  private readonly planted = new FigureTable("Figures of the planting finger");
+  private readonly strokes = new FigureTable("Figures of sliders and rockers");
   private readonly balance: BalancePanel;
   private readonly toolbar: Toolbar;
   private readonly transport: TransportBar;
@@ -136,7 +137,8 @@ export class App {
   private lay(): void {
     const stage = h("section", { class: "stage", "aria-label": "Linkage and motion" });
     stage.append(this.heading.about, this.board.root);
-    stage.append(this.transport.root, this.heading.notes, this.readings.root, this.planted.root);
+    stage.append(this.transport.root, this.heading.notes, this.readings.root);
+    stage.append(this.strokes.root, this.planted.root);
     this.side.append(this.charts.root);
     this.aside.append(this.balance.root, this.inspector.root);
     this.root.append(
@@ -194,6 +196,7 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    measure(state.length);
     this.player.take(state);
     if (other) {
       this.player.angle = 0;
@@ -204,14 +207,15 @@ export class App {
     } else this.player.angle = angle;
     if (other) this.heading.forget();
     if (other || !state.planting) this.planted.hide();
+    if (other) this.strokes.hide();
     if (!state.before) this.balance.hide();
     this.board.clear(this.held || other);
     this.show(state, other);
   }
 
   private plant(planted: Planted): void {
-    this.planted.show(planted);
-    this.add("planting", planted.notes);
+    (planted.type === "strokes" ? this.strokes : this.planted).show(planted);
+    this.add(planted.type, planted.notes);
   }
 
   /** What comes after a state has notes of its own. */

@@ -112,6 +112,7 @@ export class Conversation {
       case "response":
         return this.events.response(told, new Numbers(told.arrays, buffers[0]));
       case "planting":
+      case "strokes":
         return this.events.planting(told);
       case "refused":
         if (!this.repeating) this.refuse(told.seq, told.message);

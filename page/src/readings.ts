@@ -70,9 +70,11 @@ export class Readings {
   }
 }
 
-/** Figures of a planting finger; they come a little after the machine. */
-export class PlantedTable {
+/** Figures of a planting finger, or of sliders and rockers; they come a little after the machine. */
+export class FigureTable {
   readonly root = h("div", { class: "readings planted", hidden: true });
+
+  constructor(private readonly caption: string) {}
 
   show(planted: Planted): void {
     const rows = planted.figures.map(({ label, unit, text }) =>
@@ -84,7 +86,7 @@ export class PlantedTable {
         h("td", { class: "unit" }, unbroken(unit)),
       ),
     );
-    const caption = h("caption", { class: "unseen" }, "Figures of the planting finger");
+    const caption = h("caption", { class: "unseen" }, this.caption);
     this.root.replaceChildren(h("table", {}, caption, h("tbody", {}, ...rows)));
     this.root.hidden = !rows.length;
   }

@@ -15,6 +15,12 @@ import {
   TOP,
 } from "./uplot_options";
 
+/** Values with null in place of those that are none, where a line breaks off. */
+function gapped(values: Float64Array): uPlot.TypedArray | (number | null)[] {
+  if (!values.some(Number.isNaN)) return values;
+  return Array.from(values, (value) => (Number.isNaN(value) ? null : value));
+}
+
 const NONE = new Float64Array(0);
 
 /** One chart with a heading that tells the values at the cursor. */
@@ -122,7 +128,7 @@ export class Strip {
 
   private data(): uPlot.AlignedData {
     const rows = this.content.curves.flatMap((c) => (c.before ? [c.before, c.values] : [c.values]));
-    return [this.content.x, ...rows];
+    return [this.content.x, ...rows.map(gapped)];
   }
 
   private build(shape: string): void {

@@ -38,6 +38,8 @@ def four_bar(old: str, new: str) -> str:
 
 CRANK = "links.crank"
 VALUES = {
+    "name": ("[links.crank]", '[links."クランク"]\nm = 1', 'links."クランク".m', "no key is"),
+    "case of a key": ('inertia = "', 'Inertia = "', f"{CRANK}.Inertia", "did you mean 'inertia'?"),
     # what is replaced, by what, the place, what is said
     "nan": ('"33.5 mm"', '"nan mm"', f"{CRANK}.points.B[1]", "give a finite number"),
     "nan as a number": ('"33.5 mm"', "nan", f"{CRANK}.points.B[1]", '"33.5 mm"'),
@@ -174,7 +176,23 @@ TEXTS = {
         example_text(FOUR_BAR) + "\n[links.crank]\n",
         "a key or table is given twice",
     ),
-    "no quotes": ("schema = 1\n[drive]\nspeed = 193 rpm", "line 3, column 13: expected newline"),
+    "no quotes": ("schema = 1\n[drive]\nspeed = 193 rpm", 'put text in quotes: speed = "193 rpm"'),
+    "word without quotes": ("[drive]\nlink = crank  # it", 'put text in quotes: link = "crank"'),
+    "curly quotes": ("title = “A drive”", 'put text in quotes: title = "A drive"'),
+    "two numbers": ("schema = 1 2", "line 1, column 12: expected newline"),
+    "space in a name": (
+        "[links.rod 1]",
+        'line 1, column 12: put the name in quotes: [links."rod 1"]',
+    ),
+    "Japanese name": (
+        "\n[links.クランク]",
+        'put the name in quotes: [links."クランク"]; without them',
+    ),
+    "point with a space": ("points.B 1 = []", 'put the name in quotes: points."B 1" ='),
+    "name inside": ('points = { "a b" = 1, é = 2 }', 'put the name in quotes: "é" ='),
+    "half quoted": ('[[a."b c".d e]]', 'put the name in quotes: [[a."b c"."d e"]]'),
+    "text like a key": ('title = "a, b c = 3\n', "line 1, column 20: "),
+    "quoted name": ('[links."クランク"]\nmass = "5"', "schema: missing"),
     "empty": ("", "begin the file with schema = 1"),
     "prose": ("Dear Sir or Madam", "line 1"),
     "JSON": ('{"schema": 1}', "line 1"),

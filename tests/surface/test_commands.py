@@ -54,6 +54,37 @@ def analyzed(*arguments: str | Path) -> dict[str, Any]:
     return read("analyze", *arguments)
 
 
+def test_outputs_and_dwells_are_told_by_name(tmp_path: Path) -> None:
+    """A vector by its components; with --csv alone, with --json beside all else."""
+    table, name = tmp_path / "out.csv", "centers.coupler/frame"
+    found = analyzed("yamashita-1", "--output", name, "--dwell", "0.5 mm")
+    succeeded(equipoise("analyze", "yamashita-1", "--output", name, "--csv", table))
+    assert list(found["outputs"]) == [f"{name}.x", f"{name}.y"]
+    header = table.read_text().splitlines()[0]
+    assert header == f"crank_angle [rad],{name}.x [m],{name}.y [m]"
+    assert list(found["dwells"]) == ["C", "P"]
+    assert found["dwells"]["P"]["tolerance"] == pytest.approx(0.5e-3)
+    text = succeeded(equipoise("analyze", "stephenson-six-bar", "--dwell", "0.5 deg"))
+    assert re.search(r"^output +0.5000 +120.0 at 128.5$", text, re.MULTILINE)
+    assert "Force in each joint" not in text
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (
+            ("--output", "centers.rod/frame"),
+            "--output: no output is called 'centers.rod/frame'; did you mean",
+        ),
+        (("--dwell", "3 kg"), "--dwell: got '3 kg'; give a length of more than 0, such as"),
+        (("--dwell", "-1 mm"), "--dwell: got '-1 mm'; give a length of more than 0, such as"),
+        (("--dwell", "P"), "--dwell: got 'P'; give a length of more than 0, such as"),
+    ],
+)
+def test_outputs_and_dwells_that_cannot_be_told(options: tuple[str, ...], told: str) -> None:
+    assert told in refused(equipoise("analyze", "yamashita-1", *options))
+
+
 # -- in general ------------------------------------------------------------------------------------
 
 
@@ -86,7 +117,8 @@ def test_help_names_every_command(asked: str) -> None:
     assert sorted(listed) == sorted(COMMANDS)
 
 
-DRAWN = ["--json", "--plot", "--format"]
+PRINTED = ["--units", "--json"]
+DRAWN = [*PRINTED, "--plot", "--format"]
 OUTPUTS = [*DRAWN, "--csv"]
 FREED = [
     *["--move-cm", "--crank-counterweight", "--counterweight", "--geared-counterweight"],
@@ -96,21 +128,21 @@ FREED = [
 OPTIONS = {
     "analyze": [
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--split", "--csv"],
-        *["--orders", "--crank-zero", "--json"],
+        *["--orders", "--crank-zero", "--output", "--dwell", *PRINTED],
     ],
     "animate": [
         *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],
         *["--dark"],
     ],
     "balance": ["FILE", "--objective", "--limit", "--speed", "--out", *OUTPUTS, *FREED],
-    "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", "--json"],
-    "balance conditions": ["FILE", "--speed", "--json"],
-    "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", "--json"],
+    "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", *PRINTED],
+    "balance conditions": ["FILE", "--speed", *PRINTED],
+    "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", *PRINTED],
     "balance trade-off": [
         *["FILE", "FIRST", "SECOND", "--points", "--limit", "--speed", *OUTPUTS, *FREED],
     ],
     "best": ["STORE", "--by", "--largest", "--count", "--out", "--design", *OUTPUTS],
-    "check": ["FILE"],
+    "check": ["FILE", "--units"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
     "export": ["STORE", "--out", "--kept"],
@@ -120,31 +152,31 @@ OPTIONS = {
     ],
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
-    "plant": ["FILE", "--speed", "--crank-zero", "--angles", "--units", *OUTPUTS],
-    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", "--units", *OUTPUTS],
-    "plot": ["FILE", "--out", "--format", "--only", "--output", "--at", "--speed"],
+    "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],
+    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", *OUTPUTS],
+    "plot": ["FILE", "--out", "--format", "--only", "--output", "--at", "--speed", "--units"],
     "plot map": [
         *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed", "--out"],
-        "--format",
+        *["--format", "--units"],
     ],
-    "report": ["FILE", "--out", "--language", "--pdf", "--speed"],
-    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--units", *OUTPUTS],
-    "resume": ["STORE", "--workers", "--cluster", "--json"],
+    "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
+    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", *OUTPUTS],
+    "resume": ["STORE", "--workers", "--cluster", *PRINTED],
     "schema": ["--tool", "--study"],
     "search": [
         *["STUDY", "--population", "--generations", "--seed", "--out", "--design", *OUTPUTS],
     ],
     "serve": ["FILE", "--port", "--no-browser"],
-    "simulate": ["FILE", "DURATION", "--speed", "--drive", "--units", *OUTPUTS],
-    "sweep": ["STUDY", "--out", "--workers", "--cluster", "--json"],
+    "simulate": ["FILE", "DURATION", "--speed", "--drive", *OUTPUTS],
+    "sweep": ["STUDY", "--out", "--workers", "--cluster", *PRINTED],
     "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
-        *["--duration", "--units", *OUTPUTS],
+        *["--duration", *OUTPUTS],
     ],
-    "tool design": ["FILE", "--out", "--units", *DRAWN],
-    "tool sensitivities": ["FILE", "--speeds", "--units", "--json"],
-    "tool vary": ["FILE", "CHANGE", "--number", "--units", *DRAWN],
+    "tool design": ["FILE", "--out", *DRAWN],
+    "tool sensitivities": ["FILE", "--speeds", *PRINTED],
+    "tool vary": ["FILE", "CHANGE", "--number", *DRAWN],
 }
 
 

@@ -218,7 +218,7 @@ REFUSED = {
     },
     "resume": {
         "x": "x: there is no such store; make it by: equipoise sweep",
-        "study.toml": "study.toml: is no store of Equipoise (",
+        "study.toml": "study.toml: is no store of Equipoise, or one that was damaged (",
     },
     "best lengths.zarr": {
         "--by vertcal": "no output or varied number is called 'vertcal'; ",

@@ -8,13 +8,19 @@ from __future__ import annotations
 import gc
 import io
 import os
+import shutil
 import sys
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from cyclopts import App, CycloptsError, Parameter
 
 from equipoise import __version__
 from equipoise.errors import EquipoiseError, to_paste
+from equipoise.partial import together
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 app = App(
     name="equipoise",
@@ -44,21 +50,28 @@ for _name in sorted(COMMANDS):  # each is imported when it is run
     app.command(f"equipoise.cli.{_module}:{_what or _name}", name=_name)
 
 
+LEAST = 40
+"""Signs in a line below which no help is laid out: in one or two it would never end."""
+
+
 def run(arguments: Sequence[str] | None = None) -> int:
     """Run a command; returns the exit status."""
     given = sys.argv[1:] if arguments is None else arguments
+    narrow = shutil.get_terminal_size().columns < LEAST
+    app.console = _console(LEAST) if narrow else None
     if not given or given[0].startswith("-"):  # the help has a line of each command
         for name in COMMANDS:
             _ = app[name]
     try:
-        app(
-            arguments,
-            exit_on_error=False,
-            print_error=False,
-            result_action="return_value",
-        )
-        if sys.stdout is not None:  # None where the shell has closed it
-            sys.stdout.flush()
+        with together():
+            app(
+                arguments,
+                exit_on_error=False,
+                print_error=False,
+                result_action="return_value",
+            )
+            if sys.stdout is not None:  # None where the shell has closed it
+                sys.stdout.flush()
     except (EquipoiseError, CycloptsError) as error:
         sentence, *lines = to_paste(str(error))
         print(
@@ -76,6 +89,12 @@ def run(arguments: Sequence[str] | None = None) -> int:
         print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
         return 2
     return 0
+
+
+def _console(width: int) -> Console:
+    from rich.console import Console
+
+    return Console(width=width)
 
 
 def _drop_output() -> None:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import json
-import os
-import sys
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -16,6 +13,7 @@ from equipoise.cli.outputs import (
     check_new,
     check_result_file,
     write_model,
+    wrote,
 )
 from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
@@ -23,7 +21,6 @@ from equipoise.errors import UsageError
 if TYPE_CHECKING:
     import numpy as np
 
-    from equipoise.studies.store import Store
     from equipoise.studies.study import Study
 
     Array = np.ndarray[Any, Any]
@@ -55,7 +52,7 @@ def best(
         Most designs that are told.
     """
     from equipoise.figures.studies import best_charts
-    from equipoise.schema.study_units import machine_of, study_of, units_in
+    from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
     from equipoise.studies import selection as of_stores
     from equipoise.studies.blocks import columns_of
     from equipoise.studies.store import open_store
@@ -69,16 +66,18 @@ def best(
     found = of_stores.best(opened, most, ways)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(opened, first)
-    title, units = title_of(opened), units_in(opened)
+    title, owner = opened.title, owner_of(opened)
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
-    outputs.draw(lambda: best_charts(found, title, units))
-    outputs.print(
-        title,
-        lambda: {"title": title, **found.to_dict()},
-        lambda: found.blocks(outputs=of_stores.outputs_of(opened), units=units),
-    )
+    with outputs.showing(owner):
+        units = units_in(opened)
+        outputs.draw(owner, lambda: best_charts(found, title, units))
+        outputs.print(
+            title,
+            lambda: {"title": title, **found.to_dict()},
+            lambda: found.blocks(outputs=opened.wishes, units=units),
+        )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
 
@@ -99,7 +98,6 @@ def export(
     kept
         Only designs that keep every limit.
     """
-    from equipoise.schema.files import printable
     from equipoise.studies import selection as of_stores
     from equipoise.studies.store import open_store
 
@@ -109,7 +107,7 @@ def export(
         raise UsageError(f"--out: {got}; give the name of a file that ends in .parquet or .csv")
     check_result_file("--out", out, [])
     rows = of_stores.export(opened, out, kept=kept)
-    print(f"wrote {rows} designs to {printable(os.fspath(out))}", file=sys.stderr)
+    wrote(f"{rows} designs to {out}")
 
 
 def search(
@@ -143,9 +141,9 @@ def search(
     outputs.check([study], [chosen.out])
     if chosen.out is not None:
         check_new(asked.model.base(), chosen.out)
-    units = units_of(asked)
     size, turns = population or POPULATION, generations or GENERATIONS
-    with naming(study):
+    with naming(study), outputs.showing(asked):
+        units = units_of(asked)
         with swept(units) as told:
             watched = Watched(asked, told)
             found = search_designs(
@@ -162,8 +160,8 @@ def search(
         designs, made_of = range(len(found.values)), found.study
         columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
         outputs.write(lambda: _columns(designs, columns, _si_units(made_of)))
-        outputs.draw(lambda: searched_charts(found, units, own))
-        outputs.print(made_of.title, found.to_dict, lambda: found.blocks(units=units, own=own))
+        outputs.draw(made_of, lambda: searched_charts(found, units, own))
+        outputs.print(made_of, found.to_dict, lambda: found.blocks(units=units, own=own))
     if chosen.out is not None:
         number = chosen.design or 0
         of = f'a search of the study "{found.study.title}", seed {found.seed}'
@@ -194,11 +192,6 @@ def _columns(
 
     told = [(name, units.get(name) or "", values) for name, values in columns.items()]
     return [("design", "", np.array([*designs])), *told]
-
-
-def title_of(store: Store) -> str:
-    """Title of the study in a store."""
-    return str(json.loads(store.texts["study"])["title"])
 
 
 def _si_units(study: Study) -> dict[str, str]:

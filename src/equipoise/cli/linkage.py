@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,23 +11,25 @@ from equipoise.cli.options import (
     Angle,
     CrankZero,
     File,
+    Many,
     Model,
     Out,
     PlantingFile,
-    ShownIn,
     Speed,
     SupportFile,
     Text,
     blaming,
     check_belonging,
     count,
+    crank_angles,
     ends_of_range,
     linkage_of,
     naming,
-    quantities,
+    place_in,
     quantity,
     read_by,
     size,
+    tolerance,
 )
 from equipoise.cli.outputs import (
     Drawn,
@@ -53,20 +54,11 @@ QUICK = 40
 """Free swings of the support in a turn, up to which the exact model answers in a moment."""
 
 
-def _angles(option: str, text: str) -> int | list[float]:
-    if re.fullmatch("[+-]?[0-9]{1,20}", text):
-        return int(text)
-    try:
-        return quantities(option, text, "angle")
-    except UsageError as error:
-        raise UsageError(f'{error}; give a number, or angles such as "0 deg, 45 deg"') from error
-
-
 def analyze(
     file: File,
     /,
     *,
-    angles: Annotated[Any, read_by(_angles), Parameter(show_default=True)] = 360,
+    angles: Annotated[Any, read_by(crank_angles), Parameter(show_default=True)] = 360,
     speed: Speed = None,
     acceleration: Annotated[float | None, size("angular acceleration")] = None,
     about: Text = None,
@@ -74,6 +66,8 @@ def analyze(
     csv: str | None = None,
     orders: Annotated[int | None, count(1, MOST_ORDERS)] = None,
     crank_zero: Angle = None,
+    output: Many = None,
+    dwell: Annotated[Any, read_by(tolerance)] = None,
     outputs: Printed = Printed(),
 ) -> None:
     """Motion, shaking force and moment, drive torque and every joint force over a turn.
@@ -94,6 +88,10 @@ def analyze(
         Print the harmonics of forces, moment and torque up to this order instead.
     crank_zero
         With --orders: direction from which crank angles count, such as "-83 deg"; else the x axis.
+    output
+        Tell this output over crank angle, such as "points.P.vx", instead.  May be repeated.
+    dwell
+        Tell how long sliders and points move by no more than "0.5 mm", or links by "0.5 deg".
     """
     from equipoise.results.analysis import analyze as analyzed
     from equipoise.results.analysis import order_values
@@ -104,28 +102,23 @@ def analyze(
     zero = crank_zero or 0.0
     if csv is not None:
         check_result_file("--csv", csv, sources_of(machine, file))
-    place = None if about is None else _place(machine, about)
+    place = None if about is None else place_in(machine, about)
     with naming(file):
         analysis = analyzed(machine, angles, speed, acceleration, place)
-        by_order = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
+        further = {} if orders is None else {"by_order": order_values(analysis, orders, zero)}
+        held = None if dwell is None else analysis.dwells(*dwell)
+    further |= {} if held is None else {"dwells": {name: vars(one) for name, one in held.items()}}
+    with blaming("--output"):
+        chosen = [one.name for one in analysis.outputs.chosen(output or ())]
     if csv is not None:
         from equipoise.schema.files import to_csv
 
-        write_text(csv, to_csv(analysis))
+        write_text(csv, to_csv(analysis, chosen))
     outputs.print(
-        analysis.title,
-        lambda: analysis.to_dict(split) | by_order,
-        lambda: analysis.blocks(orders=orders, zero=zero),
+        machine,
+        lambda: analysis.to_dict(split, chosen) | further,
+        lambda: analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held),
     )
-
-
-def _place(machine: Machine, text: str) -> str | tuple[float, float]:
-    if "," not in text or text in machine.frame:
-        return text
-    parts = quantities("--about", text, "length")
-    if len(parts) != 2:
-        raise UsageError(f'--about: got {text!r}; give a point, or x and y: "10 mm, 20 mm"')
-    return parts[0], parts[1]
 
 
 # -- on the support --------------------------------------------------------------------------------
@@ -171,7 +164,6 @@ def respond(
     speed: Annotated[Any, read_by(_speeds)] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """How the support of a machine vibrates under its linkages, at one speed or over a range.
@@ -206,11 +198,11 @@ def respond(
             with counted("speed") as told:
                 count = speeds or sweep.SPEEDS
                 over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, told)
-            outputs.give(over_speed, units)
+            outputs.give(over_speed)
         else:
             found = forced.respond(machine, ends[0] if ends else None, model, drive)
             others = None if drive or outputs.json else _others(machine, found)
-            outputs.give(found, units, others=others)
+            outputs.give(found, others=others)
 
 
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
@@ -239,7 +231,6 @@ def simulate(
     *,
     speed: Speed = None,
     drive: bool = False,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """How the support vibrates when the machine starts from rest, by the model exact.
@@ -257,7 +248,7 @@ def simulate(
     outputs.check(sources_of(machine, file))
     with naming(file):
         found = transient.simulate(machine, duration, speed, drive)
-    outputs.give(found, units)
+    outputs.give(found)
 
 
 # -- planting --------------------------------------------------------------------------------------
@@ -271,7 +262,6 @@ def plant(
     speed: Speed = None,
     crank_zero: CrankZero = None,
     angles: Annotated[int | None, count(0, MOST)] = None,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """The path of a planting finger relative to machine and ground, and every figure of it.
@@ -291,7 +281,7 @@ def plant(
         figures = read_off(machine)
         outputs.write(lambda: table(figures, 360 if angles is None else angles))
     outputs.draw_result(figures)
-    outputs.show(figures, units, zero=crank_zero or 0.0)
+    outputs.show(figures, zero=crank_zero or 0.0)
 
 
 @planting.command
@@ -303,7 +293,6 @@ def fit(
     out: Out = None,
     seed: int | None = None,
     speed: Speed = None,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """Look for the geometry that meets targets and limits, and write it as a new model file.
@@ -347,4 +336,4 @@ def fit(
     write_model(fitted.machine, new, ", fitted", origin)
     outputs.write(lambda: table(fitted.after))
     outputs.draw_result(fitted.after)
-    outputs.show(fitted, units)
+    outputs.show(fitted)

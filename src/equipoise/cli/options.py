@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
@@ -24,7 +24,7 @@ from equipoise.errors import (
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
-    from equipoise.present.cells import Units
+    from equipoise.quantities import Units
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 """As in `vibration.response`, which would bring NumPy into every start of the command line."""
@@ -84,10 +84,44 @@ def quantities(option: str, text: str, dimension: str) -> list[float]:
     return [quantity(option, part.strip(), dimension) for part in text.split(",")]
 
 
-def _units(option: str, text: str) -> Units:
-    from equipoise.present.cells import read_units
+def crank_angles(option: str, text: str) -> int | list[float]:
+    """A number of crank angles, or the angles, rad."""
+    if re.fullmatch("[+-]?[0-9]{1,20}", text):
+        return int(text)
+    try:
+        return quantities(option, text, "angle")
+    except UsageError as error:
+        raise UsageError(f'{error}; give a number, or angles such as "0 deg, 45 deg"') from error
 
-    return read_units(text)
+
+def place_in(machine: Machine, text: str) -> str | tuple[float, float]:
+    """A point of the frame, or a place in it, m."""
+    if "," not in text or text in machine.frame:
+        return text
+    parts = quantities("--about", text, "length")
+    if len(parts) != 2:
+        raise UsageError(f'--about: got {text!r}; give a point, or x and y: "10 mm, 20 mm"')
+    return parts[0], parts[1]
+
+
+def tolerance(option: str, text: str) -> tuple[float, str]:
+    """A length (m) or an angle (rad) of more than 0, and which of both it is."""
+    for dimension in ("length", "angle"):
+        with suppress(UsageError):
+            value = quantity(option, text, dimension)
+            if value > 0:
+                return value, dimension
+    raise UsageError(
+        f'{option}: got {text!r}; give a length of more than 0, such as "0.5 mm", for sliders and '
+        'points, or an angle, such as "0.5 deg", for links'
+    )
+
+
+def _units(option: str, text: str) -> Units:
+    from equipoise.mechanism.shown_units import read_units
+
+    with blaming(option):
+        return read_units(text)
 
 
 def time_a_day(option: str, text: str) -> float:
@@ -145,7 +179,8 @@ ShownIn = Annotated[
     Any,
     read_by(_units),
     Parameter(
-        help='Units of the printed tables where they are not to be the usual ones: "um, rad/s".'
+        help="Units of tables and pictures where they are not to be the usual ones or the file's: "
+        '"length=in, force=lbf" or "um, rad/s".'
     ),
 ]
 

@@ -16,6 +16,7 @@ from equipoise.cli.options import (
     Out,
     Rate,
     Speed,
+    blaming,
     count,
     ends_of_range,
     naming,
@@ -23,7 +24,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, check_folder, tell_pictures, write_pictures
+from equipoise.cli.outputs import Kind, Shown, check_folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -70,6 +71,7 @@ def plot(
     output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
     speed: Rate = None,
+    shown: Shown = Shown(),
 ) -> None:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
@@ -98,14 +100,14 @@ def plot(
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
-    with naming(file):
+    with naming(file), shown.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
             name = f"{picture.name}.{format}"
             write_all(folder, {name: render(picture.draw(), format)})
-            print(f"{os.path.join(folder, name)}  {picture.caption}")
+            tell(f"{os.path.join(folder, name)}  {picture.caption}")
     for part, why in found.failed.items():
-        print(f"{part}: left out, {why}", file=sys.stderr)
+        tell(f"{part}: left out, {why}", sys.stderr)
     tell_pictures(len(chosen), folder)
 
 
@@ -120,10 +122,8 @@ def _outputs(found: Any, names: Sequence[str]) -> list[Picture]:
     if isinstance(found, ToolFindings):
         raise UsageError("--output: a tool has no crank angles; leave it out")
     names = list(dict.fromkeys(names))
-    for name in names:
-        if name not in found.analysis.outputs:
-            raise UsageError(f"--output: {unknown(name, found.analysis.outputs.names, 'output')}")
-    caption = ", ".join(found.analysis.outputs[name].label() for name in names)
+    with blaming("--output"):
+        caption = ", ".join(one.label() for one in found.analysis.outputs.chosen(names))
     return [Picture("outputs", "motion", caption, partial(outputs_chart, found.analysis, names))]
 
 
@@ -153,6 +153,7 @@ def landscape(
     speed: Speed = None,
     out: Out = None,
     format: Kind = "svg",
+    shown: Shown = Shown(),
 ) -> None:
     """An output over two numbers of a machine.
 
@@ -193,12 +194,14 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    pictures = {"landscape": drawn_map(found)}
-    write_pictures(pictures, folder, format)
+    with shown.showing(model.base()):
+        pictures = {"landscape": drawn_map(found)}
+        write_pictures(pictures, folder, format)
+        best = told_best(found)
     for name in pictures:
-        print(os.path.join(folder, f"{name}.{format}"))
+        tell(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    print(told_best(found) + "".join(edge))
+    tell(best + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

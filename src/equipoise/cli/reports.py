@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shlex
-import sys
 from math import ceil
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -21,7 +20,7 @@ from equipoise.cli.options import (
     naming,
     quantity,
 )
-from equipoise.cli.outputs import check_result_file, sources_of
+from equipoise.cli.outputs import Shown, check_result_file, sources_of, wrote
 from equipoise.cli.pictures import default_name
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
@@ -95,7 +94,7 @@ def animate(
         found = analyze(machine, _angles_of(kind, seconds))
         data = _animated(found, kind, force, options)
     write(name, data)
-    print(f"wrote {name}", file=sys.stderr)
+    wrote(name)
 
 
 def _kind(out: str) -> str:
@@ -147,6 +146,7 @@ def report(
     language: Language = "en",
     pdf: bool = False,
     speed: Text = None,
+    shown: Shown = Shown(),
 ) -> None:
     """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
 
@@ -165,16 +165,15 @@ def report(
     rate = None if speed is None else quantity("--speed", speed, "angular speed")
     from equipoise.present.composition import build, check, write_document
     from equipoise.present.findings import find
-    from equipoise.schema.files import printable
 
     check(paths, language)
 
     found = find(file, speed=rate)
-    with naming(file):
+    with naming(file), shown.showing():
         document = build(found, language, _command(file, language, speed), together=True)
     write_document(document, paths)
     for path in paths:
-        print(f"wrote {printable(path)}", file=sys.stderr)
+        wrote(path)
 
 
 def _paths(file: str, out: str | None, pdf: bool) -> list[str]:

@@ -22,8 +22,9 @@ from equipoise.cli.options import (
     naming,
 )
 from equipoise.cli.outputs import Drawn, Printed
-from equipoise.cli.progress import Watched, rate_told, swept, time_told
+from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Summary, Unit
@@ -75,7 +76,7 @@ def sweep(
     asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
-    with naming(study):
+    with naming(study), outputs.showing(asked):
         work = partial(run_study, asked, out, **vars(computers))
         _compute(work, out, units_of(asked), outputs)
 
@@ -91,8 +92,10 @@ def resume(
     from equipoise.schema import study_units
     from equipoise.studies.store import open_store
 
-    units = study_units.units_in(open_store(store))
-    _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
+    opened = open_store(store)
+    with outputs.showing(study_units.owner_of(opened)):
+        units = study_units.units_in(opened)
+        _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
 
 
 def _compute(
@@ -138,12 +141,10 @@ def _going_on(store: str) -> Iterator[None]:
 
 def _summary(store: Store, last: Progress) -> Summary:
     """Counts and best designs, as far as the study has a word for what is best."""
-    from equipoise.cli.designs import title_of
     from equipoise.studies.blocks import Summary
-    from equipoise.studies.selection import best, outputs_of
+    from equipoise.studies.selection import best
 
-    outputs = outputs_of(store)
-    title = title_of(store)
+    outputs, title = store.wishes, store.title
     aimed = any(output.make for output in outputs)
     try:
         found = best(store, TOLD, None if aimed else {store.numbers[0]: None})
@@ -195,12 +196,12 @@ def tolerance(
 
     asked = load_study(study)
     given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
-    with naming(study):
+    with naming(study), outputs.showing(asked):
         if designs is not None:
             asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
         units = units_of(asked)
         with blaming_by_place({} if designs is None else given), swept(units) as told:
             watched = Watched(asked, told)
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
-    outputs.draw(lambda: tolerance_charts(found, units))
-    outputs.print(found.study.title, found.to_dict, lambda: found.blocks(units=units))
+    outputs.draw(asked, lambda: tolerance_charts(found, units))
+    outputs.print(asked, found.to_dict, lambda: found.blocks(units=units))

@@ -89,7 +89,7 @@ def sizes_of(machine: Machine, signals: Iterable[str]) -> dict[str, Any]:
         "torque": force * size,
     }
     known = {signal: declared(signal) for signal in signals}
-    return {signal: sizes[one[0].dimension] for signal, one in known.items() if one}
+    return {signal: sizes[str(one[0].dimension)] for signal, one in known.items() if one}
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, MOST_ANGLES, NO_MACHINE, NOT_STILL, Figure
 from equipoise.errors import UsageError
 from equipoise.mechanism.dynamics import forces
-from equipoise.mechanism.family import massive_link, with_columns, wrong
+from equipoise.mechanism.family import can_vary, massive_link, with_columns, wrong
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine, size_of
 from equipoise.mechanism.motion import move
@@ -46,7 +46,7 @@ EXACT = 1e-10
 
 def can_use(machine: Machine, paths: Sequence[str], wanted: Sequence[Figure]) -> bool:
     """Whether designs differ in masses alone and means and mean squares are all that is wanted."""
-    masses = all(massive_link(path) is not None for path in paths)
+    masses = all(massive_link(path) is not None and can_vary(machine, path) for path in paths)
     return masses and all(_can_have(machine, figure) for figure in wanted)
 
 

@@ -261,7 +261,7 @@ def last_order(read: Read) -> int:
 
 
 def order_panel(
-    told: str, dimension: Dimension, read: Read, last: int, most_told: int = MOST_TOLD
+    told: str, dimension: Dimension | None, read: Read, last: int, most_told: int = MOST_TOLD
 ) -> Panel:
     """Bars beside each other for each order up to the last; numbers at them where there is room."""
     largest = max(float(np.max(sizes)) for _, sizes in read.values())

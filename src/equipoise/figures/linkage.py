@@ -11,7 +11,9 @@ from equipoise.errors import UsageError
 from equipoise.figures.points import moving
 from equipoise.figures.style import short
 from equipoise.i18n import say
+from equipoise.mechanism.checks import FRAME
 from equipoise.mechanism.motion import move
+from equipoise.mechanism.poles import instant_center, pairs, pinned
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols.pieces import GROUND, pieces, placed
 from equipoise.symbols.scene import Scene
@@ -132,6 +134,64 @@ def _link_names(scene: Scene, k: int) -> Iterator[Mark]:
 
 def _outline(scene: Scene, names: tuple[str, ...], k: int) -> Array:
     return np.array([scene.places[name][k] for name in names])
+
+
+MOST_CENTRODES = 4
+"""Links whose centrodes are drawn in one picture."""
+BEYOND = 1.0
+"""Over the size of the machine: instant centres that lie further off are not drawn."""
+
+
+def rolling(analysis: Analysis) -> list[str]:
+    """Links with centrodes in a whole cycle: those that turn, but about no pin in the frame."""
+    machine = analysis.machine
+    if not analysis.motion.whole_cycle:
+        return []
+    held = {machine.drive.link, *pinned(machine)}
+    free = [link for link in machine.links if link not in held]
+    turning = {name for name in free if np.ptp(analysis.motion.links[name].angle) > STILL}
+    return [name for name in free if name in turning and f"{name}/{FRAME}" in pairs(machine)]
+
+
+def centrodes(analysis: Analysis, links: Sequence[str] | None = None) -> Chart:
+    """Paths of instant centres of links in the frame and in the link, which roll on each other.
+
+    links : names; where they are not given, some that turn about no pin in the frame.
+    """
+    motion, scene = analysis.motion, Scene.of(analysis.motion)
+    names = rolling(analysis)[:MOST_CENTRODES] if links is None else [*links]
+    k, (low, high) = clear_angle(scene), scene.box
+    middle, reach = (low + high) / 2, BEYOND * abs(high - low)
+    panels = []
+    for name in names:
+        link, base = motion.links[name], motion.points[motion.linkage.anchors[name]].place
+        fixed = instant_center(motion, f"{name}/{FRAME}")
+        fixed = np.where(np.abs(fixed - middle) < reach, fixed, complex(np.nan, np.nan))
+        turn = np.exp(1j * (link.angle[k] - link.angle))
+        moving = base[k] + (fixed - base) * turn
+        moving = np.where(np.abs(moving - middle) < reach, moving, complex(np.nan, np.nan))
+        curves = (
+            Curve.of(np.append(fixed, fixed[:1]), say("fixed centrode"), "several 1"),
+            Curve.of(np.append(moving, moving[:1]), say("moving centrode"), "several 2"),
+        )
+        marks = [*joint_names(scene, k, optional=True)]
+        if np.isfinite(fixed[k]):
+            marks.append(Mark.of(fixed[k], say("instant centre"), "several 1", 60.0))
+        panel = Panel(
+            *plane_axes(scene),
+            curves,
+            tuple(marks),
+            title=short(name),
+            equal=True,
+            zero=False,
+            sign_size=1.0 if len(names) == 1 else SMALLER,
+            **drawn(scene, k),
+        )
+        panels.append(panel)
+    told = {"link": short(analysis.machine.drive.link), "angle": told_angle(scene.crank_angle[k])}
+    what = say("Centrodes of links in the frame; angle of {link}: {angle}", **told)
+    columns = 1 if len(panels) == 1 else 2
+    return Chart("centrodes", analysis.machine.title, what, tuple(panels), columns)
 
 
 def keys_of(scene: Scene) -> Iterator[tuple[str, str]]:

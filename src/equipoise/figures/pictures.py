@@ -12,7 +12,7 @@ from equipoise.results.charts import Chart
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
@@ -56,10 +56,10 @@ def pictures_of(result: Any) -> Pictures:
 def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> Pictures:
     """Every picture of an analysis by name, which also does for a file.
 
-    ``linkage``; ``curves`` and ``hodograph`` where points move; where masses are known ``polar``,
-    ``force``, ``moment``, ``torque``, ``joints`` and ``joint-polars``, with ``joints-2`` and so on
-    where there are many; ``spectrum`` where the crank angles are those of a whole cycle, at least
-    90 in a turn.
+    ``linkage``; ``curves`` and ``hodograph`` where points move; ``centrodes`` where links
+    roll; where masses are known ``polar``, ``force``, ``moment``, ``torque``, ``joints`` and
+    ``joint-polars``, with ``joints-2`` and so on where there are many; ``spectrum`` where the
+    crank angles are those of a whole cycle, at least 90 in a turn.
 
     Of a single crank angle there is the linkage alone.
 
@@ -67,13 +67,15 @@ def analysis_pictures(analysis: Analysis, at: Sequence[float] | None = None) -> 
     """
     from equipoise.figures import forces, points
     from equipoise.figures.analysis import joint_polars, joints
-    from equipoise.figures.linkage import linkage
+    from equipoise.figures.linkage import centrodes, linkage, rolling
 
     found: Pictures = {"linkage": linkage(analysis, at)}
     if len(analysis.crank_angle) < 2:
         return found
     if points.moving(analysis.motion):
         found |= {"curves": points.curves(analysis), "hodograph": points.hodograph(analysis)}
+    if rolling(analysis):
+        found["centrodes"] = centrodes(analysis)
     if analysis.solved is None:
         return found
     for chart in (forces.polar, forces.force, forces.moment, forces.torque):
@@ -110,7 +112,7 @@ def balance_pictures(
     original : the machine before; phases alone do not know it.
     """
     from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
     from equipoise.figures import balancing as view
     from equipoise.figures.changes import changes
 

@@ -193,11 +193,11 @@ def outputs_chart(
     ------
     UsageError : there is no output of a name.
     """
-    ones = [analysis.outputs[one] for one in names]
+    ones = analysis.outputs.chosen(names)
     x = angle_axis(analysis)
     panels = []
     for one in ones:
-        drawn = {ALL: over(analysis, one.values)}
+        drawn = {ALL: over(analysis, one.drawn)}
         panel = compared(x, "", one.dimension, drawn, angles=len(ones) < 4)
         panels.append(replace(panel, title=replace(panel.y, label=one.label()).text))
     told = what or say(", ").join(one.label() for one in ones)

@@ -11,6 +11,8 @@ from equipoise.figures.sheet import Array, Box, Sheet, Signs, Stroke, Words, box
 from equipoise.figures.style import PAPER
 
 FONTS = "DejaVu Sans, Verdana, sans-serif"
+FAR = 1e6
+"""px, beyond which nothing is seen, and whole numbers of a processor may end."""
 BACK = 0.7
 """Opacity of the ground behind texts on a drawing."""
 SHAPES: dict[str, tuple[tuple[float, float], ...]] = {
@@ -88,7 +90,7 @@ def _stroke(stroke: Stroke) -> str:
 
 def _path(line: Array) -> str:
     """Straight lines, each step told from the one before it."""
-    tenths = np.round(10 * line).astype(int)
+    tenths = np.round(10 * np.clip(line, -FAR, FAR)).astype(int)
     steps = np.diff(tenths, axis=0)
     steps = steps[np.any(steps != 0, axis=1)]
     x, y = tenths[0].tolist()

@@ -300,12 +300,23 @@ def outlines(body: Body, points: Points) -> list[Outline]:
     return [(center, body.radius)] + [(center, -r) for r in (body.inner_radius,) if r]
 
 
+MOST_AT_ONCE = 12
+"""Corners of a plate that are told of many designs at once not to lie crosswise."""
+
+
+def is_column(number: Any) -> bool:
+    """Whether it stands for the numbers of many designs."""
+    return bool(getattr(number, "ndim", 0))
+
+
 def outlined_by_columns(body: Body, points: Points) -> bool:
-    """Whether its outline or its holes depend on columns, of which nobody can tell whether they
-    fit.
+    """Whether its holes, or the shape of a plate with many corners, depend on columns, of which
+    nobody tells whether they fit.
     """
-    spots = [place_of(spot, points) for spot in (*body.corners, *(h.at for h in body.holes))]
+    many = len(body.corners) > MOST_AT_ONCE
+    numbers = [place_of(c, points) for c in body.corners if body.holes or many]
     if body.holes:
-        spots += [place_of(spot, points) for spot in (*body.between, body.at) if spot is not None]
-        spots += [body.overhang, body.width, body.radius, body.inner_radius]
-    return any(getattr(spot, "ndim", 0) for spot in spots)
+        own = (*body.between, body.at, *(hole.at for hole in body.holes))
+        numbers += [place_of(spot, points) for spot in own if spot is not None]
+        numbers += [body.overhang, body.width, body.radius, body.inner_radius]
+    return any(map(is_column, numbers))

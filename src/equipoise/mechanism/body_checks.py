@@ -18,12 +18,13 @@ from equipoise.mechanism.bodies import (
     Outline,
     Points,
     edges_of,
+    is_column,
     outlines,
     place_of,
 )
 from equipoise.mechanism.checks import numbered, too_many, unknown
 
-MOST = {"bodies": 100, "corners": 500, "holes": 200}
+MOST = {"bodies": 100, "corners": 200, "holes": 200}
 """Far beyond any link."""
 ROUNDING = 1e-9
 """Over a radius: a hole may come so far over an edge, and a square below zero."""
@@ -115,6 +116,11 @@ def _rules(body: Body, points: Points) -> Iterator[tuple[str, Any, str]]:
 
 def demands(body: Body, points: Points) -> Iterator[Any]:
     """What has to be true of the numbers of a body: flags, or columns of them."""
+    corners = [place_of(corner, points) for corner in body.corners]
+    if any(is_column(corner) for corner in corners):
+        edges = [*edges_of(corners)]
+        yield _has_area(edges)
+        yield from (crosses == 0 for _, crosses in _crossings(edges))
     for name, one in quantities_of(body).items():
         value = getattr(body, name)
         if value is not None:
@@ -130,32 +136,35 @@ def _wrong_outline(body: Body, points: Points) -> Wrong:
     if body.shape == "plate":
         corners = [place_of(corner, points) for corner in body.corners]
         edges = [*edges_of(corners)]
-        size = max(abs(one) for one, _, _ in edges)
-        if crossing := _crossing(edges):
-            yield "corners", crossing
-        elif abs(sum(cross for _, _, cross in edges)) <= ROUNDING * size**2:
+        if crossing := next((pair for pair, crosses in _crossings(edges) if crosses), None):
+            ends = (end for edge in crossing for end in (edge + 1, (edge + 1) % len(edges) + 1))
+            crossed = "the edge from corner {} to {} crosses that from {} to {}".format(*ends)
+            yield "corners", f"{crossed}; give the corners in order around the plate"
+        elif not _has_area(edges):
             yield "corners", "they lie in one line; a plate has an area"
     yield from _wrong_holes(body, points)
 
 
-Edge = tuple[complex, complex, float]
+Edge = tuple[Any, Any, Any]
+"""As of `edges_of`; numbers, or columns of them."""
 
 
-def _crossing(edges: Sequence[Edge]) -> str:
-    """Say which edges of a polygon cross, if some do.
+def _has_area(edges: Sequence[Edge]) -> Any:
+    area = abs(sum(cross for _, _, cross in edges))
+    return area > ROUNDING * sum(abs(one) ** 2 for one, _, _ in edges)
+
+
+def _crossings(edges: Sequence[Edge]) -> Iterator[tuple[tuple[int, int], Any]]:
+    """Whether edges of a polygon cross, by their numbers from 0.
 
     Edges that only touch are let be: so a cut-out can be reached by a cut from the edge.
     """
-    count = len(edges)
     for (i, one), (j, other) in combinations(enumerate(edges), 2):
-        if _parted(one, other) and _parted(other, one):
-            ends = (i + 1, (i + 1) % count + 1, j + 1, (j + 1) % count + 1)
-            crossed = "the edge from corner {} to {} crosses that from {} to {}".format(*ends)
-            return f"{crossed}; give the corners in order around the plate"
-    return ""
+        if 1 < j - i < len(edges) - 1:
+            yield (i, j), _parted(one, other) & _parted(other, one)
 
 
-def _parted(edge: Edge, other: Edge) -> bool:
+def _parted(edge: Edge, other: Edge) -> Any:
     """Whether both ends of another edge lie on different sides of the line of an edge."""
     along = (edge[1] - edge[0]).conjugate()
     one, two = ((along * (end - edge[0])).imag for end in other[:2])
@@ -170,7 +179,10 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
     holes = [(place_of(hole.at, points), hole.radius) for hole in body.holes]
     for number, (center, radius) in enumerate(holes, 1):
         if any(not _fits(center, radius * (1 - ROUNDING), one) for one in outline):
-            yield f"holes[{number}]", f"does not lie within the {body.shape}; move it, or smaller"
+            yield (
+                f"holes[{number}]",
+                f"does not lie within the {body.shape}; move it, or make it smaller",
+            )
     for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
         if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
             yield f"holes[{j}]", f"cuts into holes[{i}]; set them apart"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import pi
 from typing import Any, TypeVar
+from unicodedata import normalize
 
 from equipoise.errors import ModelError
 
@@ -25,12 +26,23 @@ LONGEST_NAME = 200
 
 def unknown(given: str, known: Iterable[str], kind: str) -> str:
     """Say that a name is unknown, and what would be right."""
+    names = list(known)
+    hint = meant(given, names) or f"there are {_listed(names)}"
+    return f"no {kind} is called {given!r}; {hint}"
+
+
+def meant(given: str, names: Sequence[str]) -> str:
+    """Ask whether the nearest of some names is meant; empty where none is near."""
     from difflib import get_close_matches
 
-    names = list(known)
-    near = get_close_matches(given, names, 1)
-    hint = f"did you mean {near[0]!r}?" if near else f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
+    by_form = {form_of(name): name for name in reversed(names)}
+    near = get_close_matches(form_of(given), by_form, 1)
+    return f"did you mean {by_form[near[0]]!r}?" if near else ""
+
+
+def form_of(name: str) -> str:
+    """A name without its case, and with letters of any width as usual ones."""
+    return normalize("NFKC", name).casefold().strip()
 
 
 def _listed(names: list[str]) -> str:

@@ -37,6 +37,7 @@ GROUPS = {
     "points": "points",
     "sliders": "sliders",
     "transmission": "transmission angles",
+    "centers": "instant centres",
     "forces": "frame and drive",
     "joints": "joints",
     "gears": "gears",
@@ -80,10 +81,12 @@ class Declared:
     array : whether it stands among the arrays.  summed : whether it stands in the summary.
     ordered : whether it is told by orders.
     compared : measures that are told before and after balancing.
+    unbounded : whether there are crank angles at which it is infinite, which NaN stands for; it is
+        had by its name alone.
     """
 
     name: str
-    dimension: Dimension
+    dimension: Dimension | None
     label: str
     read: Read | None
     part: Part = ""
@@ -98,11 +101,12 @@ class Declared:
     summed: bool = True
     ordered: bool = False
     compared: tuple[Measure, ...] = ()
+    unbounded: bool = False
 
     @property
     def unit(self) -> str:
-        """SI unit."""
-        return SI[self.dimension]
+        """SI unit; empty of plain numbers."""
+        return "" if self.dimension is None else SI[self.dimension]
 
     @cached_property
     def group(self) -> str:
@@ -215,7 +219,7 @@ DECLARED: dict[str, Declared] = {}
 
 def output(
     name: str,
-    dimension: Dimension,
+    dimension: Dimension | None,
     label: str,
     *,
     parts: tuple[str, str] | None = None,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 
 from equipoise.errors import MobilityError, ModelError
-from equipoise.mechanism.checks import bodies_at
+from equipoise.mechanism.checks import Bodies, bodies_at, form_of
 from equipoise.mechanism.model import FRAME, Gear, Machine, Slider
 
 MOST_SUBSETS = 10_000
@@ -54,7 +54,7 @@ def structure(machine: Machine) -> Structure:
     pins = {point: tuple(names) for point, names in shared.items() if len(names) > 1}
     _check_apart(machine, pins)
     result = Structure(bodies, pins, machine.sliders, machine.gears)
-    _check_mobility(result, machine.drive.link)
+    _check_mobility(result, machine.drive.link, _alike(machine.bodies, pins))
     return result
 
 
@@ -102,7 +102,20 @@ def gear_pins(joints: Structure, gear: Gear) -> tuple[str, str]:
     return pins[0], pins[1]
 
 
-def _check_mobility(joints: Structure, drive: str) -> None:
+def _alike(bodies: Bodies, pins: Iterable[str]) -> str:
+    """Ask after a point that is no pin, but would be one if its name had the case of another."""
+    seen: dict[str, tuple[str, str]] = {}
+    for body, points in bodies.items():
+        for point in points:
+            first, at = seen.setdefault(form_of(point), (point, body))
+            if point != first and body != at and point not in pins:
+                name = min(first, point)
+                pair = f"{first!r} of {at} is no pin with {point!r} of {body}"
+                return f"; {pair}: did you mean {name!r}?"
+    return ""
+
+
+def _check_mobility(joints: Structure, drive: str, alike: str) -> None:
     links = joints.bodies[1:]
     mobility = joints.freedom(links, [FRAME])
     if mobility == 1:
@@ -129,7 +142,7 @@ def _check_mobility(joints: Structure, drive: str) -> None:
         others = [link for link in others if link not in group]
     raise MobilityError(
         f"the linkage has {mobility} free motions ({count}), and one drive can command only one; "
-        f"the drive leaves {_names(others)} undetermined"
+        f"the drive leaves {_names(others)} undetermined{alike}"
     )
 
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from equipoise.errors import ChangePointError, MobilityError, ModelError, RangeError
 from equipoise.mechanism import groups
+from equipoise.mechanism.checks import meant
 from equipoise.mechanism.cycle import CHANGE_POINT, POINTS_PER_TURN, Cycle, close
 from equipoise.mechanism.joints import Structure, drive_pivot, structure, subsets
 from equipoise.mechanism.model import FRAME, Machine
@@ -176,10 +177,10 @@ def ordered(
         raise sides.missing(machine, choices, idle)
     for joint in idle:
         dyads = ", ".join(sorted(builder.sides)) or "no point"
+        hint = meant(joint, [*builder.sides]) or f"the dyads of this linkage meet at {dyads}"
         raise ModelError(
             f"assembly.{joint}",
-            "no dyad has its inner joint there that could be assembled on two sides; the dyads "
-            f"of this linkage meet at {dyads}",
+            f"no dyad has its inner joint there that could be assembled on two sides; {hint}",
         )
     return Linkage(machine, joints, pivot, builder.anchors, tuple(groups))
 

@@ -194,7 +194,7 @@ def placed(
     count, words = (2, "length goes") if sides is None or length is not None else (3, "sides go")
     if len({*names}) != count or len(names) != count:
         several = {2: "two", 3: "three"}[count]
-        raise ModelError("points", f"got {len(names)}; {words} with the names of {several}")
+        raise ModelError("points", f"got {len(names)}; {words} with {several} names, each once")
     first, second, *third = names
     if length is not None:
         return {first: (0.0, 0.0), second: (length, 0.0)}

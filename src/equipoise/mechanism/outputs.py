@@ -7,7 +7,6 @@ all rows.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import Any
 
 from equipoise.i18n import say, to_say
@@ -23,6 +22,7 @@ from equipoise.mechanism.declaring import (
     matches,
     output,
 )
+from equipoise.mechanism.poles import advantage, guided, instant_center, pairs, pinned
 from equipoise.quantities import Dimension
 
 __all__ = ["DECLARED", "GROUPS", "Declared", "Found", "declared", "declaring", "matches", "output"]
@@ -68,6 +68,12 @@ def joint_named(name: str) -> str:
     return say("{link} on {on}", link=link, on=body_named(on)) if on else name
 
 
+def pair_named(name: str) -> str:
+    """A pair of bodies, such as ``coupler/frame``, in words."""
+    one, _, other = name.rpartition("/")
+    return f"{one}/{body_named(other)}"
+
+
 def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[..., None]:
     """A way to declare outputs whose names begin alike, and that are read alike.
 
@@ -75,14 +81,16 @@ def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[...,
         `output`.
     parts : of a vector; those that begin with a dot go on after its name, others stand in its
         place.  loop : True where compiled loops know it by its name.
+    of : makes values of what is read.
     """
 
     def declare(
         name: str,
-        dimension: Dimension,
+        dimension: Dimension | None,
         label: str,
         parts: tuple[str, ...] = (),
         had: str = "",
+        of: Callable[[Any], Any] = lambda values: values,
         **more: Any,
     ) -> None:
         more = {**shared, **more}
@@ -92,7 +100,7 @@ def _alike(where: str, read: Callable[..., Any], **shared: Any) -> Callable[...,
         if more.get("loop") is True:
             known = name.replace("_", " ") + (":name" if "{}" in where else "")
             more["loop"] = f"{{{known}}}"
-        output(where + name, dimension, label, **more)(partial(read, had or name))
+        output(where + name, dimension, label, **more)(lambda *found: of(read(had or name, *found)))
 
     return declare
 
@@ -110,6 +118,17 @@ of_link = _alike(
 of_link("angle", "angle", to_say("angle of {name}"), loop=None)
 of_link("angular_velocity", "angular speed", to_say("angular velocity of {name}"))
 of_link("angular_acceleration", "angular acceleration", to_say("angular acceleration of {name}"))
+
+UNBOUNDED: dict[str, Any] = {"array": False, "summed": False, "loop": None, "unbounded": True}
+of_link(
+    "advantage",
+    None,
+    to_say("mechanical advantage of {name}"),
+    had="angle_1",
+    members=pinned,
+    of=advantage,
+    **UNBOUNDED,
+)
 
 of_point = _alike(
     "points.{}.",
@@ -146,6 +165,15 @@ of_slider(
     to_say("sliding acceleration of {name}"),
     had="along_acceleration",
 )
+of_slider(
+    "advantage",
+    "force per torque",
+    to_say("mechanical advantage of {name}"),
+    had="travel_1",
+    members=guided,
+    of=advantage,
+    **UNBOUNDED,
+)
 of_dyad = _alike(
     "transmission.{}",
     lambda _, found, joint: found.motion.transmission[joint],
@@ -155,6 +183,16 @@ of_dyad = _alike(
     spoken=joint_named,
 )
 of_dyad("", "angle", to_say("transmission angle at {name}"))
+of_pair = _alike(
+    "centers.{}",
+    lambda _, found, pair: instant_center(found.motion, pair),
+    needs="motion",
+    members=pairs,
+    spoken=pair_named,
+    sized=False,
+    **UNBOUNDED,
+)
+of_pair("", "length", to_say("instant centre of {name}"), (".x", ".y"))
 
 # -- frame and drive -------------------------------------------------------------------------------
 

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.errors import PASTE, EquipoiseError, ModelError
+from equipoise.mechanism.checks import meant
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.steps import Builder, Call, Group, State, initial_state, run
 from equipoise.quantities import number
@@ -201,7 +202,10 @@ def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = (
     else:
         given = [f"{one.joint} {one.wrong.replace('missing', 'is missing')}" for one in choices]
         where, what = "assembly", f"{', '.join(given)}; give each its side in [assembly]"
-    what += "".join(f" ({name!r} is no inner joint of a dyad)" for name in idle)
+    joints = [one.joint for one in choices]
+    for name in idle:
+        hint = "; ".join(filter(None, ("is no inner joint of a dyad", meant(name, joints))))
+        what += f" ({name!r} {hint})"
     table = [] if machine.assembly else ["[assembly]"]
     paste = "\n".join([*table, *(line for one in choices for line in one.lines())])
     return ModelError(where, f"{what}, such as{PASTE}{paste}")

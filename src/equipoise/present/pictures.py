@@ -83,7 +83,7 @@ def _made(chart: Chart) -> Chart:
 
 
 def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
-    from equipoise.figures.linkage import linkage
+    from equipoise.figures.linkage import centrodes, linkage, rolling
     from equipoise.figures.points import curves, hodograph, main_kinematics
 
     analysis = found.analysis
@@ -93,6 +93,9 @@ def _motion(found: Findings, at: Sequence[float] | None) -> Iterator[Entry]:
     yield "curves", caption, partial(curves, analysis)
     caption = to_say("Velocity and acceleration of these points: the ends of their arrows.")
     yield "hodograph", caption, partial(hodograph, analysis)
+    if rolling(analysis):
+        caption = to_say("Centrodes: paths of instant centres in the frame and in the link.")
+        yield "centrodes", caption, partial(centrodes, analysis)
     caption = to_say("Motion over crank angle: position, velocity and acceleration.")
     for chart in main_kinematics(analysis) if len(analysis.crank_angle) > 1 else ():
         yield chart.name, caption, partial(_made, chart)

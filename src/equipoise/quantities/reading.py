@@ -13,6 +13,7 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
 
 # -- grammar ---------------------------------------------------------------------------------------
@@ -99,11 +100,57 @@ def too_far(text: str) -> str:
     return f"got {_quoted(text)}, which no machine can have; give a usual size"
 
 
+DECIMAL_COMMA = re.compile(r"([+-]?[0-9]*),([0-9]*(?:[eE][+-]?[0-9]{1,3})?)")
+"""A number with a comma for its point."""
+_GROUPS = [
+    # a sign that may separate thousands, and one that may then be the decimal sign
+    re.compile(rf"([+-]?[1-9][0-9]{{0,2}}(?:{apart}[0-9]{{3}}){some})(?:{decimal}([0-9]*))?")
+    for apart, some, decimal in (
+        (",", "+", r"\."), (r"\.", "{2,}", ","), (r"\.", "+(?=,)", ","),
+        ("[ '_\N{RIGHT SINGLE QUOTATION MARK}\N{NO-BREAK SPACE}\N{NARROW NO-BREAK SPACE}]", "+",
+         "[.,]"),
+    )
+]  # fmt: skip
+
+
+def readings(number: str) -> tuple[str, str]:
+    """What a number is if its comma is the decimal sign, and if signs in it separate thousands.
+
+    Each is empty where it cannot be read so.
+    """
+    pointed = ".".join(match.groups()) if (match := DECIMAL_COMMA.fullmatch(number)) else ""
+    grouped = next(filter(None, (form.fullmatch(number) for form in _GROUPS)), None)
+    digits = re.sub("[^0-9+-]", "", grouped[1]) if grouped else ""
+    whole = f"{digits}.{grouped[2]}" if grouped and grouped[2] else digits
+    return pointed if re.fullmatch(NUMBER, pointed) else "", whole
+
+
+def separators_told(number: str, unit: str = "") -> str:
+    """Say what a number with commas or separators of thousands may be; empty where it has none.
+
+    unit : written behind each reading, in quotes.
+    """
+    decimal, whole = (f'"{one} {unit}"' if one and unit else one for one in readings(number))
+    if decimal and whole:
+        return f"a comma may be the decimal sign or separate thousands; write {decimal} or {whole}"
+    if whole:
+        return f"leave out what separates thousands: {whole}"
+    return f"the decimal sign is a point, not a comma: {decimal}" if decimal else ""
+
+
+def usual_unit(unit: str, dimension: Dimension) -> str:
+    """A unit as the lists have it where it is another spelling of one, such as a degree sign."""
+    other = _NAMES.get(unit.strip().lower(), unit)
+    return other if other in KINDS[dimension].units else unit
+
+
 def wrong_text(text: str, dimension: Dimension) -> str:
     """Complain of a text outside the grammar of its dimension."""
     kind, got = KINDS[dimension], f"got {_quoted(text)}"
-    if re.fullmatch(pattern(dimension), mended := text.replace(",", ".")):
-        return f'{got}; the decimal sign is a point, not a comma: "{mended}"'
+    parts = re.fullmatch(r"(.*[0-9.,]) *([^\s0-9.,].*)", text)
+    known = parts is not None and plain_unit(parts[2]) in kind.units
+    if parts is not None and known and (told := separators_told(*parts.groups())):
+        return f"{got}; {told}"
     whole = re.fullmatch(rf"({NUMBER})( *)(\S.*)", text)
     if whole is None:
         return f"{got}; {_number_complaint(text, kind)}"
@@ -141,14 +188,21 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         return 'Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"'
     if plain in kind.units:
         return f'write "{number} {plain}"'
-    name, bare = _NAMES.get(unit.strip().lower()), _bare(unit)
-    alike = [known for known in kind.units if bare and _bare(known) == bare]
-    if meant := [name] if name in kind.units else alike:
-        return f'did you mean "{number} {meant[0]}"?'
+    if meant := unit_meant(unit, dimension):
+        return f'did you mean "{number} {meant}"?'
     other = _known(plain)
     if other is not None:
         return f"{plain} is the unit of {other.noun}; {wanted}"
     return f"there is no unit {_quoted(unit)} here; {wanted}"
+
+
+def unit_meant(unit: str, dimension: Dimension) -> str:
+    """The unit of a dimension that another spelling of it means; nothing where none does."""
+    units = KINDS[dimension].units
+    name, bare = _NAMES.get(unit.strip().lower(), ""), _bare(unit)
+    if name in units:
+        return name
+    return next((known for known in units if bare and _bare(known) == bare), "")
 
 
 def _known(unit: str) -> Kind | None:
@@ -210,14 +264,22 @@ def format_exact(value: float, dimension: Dimension) -> str:
     -------
     str
         ``"33.5 mm"`` for 0.0335 m; where no usual unit gives a short number, the SI unit with as
-        many digits as the float needs.
+        many digits as the float needs.  A unit that is chosen goes before the usual ones.
     """
     value = float(value)
     kind = KINDS[dimension]
+    chosen = chosen_unit(dimension)
+    units = [*kind.printed] if chosen is None else [*dict.fromkeys((chosen, *kind.printed))]
     if value == 0:
-        return f"0 {kind.printed[0]}"
-    short = [text for unit in kind.printed if (text := _short(value, unit))]
-    return min(short, key=lambda text: len(text.split()[0]), default=f"{value!r} {kind.si}")
+        return f"0 {units[0]}"
+    short = [text for unit in units if (text := _short(value, unit))]
+    return min(short, key=_clumsiness, default=f"{value!r} {kind.si}")
+
+
+def _clumsiness(text: str) -> tuple[bool, int]:
+    """Powers of ten go last, and then long numbers."""
+    number, _, _ = text.partition(" ")
+    return "e" in number, len(number)
 
 
 def rounded(value: float, unit: str, digits: int) -> str:

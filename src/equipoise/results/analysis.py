@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -13,10 +13,13 @@ from equipoise.errors import MassError, UsageError
 from equipoise.mechanism import kernels
 from equipoise.mechanism.assessment import FourBar, four_bar
 from equipoise.mechanism.checks import Named
+from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import CAUSES, Forces, forces, massless, place_of
 from equipoise.mechanism.model import Machine, Vector
 from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
+from equipoise.mechanism.strokes import Stroke, dwell, strokes
+from equipoise.quantities import Dimension
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array, Figures, Periodic, figures_of_each
@@ -65,6 +68,30 @@ class Analysis(Result):
     def four_bar(self) -> FourBar | None:
         """Names and figures of the four-bar at the crank, where there is one."""
         return four_bar(self.machine)
+
+    @cached_property
+    def strokes(self) -> Mapping[str, Stroke]:
+        """Stroke, dead positions, time ratio and dwell of every slider and rocker, by name.
+
+        They are those of the whole cycle, whatever the crank angles; none where the crank cannot
+        turn fully.
+        """
+        return strokes(self.motion.linkage)
+
+    def dwell(self, name: str, tolerance: float | None = None) -> Dwell:
+        """Longest crank angle over which a slider, link or point moves by no more than a tolerance
+        (m, of a link rad), see `mechanism.strokes.dwell`.
+        """
+        return dwell(self.motion.linkage, name, tolerance)
+
+    def dwells(self, tolerance: float, of: Dimension = "length") -> Mapping[str, Dwell]:
+        """Those of all sliders and points but the drive's, or, within an angle, of all links."""
+        drive = self.machine.drive.link
+        names = [link for link in self.motion.links if link != drive]
+        if of == "length":
+            known = {*self.machine.frame, *self.machine.links[drive].points}
+            names = [*self.motion.sliders, *(n for n in self.motion.points if n not in known)]
+        return {name: self.dwell(name, tolerance) for name in names}
 
     @cached_property
     def outputs(self) -> Outputs:
@@ -133,10 +160,15 @@ class Analysis(Result):
             )
         return Named("output", ((one.name, one.periodic) for one in self.outputs.ordered))
 
-    def to_dict(self, split: bool = False) -> Values:
+    def to_dict(
+        self, split: bool = False, outputs: Iterable[str] = (), strokes: bool = True
+    ) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays (N,).
 
         split : whether to add every force by cause and by link.
+        outputs : names of further outputs that are added; None stands among the values of those
+            that are infinite somewhere.
+        strokes : whether to tell of sliders and rockers, which takes some milliseconds.
         """
         result: Values = {
             **self._heading,
@@ -160,6 +192,10 @@ class Analysis(Result):
             values[last] = one.values
         if found is not None and split:
             result.update(_split(found))
+        if chosen := self.outputs.chosen(outputs):
+            result["outputs"] = {one.name: _or_none(one.values) for one in chosen}
+        if strokes:
+            result["strokes"] = {name: one.told() for name, one in self.strokes.items()}
         summary: Values = {
             name: {**vars(figure), "peak_to_peak": figure.peak_to_peak}
             for name, figure in self.summary.items()
@@ -232,6 +268,16 @@ def _split(found: Forces) -> Values:
                     values = values[step]
                 values[one.path(item)[-1]] = {name: _parts(part) for name, part in parts}
     return result
+
+
+def _or_none(values: Array) -> Array:
+    """Values, with None where they are not finite."""
+    there = np.isfinite(values)
+    if np.all(there):
+        return values
+    found = values.astype(object)
+    found[~there] = None
+    return found
 
 
 def _parts(values: Array) -> Any:

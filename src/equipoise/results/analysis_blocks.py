@@ -2,26 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.i18n import say
+from equipoise.mechanism.dwell import Dwell
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.outputs import body_named, joint_named
 from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.quantities import Dimension, angle
-from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
+from equipoise.mechanism.strokes import SHARE
+from equipoise.quantities import Dimension, angle, percent
+from equipoise.results.blocks import Block, Cell, Column, Facts, Many, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import (
     angles_told,
     driven,
+    four_bar_facts,
+    four_bar_table,
     largest,
-    motion_blocks,
-    place,
+    place_told,
+    points_table,
     smallest,
+    span,
 )
-from equipoise.results.outputs import CAUSES
+from equipoise.results.outputs import CAUSES, tops_of
 from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
@@ -29,6 +34,10 @@ if TYPE_CHECKING:
 
 MOST_ORDERS = 8
 """Orders that are told of."""
+MOST_DEAD = 4
+"""Dead positions that are told beside the outermost two."""
+TOLD_ANGLES = 24
+"""Crank angles in a turn at which an output is told that is chosen by its name."""
 
 
 def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
@@ -41,6 +50,86 @@ def analysis_blocks(analysis: Analysis) -> Iterator[Block]:
         return
     yield from force_blocks(analysis)
     yield joint_table(analysis)
+
+
+# -- motion ----------------------------------------------------------------------------------------
+
+
+def motion_blocks(analysis: Analysis) -> Iterator[Block]:
+    """How links and points move."""
+    if analysis.four_bar is not None:
+        yield four_bar_table(analysis.four_bar)
+        yield Facts("", tuple(four_bar_facts(analysis.four_bar)))
+    if analysis.strokes:
+        yield strokes_table(analysis)
+        yield advantages_table(analysis)
+    rate = abs(analysis.motion.speed)
+    columns = (
+        "",
+        Column(say("angle"), "angle"),
+        Column(say("velocity"), "angular speed"),
+        Column(say("acceleration"), "angular acceleration"),
+    )
+    rows = (
+        (
+            name,
+            span(link.angle),
+            span(link.angular_velocity, rate),
+            span(link.angular_acceleration, rate**2),
+        )
+        for name, link in analysis.motion.links.items()
+    )
+    yield Table.of(say("Links: angle, angular velocity and acceleration"), columns, rows)
+    yield points_table(analysis)
+
+
+def strokes_table(analysis: Analysis) -> Table:
+    """Strokes of sliders and swings of rockers, with their dead positions and time ratios."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        dead = [
+            Value(place.place, one.stroke, place.crank_angle, dimension=one.dimension)
+            for place in one.dead_positions
+        ]
+        ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
+        others = [other for other in dead if other not in ends]
+        rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
+        stroke = Value(one.stroke, dimension=one.dimension)
+        rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))
+    heads = (say("stroke"), say("lowest"), say("highest"), say("time ratio"))
+    columns = ("", *heads, say("further dead positions"))
+    shown = len(columns) if any(row[-1] is not None for row in rows) else -1
+    title = say(
+        "Sliders and rockers: stroke between dead positions (at crank angle), and time of the "
+        "slower stroke over that of the faster"
+    )
+    return Table.of(title, columns[:shown], (row[:shown] for row in rows))
+
+
+def advantages_table(analysis: Analysis) -> Table:
+    """Over which crank angle sliders and rockers rise and dwell, and their least advantage."""
+    rows: list[tuple[Cell, ...]] = []
+    for name, one in analysis.strokes.items():
+        least = None
+        if one.least_advantage is not None:
+            least = Value(one.least_advantage, at=one.least_advantage_at)
+        pushes = (least, None) if one.kind == "slider" else (None, least)
+        held = Value(one.dwell, at=one.dwell_at, after=1)
+        rows.append((joint_named(name), Value(one.rise, after=1), held, *pushes))
+    columns = (
+        "",
+        Column(say("rises over"), "angle", "deg"),
+        Column(say("dwell"), "angle", "deg"),
+        Column(say("force over crank torque"), "force per torque"),
+        say("torque over crank torque"),
+    )
+    there = [k for k in range(5) if k < 3 or any(row[k] is not None for row in rows)]
+    title = say(
+        "Crank angle over which they rise; longest dwell within {share} % of the stroke; least "
+        "mechanical advantage, which has no bound towards dead positions",
+        share=percent(SHARE),
+    )
+    return Table.of(title, [columns[k] for k in there], ([row[k] for k in there] for row in rows))
 
 
 # -- forces ----------------------------------------------------------------------------------------
@@ -61,8 +150,8 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
         rows.append((one.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(
-        "On frame and drive; extremes with their crank angle, moments about ({place}) mm",
-        place=place((about.real, about.imag)),
+        "On frame and drive; extremes with their crank angle, moments about {place}",
+        place=place_told((about.real, about.imag)),
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
@@ -119,10 +208,7 @@ def orders_table(analysis: Analysis) -> Table:
     signals = [analysis.by_order[one.name] for one in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
-    tops: dict[Dimension, float] = {}
-    for one, size in zip(ones, sizes, strict=True):
-        top = float(np.max(size[1:], initial=0.0))
-        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
+    tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
     scales = [1e3 * tops[one.dimension] for one in ones]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
@@ -177,32 +263,84 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     zero : rad, direction from which crank angles count.
     """
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
-    yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
+    tops = tops_of((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
         columns = [say("order"), *(Column(label, kind) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind)]
-        rows = _harmonics(signals[one.name].shifted(zero), orders)
+        rows = _harmonics(signals[one.name].shifted(zero), orders, 10 * tops[kind])
         yield Table.of(one.declared.title(one.item), columns, rows)
 
 
-def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:
-    scale = 10 * float(np.max(signal.sizes))
+def _harmonics(signal: Periodic, orders: int, scale: float) -> Iterator[tuple[Cell, ...]]:
     for k in range(signal.count_to(orders)):
         value = complex(signal.amplitudes[k])
-        size = abs(value)
-        silent = size <= 1e-10 * scale or k == 0
-        phase = None if silent else Value(float(np.angle(1j * value)), after=1)
-        parts = (Value(part, scale) for part in (value.real, -value.imag, size))
+        phase = (
+            None
+            if abs(value) <= 1e-10 * scale or k == 0
+            else Value(float(np.angle(1j * value)), after=1)
+        )
+        parts = (Value(part, scale) for part in (value.real, -value.imag, abs(value)))
         rms = Value(float(signal.rms_by_order[k]), scale)
         yield f"{float(signal.orders[k]):.4g}", *parts, phase, rms
 
 
-def _shown(analysis: Analysis, orders: int | None = None, zero: float = 0.0) -> Iterator[Block]:
-    """What `Analysis` shows; its harmonics up to an order where that is given."""
-    return analysis_blocks(analysis) if orders is None else harmonic_blocks(analysis, orders, zero)
+# -- chosen by name --------------------------------------------------------------------------------
+
+
+def outputs_table(analysis: Analysis, names: Iterable[str]) -> Table:
+    """Outputs over crank angle: at those that were asked for, or some equally spaced ones."""
+    ones = analysis.outputs.chosen(names)
+    theta, motion = analysis.crank_angle, analysis.motion
+    apart = max(len(theta) // (TOLD_ANGLES * motion.turns), 1) if motion.whole_cycle else 1
+    columns = [Column(one.label(), one.dimension) for one in ones]
+    cells = []
+    for one in ones:
+        sizes = np.abs(one.declared.vector(analysis, one.item))
+        scale = float(np.median(sizes[np.isfinite(sizes)])) if np.any(np.isfinite(sizes)) else 0.0
+        cells.append(
+            [
+                Value(value, scale) if np.isfinite(value) else say("infinite")
+                for value in one.values[::apart].tolist()
+            ]
+        )
+    angles = (Value(angle, after=1) for angle in theta[::apart].tolist())
+    rows = zip(angles, *cells, strict=True)
+    heads = (Column(say("crank angle"), "angle", "deg"), *columns)
+    return Table.of(say("Outputs over crank angle"), heads, rows)
+
+
+def dwells_table(dwells: Mapping[str, Dwell], kind: Dimension) -> Table:
+    """How long things hardly move."""
+    rows = (
+        (joint_named(name), Value(one.tolerance), Value(one.angle, after=1, at=one.begin))
+        for name, one in dwells.items()
+    )
+    columns = ("", Column(say("within"), kind), Column(say("dwell"), "angle", "deg"))
+    title = say("Longest crank angle over which each moves by no more, from crank angle")
+    return Table.of(title, columns, rows)
+
+
+def _shown(
+    analysis: Analysis,
+    orders: int | None = None,
+    zero: float = 0.0,
+    outputs: Sequence[str] = (),
+    dwells: Mapping[str, Dwell] | None = None,
+) -> Iterator[Block]:
+    """What `Analysis` shows; or its harmonics up to an order, outputs, or dwells that are given."""
+    if orders is not None:
+        yield from harmonic_blocks(analysis, orders, zero)
+    if outputs:
+        yield outputs_table(analysis, outputs)
+    if dwells is not None:
+        of_links = dwells.keys() <= analysis.motion.links.keys()
+        yield dwells_table(dwells, "angle" if of_links else "length")
+    if orders is None and not outputs and dwells is None:
+        yield from analysis_blocks(analysis)
 
 
 SHOWS = {"Analysis": _shown}

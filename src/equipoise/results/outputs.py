@@ -2,22 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import Field, dataclass
 from functools import cached_property
 from itertools import groupby
 from math import pi
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
-from equipoise.quantities import Dimension
+from equipoise.mechanism.strokes import DeadPosition, Stroke, declared_figures
+from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.mechanism.balance import Objective
+
+FAR = 5.0
+"""Over what three quarters of the values of an output are below: beyond it nothing is drawn."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +48,7 @@ class Output:
         return self.declared.path(self.item)
 
     @property
-    def dimension(self) -> Dimension:
+    def dimension(self) -> Dimension | None:
         """Of its values, which are in SI units."""
         return self.declared.dimension
 
@@ -64,6 +70,14 @@ class Output:
     def values(self) -> Array:
         """(N,) over the crank angles."""
         return self.declared.values(self.analysis, self.item)
+
+    @property
+    def drawn(self) -> Array:
+        """The values (N,) without those that are far beyond the others, where it has no bound."""
+        if not self.declared.unbounded or not np.any(np.isfinite(self.values)):
+            return self.values
+        most = FAR * float(np.nanpercentile(np.abs(self.values), 75))
+        return np.where(np.abs(self.values) <= most, self.values, np.nan)
 
     @cached_property
     def component(self) -> Array:
@@ -116,6 +130,20 @@ class Outputs:
         if name not in self._found:
             raise UsageError(unknown(name, self._found, "output"))
         return self._found[name]
+
+    def chosen(self, names: Iterable[str]) -> list[Output]:
+        """Those of some names, both components of what is a vector without a size.
+
+        Raises
+        ------
+        UsageError : there is no output of a name.
+        """
+        found: dict[str, Output] = {}
+        for name in names:
+            parts = [f"{name}.{axis}" for axis in "xy" if name not in self]
+            every = [part for part in parts if part in self] or [name]
+            found |= {one: self[one] for one in every}
+        return list(found.values())
 
     @property
     def names(self) -> list[str]:
@@ -178,6 +206,21 @@ def _documented(one: Declared) -> str:
     return f"| `{one.named('NAME')}` | {one.unit} | {what} | {one.needs} | {stands} |\n"
 
 
+def documented_strokes() -> str:
+    """The figures of sliders and rockers in the same way."""
+    head = "| figure | unit | what it is |\n|---|---|---|\n"
+    return head + "".join(
+        f"| `{before}{one.name}` | {_unit_of_figure(one)} | {one.metadata['label']} |\n"
+        for before, of in (("", Stroke), ("dead_positions[1].", DeadPosition))
+        for one in declared_figures(of)
+    )
+
+
+def _unit_of_figure(one: Field[Any]) -> str:
+    dimension: Dimension | None = one.metadata["dimension"]
+    return "m or rad" if one.metadata["own"] else SI[dimension] if dimension else ""
+
+
 RPM = 30 / pi
 MEASURES = {
     "rms": to_say("RMS"),
@@ -193,8 +236,8 @@ CAUSES = {
     "load": to_say("loads"),
     "spring": to_say("springs"),
 }
-SCALES = {"m": (1e3, "mm"), "rad": (1e3, "mrad"), "kg": (1e3, "g")}
-"""SI unit -> factor and unit that is shown."""
+DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}
+"""SI unit -> what it is of."""
 
 
 def output_named(name: str, rows: int = 1) -> str:
@@ -229,6 +272,17 @@ def unit_of_measure(output: str, measure: str) -> str:
     return "J" if measure == "area" else unit_of(output)
 
 
-def scaled(unit: str) -> tuple[float, str]:
-    """Factor and shown unit of an SI unit."""
-    return SCALES.get(unit, (1.0, unit))
+def shown_in(unit: str, values: Any = ()) -> Display:
+    """In which unit figures (in an SI unit) are shown; small angles, as of a support, in mrad."""
+    dimension = DIMENSIONS.get(unit)
+    if dimension is None:
+        return Display(unit, 1.0)
+    return display(dimension, values, "mrad" if dimension == "angle" else None)
+
+
+def tops_of(found: Iterable[tuple[Output, Array]]) -> dict[Dimension | None, float]:
+    """The largest amplitude of any output of each dimension, beside which others are rounding."""
+    tops: dict[Dimension | None, float] = {}
+    for one, sizes in found:
+        tops[one.dimension] = max(tops.get(one.dimension, 0.0), float(np.max(sizes, initial=0.0)))
+    return tops

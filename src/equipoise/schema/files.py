@@ -6,16 +6,19 @@ import csv
 import io
 import json
 import os
+import re
 import stat
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from equipoise.errors import UsageError
+from equipoise.partial import made, replaced
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
 
+LONGEST_KEY = 60
 LARGEST = 2_000_000
 """Bytes; no model file or load table comes near it."""
 
@@ -85,12 +88,8 @@ def write(path: str | os.PathLike[str], text: str | bytes, *, replace: bool = Tr
         if target.exists() and not target.is_file():  # the file would take the place of a device
             kind = "a directory" if target.is_dir() else "no regular file"
             raise UsageError(f"{shown}: this is {kind}; give the name of a file")
-        temporary = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        try:
-            _write_synced(temporary, data, like=target)
-            os.replace(temporary, target)
-        finally:
-            temporary.unlink(missing_ok=True)
+        with replaced(target) as begun:
+            _write_synced(begun, data, like=target)
     except (OSError, ValueError) as error:
         what = f"the file cannot be written ({reason(error)})"
         raise UsageError(f"{shown}: {what}; choose another place or name") from error
@@ -113,7 +112,7 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> Non
     UsageError : they cannot be written.
     """
     try:
-        os.makedirs(folder, exist_ok=True)
+        made(folder)
     except FileExistsError as error:
         shown = printable(folder)
         raise UsageError(f"{shown}: this is a file; give the name of a folder") from error
@@ -122,6 +121,17 @@ def write_all(folder: str | os.PathLike[str], files: Mapping[str, bytes]) -> Non
         raise UsageError(f"{printable(folder)}: {what}; choose another place or name") from error
     for name, data in files.items():
         write(Path(folder) / name, data)
+
+
+def quoted(value: object) -> str:
+    """Text, or a list of texts, as it stands in TOML."""
+    return json.dumps(value, ensure_ascii=False)
+
+
+def written_key(name: str) -> str:
+    """Return a key as it stands in TOML, cut where it is endless."""
+    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def printable(path: str | os.PathLike[str]) -> str:
@@ -152,9 +162,13 @@ def _plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} has no place in the output")
 
 
-def to_csv(analysis: Analysis) -> str:
-    """Every array against crank angle, one row a crank angle; units stand in the header."""
-    told = [(one.name, one.unit, one.values) for one in analysis.outputs.arrays]
+def to_csv(analysis: Analysis, outputs: Iterable[str] = ()) -> str:
+    """Every array against crank angle, one row a crank angle; units stand in the header.
+
+    outputs : names of those that are told instead.
+    """
+    ones = analysis.outputs.chosen(outputs) or analysis.outputs.arrays
+    told = [(one.name, one.unit, one.values) for one in ones]
     return csv_text([("crank_angle", "rad", analysis.crank_angle), *told])
 
 

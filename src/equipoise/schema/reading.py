@@ -7,12 +7,10 @@ the inside out, with what lies in files beside; what does not go together is tol
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
-from json import dumps as quoted
 from math import isfinite
 from typing import Any
 
@@ -20,17 +18,11 @@ from equipoise import keys
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.quantities import KINDS, described, parse
+from equipoise.schema.files import quoted, written_key
 from equipoise.schema.numbers import Polar
 
 Place = tuple[str | int, ...]
 """Keys, and numbers in lists from 0."""
-LONGEST_KEY = 60
-
-
-def written_key(name: str) -> str:
-    """Return a key as it stands in TOML, cut where it is endless."""
-    name = name if len(name) <= LONGEST_KEY else f"{name[:57]}..."
-    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else quoted(name)
 
 
 def written_place(place: Iterable[str | int]) -> str:
@@ -161,7 +153,7 @@ def _named(kind: keys.Named, given: Any, place: Place, context: Context) -> Any:
     if kind.listed and isinstance(given, list):
         return _listing(keys.Listing(keys.Text(), right="names in quotes"), given, place, context)
     if not isinstance(given, dict):
-        return context.wrong(place, given, "give a table")
+        return context.wrong(place, given, "give a table" + ", or a list of names" * kind.listed)
     read, item = READERS[type(kind.item)], kind.item
     return {name: read(item, one, (*place, name), context) for name, one in given.items()}
 

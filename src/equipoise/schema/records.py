@@ -21,19 +21,9 @@ from equipoise.exposure.daily import Task
 from equipoise.exposure.spectra import UNEVEN_STEPS, uneven
 from equipoise.exposure.weighting import AXES
 from equipoise.measured.record import Record
+from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import read_text
-from equipoise.schema.tables import (
-    Forms,
-    arrays_of,
-    check_width,
-    header_of,
-    in_table,
-    rows_of,
-    shortened,
-    told_forms,
-    value_of,
-    wrong,
-)
+from equipoise.schema.tables import Forms, arrays_of, header_of, in_table, told_forms, value_of
 
 Array = np.ndarray[Any, Any]
 

@@ -9,8 +9,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import os
 import re
 from collections.abc import Iterator, Sequence
@@ -34,6 +32,8 @@ from equipoise.quantities import (
     parse,
     plain_unit,
 )
+from equipoise.quantities.reading import separators_told, usual_unit
+from equipoise.schema.csv_rows import check_width, rows_of, shortened, wrong
 from equipoise.schema.files import FileError, printable, read_text
 from equipoise.schema.numbers import from_polar
 
@@ -94,20 +94,11 @@ def in_table(path: str | os.PathLike[str]) -> Iterator[None]:
         raise ModelError("", f"{shown}, {error.what}") from error
 
 
-def wrong(line: int, what: str, column: str = "") -> ModelError:
-    """The error of a line, or of one of its columns."""
-    return ModelError("", f"line {line}{column and f', column {column}'}: {what}")
-
-
 def told_forms(forms: Forms) -> str:
     """Say which headers would be right."""
-    headers = [",".join(f"{name} [{_column(name, forms)[1]}]" for name in form) for form in forms]
+    whole = [form for form in forms if not any(set(form) < set(other) for other in forms)]
+    headers = [",".join(f"{name} [{_column(name, forms)[1]}]" for name in form) for form in whole]
     return f"the header is {' or '.join(headers)}"
-
-
-def shortened(cell: str) -> str:
-    """A cell for an error, cut where it is endless."""
-    return repr(cell if len(cell) <= 60 else f"{cell[:57]}...")
 
 
 # -- reading ---------------------------------------------------------------------------------------
@@ -153,10 +144,11 @@ def _whole(text: str, forms: Forms) -> dict[str, Array] | None:
 
     lines = rows_of(text)
     names, unit_of = header_of(*next(lines, (1, [])), forms)
-    if not text.isascii() or "_" in text:  # Python reads such numbers, but they are none here
-        return None
     cells = [row for _, row in lines]
     if not cells or any(len(row) != len(names) for row in cells):
+        return None
+    # Python reads such numbers, but they are none here
+    if any("_" in cell or not cell.isascii() for row in cells for cell in row):
         return None
     try:
         values = np.array([[float(cell) for cell in row] for row in cells])
@@ -170,25 +162,6 @@ def _whole(text: str, forms: Forms) -> dict[str, Array] | None:
     return found if np.all(np.diff(found[forms[0][0]]) > 0) else None
 
 
-def rows_of(text: str) -> Iterator[tuple[int, list[str]]]:
-    """Rows that are not blank, with the number of their line."""
-    reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    try:
-        for row in reader:
-            cells = [cell.strip() for cell in row]
-            if any(cells):
-                yield reader.line_num, cells
-    except csv.Error as error:
-        what = f"this is no table of comma-separated values ({error})"
-        raise wrong(reader.line_num, what) from error
-
-
-def check_width(line: int, row: list[str], columns: int) -> None:
-    """A row has as many values as the header."""
-    if len(row) != columns:
-        raise wrong(line, f"got {len(row)} values; the header has {columns} columns")
-
-
 def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], list[str]]:
     """Names and units of the columns; a wrong one is told with its line."""
     names: list[str] = []
@@ -196,6 +169,8 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
     for cell in cells:
         match = re.fullmatch(r"(\w+)\s*\[([^\]]*)\]", cell)
         name = match[1] if match else cell
+        if name == "time" and forms == FORMS["load"]:
+            raise wrong(line, f"got the column time; {OF_TIME}", name)
         if not any(name in form for form in forms):
             raise wrong(line, f"got the column {shortened(cell)}; {told_forms(forms)}")
         if match is None:
@@ -203,9 +178,10 @@ def header_of(line: int, cells: list[str], forms: Forms) -> tuple[list[str], lis
             raise wrong(line, f"the unit is missing; {name} [{unit}]", name)
         if name in names:
             raise wrong(line, f"given twice; {told_forms(forms)}", name)
-        value_of(line, name, match[2], "0", forms)  # a wrong unit is the header's fault
+        unit = usual_unit(match[2], _column(name, forms)[0])
+        value_of(line, name, unit, "0", forms)  # a wrong unit is the header's fault
         names.append(name)
-        unit_of.append(match[2])
+        unit_of.append(unit)
     if not any(sorted(names) == sorted(form) for form in forms):
         raise wrong(line, f"got {', '.join(names) or 'no column'}; {told_forms(forms)}")
     return names, unit_of
@@ -218,7 +194,8 @@ def value_of(line: int, name: str, unit: str, cell: str, forms: Forms = ()) -> f
     except UsageError as error:
         if _is_number(cell):
             raise wrong(line, str(error), name) from error
-        what = f"got {shortened(cell)}; give a finite number with a decimal point"
+        right = separators_told(cell) or "give a finite number with a decimal point"
+        what = f"got {shortened(cell)}; {right}"
         raise wrong(line, what, name) from error
 
 
@@ -233,12 +210,21 @@ def _is_number(cell: str) -> bool:
 
 Table = LoadTable | SoilTable | MotorTable | Impedance
 FORMS: dict[str, Forms] = {
-    "load": (("crank_angle", "force_x", "force_y"), ("crank_angle", "torque")),
+    "load": (
+        ("crank_angle", "force_x", "force_y"),
+        ("crank_angle", "torque"),
+        ("crank_angle", "force_x"),
+        ("crank_angle", "force_y"),
+    ),
     "soil": (("depth", "resistance"),),
     "motor": (("speed", "torque"),),
     "impedance": (("frequency", "resistance", "reactance"), ("frequency", "magnitude", "phase")),
 }
 """Columns of each sort of table."""
+OF_TIME = (
+    "a load goes with the crank, at whatever speed that turns; give crank_angle [deg] instead, "
+    "of which 100 rpm make 600 in a second"
+)
 HANDY = {"crank_angle": "deg", "speed": "rpm"}
 """Units of columns that are written in them where they are exact, else in SI units."""
 
@@ -266,7 +252,11 @@ def parse_table(sort: str, text: str, file: str = "") -> Table:
         return MotorTable(columns["speed"], columns["torque"], file)
     if sort == "load":
         angles = columns.pop("crank_angle")
-        return LoadTable(angles, tuple(columns[key] for key in COLUMNS if key in columns), file)
+        if "torque" in columns:
+            return LoadTable(angles, (columns["torque"],), file)
+        none = (0.0,) * len(angles)  # of a component that is left out
+        parts = tuple(columns.get(name, none) for name in ("force_x", "force_y"))
+        return LoadTable(angles, parts, file)
     if "magnitude" in columns:
         pairs = zip(columns["magnitude"], columns["phase"], strict=True)
         resistance, reactance = zip(*(from_polar(*pair) for pair in pairs), strict=True)

@@ -42,7 +42,10 @@ def analyzed(machine: Machine, angles: int, wanted: Wanted) -> Values:
 
     analysis = analyze(machine, angles)
     split = analysis.solved is not None and (wanted is None or not SPLIT.isdisjoint(wanted))
-    values = analysis.to_dict(split=split)
+    further: list[str] = []
+    if wanted is None or "outputs" in wanted:  # those that are had by their names alone
+        further = [one.name for one in analysis.outputs if one.declared.unbounded]
+    values = analysis.to_dict(split, further, wanted is None or "strokes" in wanted)
     ordered = analysis.solved is not None and angles >= LEAST_ANGLES
     if ordered and (wanted is None or "by_order" in wanted):
         values["by_order"] = order_values(analysis, MOST_ORDERS, 0.0)

@@ -11,13 +11,14 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite, nan, pi
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import declared
+from equipoise.mechanism.strokes import dimension_of as of_stroke
 from equipoise.planting.names import dimension_of as of_planting
 from equipoise.signals import figures
 
@@ -293,7 +294,7 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
     """
     whole = re.sub(r"\[[^\]]*\]", "", value).replace('"', "")
     if of not in ("plant", "respond", "balance", "tool"):
-        of, whole = "analyze", whole.removeprefix("summary.")
+        of, whole = "analyze", whole.removeprefix("summary.").removeprefix("outputs.")
     path = whole if of in ("plant", "balance") else _STATISTIC.sub("", whole)
     for pattern, dimension in KINDS[of].items():
         if re.fullmatch(pattern, path):
@@ -305,8 +306,8 @@ def dimension_of(model: Machine | Tool, of: str, value: str) -> str | None:
         return of_planting(path)
     if of == "balance" and rest.startswith("planting."):
         return of_planting(rest.removeprefix("planting."))
-    if first in ("by_cause", "by_link"):
-        return _of_part(rest)
+    if first in ("by_cause", "by_link", "strokes"):
+        return of_stroke(cast("Machine", model), rest) if first == "strokes" else _of_part(rest)
     kind, _, name = rest.partition(".")
     found = _of_support(model, kind, name) if of == "balance" and kind == "gauges" else None
     plain = of == "analyze" and first != "by_order"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import pickle
-import shutil
 import warnings
 from collections.abc import Callable, Mapping
 from contextlib import closing
@@ -18,6 +17,7 @@ from typing import TYPE_CHECKING, Any, cast
 from equipoise.codegen.backends import processors
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError, needed
+from equipoise.partial import beside
 from equipoise.quantities import SI
 from equipoise.studies.design_space import Choices
 from equipoise.studies.evaluate import evaluator
@@ -112,6 +112,11 @@ def resume(
     """
     store = open_store(path, write=True)
     study = restore(store.texts)
+    if study.size != store.size:  # of a grid, which only the study itself can count
+        raise UsageError(
+            f"{store.path}: has places for {store.size} designs, and its study has {study.size}; "
+            "it was changed, sweep anew"
+        )
     if not store.missing():
         if progress is not None:
             progress(_counted(store, study).progress())
@@ -252,14 +257,11 @@ def create_store(path: str | os.PathLike[str], study: Study, chunk: int, engine:
             f"equipoise resume {target}"
         )
     # Made beside its place, so that a store is a whole one from the moment it is there.
-    begun = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        with as_usage_error(target, "the store cannot be made", "choose another place or name"):
-            target.parent.mkdir(parents=True, exist_ok=True)
+    with as_usage_error(target, "the store cannot be made", "choose another place or name"):
+        target.parent.mkdir(parents=True, exist_ok=True)
+        with beside(target) as begun:
             _make_arrays(begun, study, chunk, engine)
             os.rename(begun, target)
-    finally:
-        shutil.rmtree(begun, ignore_errors=True)
     return open_store(target, write=True)
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError, needed
 from equipoise.mechanism.checks import unknown
+from equipoise.partial import replaced
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Make, Output
 from equipoise.studies.outcomes import (
@@ -94,16 +95,11 @@ def best(store: Store, count: int = COUNT, by: Mapping[str, Make | None] | None 
     """
     if count < 1:
         raise UsageError(f"got {count} designs; give 1 or more")
-    outputs = outputs_of(store)
+    outputs = store.wishes
     choice = _Choice(store, outputs, _ways(store, outputs, by), count)
     for start, block in store.in_blocks():
         choice.add(start, block)
     return choice.result()
-
-
-def outputs_of(store: Store) -> tuple[Output, ...]:
-    """Outputs of the study in a store, with their limits."""
-    return tuple(Output(**output) for output in json.loads(store.texts["study"])["outputs"])
 
 
 def _ways(
@@ -221,7 +217,7 @@ def export(store: Store, path: str | os.PathLike[str], *, kept: bool = False) ->
     if target.suffix.lower() not in writers:
         raise UsageError(f"{target}: give the name of a file that ends in .csv or .parquet")
     schema = _schema(store)
-    outputs = outputs_of(store)
+    outputs = store.wishes
     rows = 0
     with (
         as_usage_error(target, "the file cannot be written", "choose another place or name"),
@@ -290,12 +286,7 @@ def _csv(file: BinaryIO, schema: Any, store: Store) -> Iterator[Write]:
 def _replaced(path: Path) -> Iterator[BinaryIO]:
     """A file that takes its place once it is whole."""
     target = Path(os.path.realpath(path))  # through a symbolic link, which is to stay one
-    partial = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-    try:
-        with open(partial, "wb") as file:
-            yield file
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, target)
-    finally:
-        partial.unlink(missing_ok=True)
+    with replaced(target) as begun, open(begun, "wb") as file:
+        yield file
+        file.flush()
+        os.fsync(file.fileno())

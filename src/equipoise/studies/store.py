@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import os
 import platform
-import socket
 import sys
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager, suppress
@@ -19,14 +18,17 @@ from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from json import loads
+from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 import equipoise
 from equipoise.errors import UsageError, needed
+from equipoise.partial import clear_left_over, locked
 from equipoise.results.result import Result
+from equipoise.studies.design_space import Make, Output
 from equipoise.studies.outcomes import Block, Outcome
 
 if TYPE_CHECKING:
@@ -51,6 +53,7 @@ class Store(Result):
     size : number of designs.  chunk : of those that are stored together; the last may be fewer.
     numbers : paths of the varied numbers.  outputs : names of the outputs.
     units : of numbers and outputs, by name, where they are known.
+    wishes : outputs of the study, with their limits.
     texts : of the study, from which `equipoise.schema.studies.restore` makes it again.
     engine : what computes the designs.  versions : that it was computed with, by name.
     arrays : of numbers, of outputs, and of reasons, in this order, by name.
@@ -62,10 +65,16 @@ class Store(Result):
     numbers: tuple[str, ...]
     outputs: tuple[str, ...]
     units: Mapping[str, str]
+    wishes: tuple[Output, ...]
     texts: Mapping[str, str]
     engine: str
     versions: Mapping[str, str]
     arrays: Mapping[str, zarr.Array[Any]]
+
+    @property
+    def title(self) -> str:
+        """Of the study."""
+        return str(loads(self.texts["study"])["title"])
 
     @property
     def chunks(self) -> int:
@@ -92,7 +101,7 @@ class Store(Result):
         values = np.empty((len(designs), len(self.numbers)))
         figures = np.empty((len(designs), len(self.outputs)))
         part = slice(designs.start, designs.stop)
-        with as_usage_error(self.path, "cannot be read", DAMAGED):
+        with as_usage_error(self.path, "cannot be read", DAMAGED, (Exception,)):  # of any codec
             for table, names in ((values, self.numbers), (figures, self.outputs)):
                 for column, name in enumerate(names):
                     table[:, column] = self.arrays[name][part]
@@ -197,6 +206,7 @@ def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
     """
     zarr = needed("zarr", "a store")
     folder = Path(path)
+    clear_left_over(folder.parent)
     if not os.path.lexists(folder):
         raise UsageError(f"{folder}: there is no such store; make it by: equipoise sweep")
     try:
@@ -204,103 +214,79 @@ def open_store(path: str | os.PathLike[str], *, write: bool = False) -> Store:
         layout = group.attrs["equipoise_store"]
         if layout == LAYOUT:
             return _opened(folder, group)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+    except Exception as error:  # Zarr and its codecs raise anything where a file is damaged
         raise UsageError(
-            f"{folder}: is no store of Equipoise ({brief(error)}); give the folder that "
-            "equipoise sweep has made"
+            f"{folder}: is no store of Equipoise, or one that was damaged ({brief(error)}); give "
+            "the folder that equipoise sweep has made, or sweep anew"
         ) from error
     raise UsageError(
-        f"{folder}: was made by another version of Equipoise, with layout {layout}, and this one "
-        f"reads layout {LAYOUT}; install the version that made it, or sweep anew"
+        f"{folder}: was made by another version of Equipoise, with layout {layout!r:.40}, and "
+        f"this one reads layout {LAYOUT}; install the version that made it, or sweep anew"
     )
 
 
 def _opened(folder: Path, group: Any) -> Store:
+    """The store of a group whose parts agree; `ValueError` and the like where they do not."""
     about: Mapping[str, Any] = group.attrs
-    numbers, outputs = tuple(about["numbers"]), tuple(about["outputs"])
+    texts, made_with = _texts(about["study"]), _texts(about["versions"])
+    study = loads(texts["study"])
+    wishes = tuple(Output(**one) for one in study["outputs"])
+    numbers, outputs = tuple(one["path"] for one in study["vary"]), tuple(w.name for w in wishes)
     arrays = {name: group[name] for name in (*numbers, *outputs, REASON)}
+    size, chunk = arrays[REASON].shape[0], arrays[REASON].chunks[0]
+    if any((a.shape, a.chunks) != ((size,), (chunk,)) for a in arrays.values()):
+        raise ValueError("its arrays differ in their number of designs or in their chunks")
+    agreed = {"chunk": chunk, "numbers": [*numbers], "outputs": [*outputs], "title": study["title"]}
+    for name, wanted in agreed.items():
+        if about[name] != wanted:
+            raise ValueError(f"{name}: got {about[name]!r:.60}, and its study has {wanted!r:.60}")
+    designs = study["sampling"]["designs"]
+    if designs not in (None, size):
+        raise ValueError(f"it has places for {size} designs, and its study has {designs!r:.60}")
+    for wish in wishes:
+        limits = [one for one in (wish.at_least, wish.at_most) if one is not None]
+        if wish.make not in (None, *get_args(Make)) or not all(map(isfinite, limits)):
+            raise ValueError(f"output {wish.name} has no limits or aims that can be read")
     return Store(
         path=folder,
-        size=arrays[REASON].shape[0],
-        chunk=about["chunk"],
+        size=size,
+        chunk=chunk,
         numbers=numbers,
         outputs=outputs,
-        units={name: a.attrs["units"] for name, a in arrays.items() if "units" in a.attrs},
-        texts=loads(about["study"]),
-        engine=about["engine"],
-        versions=loads(about["versions"]),
+        units={n: str(a.attrs["units"]) for n, a in arrays.items() if "units" in a.attrs},
+        wishes=wishes,
+        texts=texts,
+        engine=str(about["engine"]),
+        versions=made_with,
         arrays=arrays,
     )
 
 
+def _texts(packed: str) -> dict[str, str]:
+    """Texts by name, from JSON."""
+    found = loads(packed)
+    if not all(isinstance(text, str) for text in found.values()):
+        raise ValueError("what is kept of the study or of the versions is no text")
+    return dict(found)
+
+
 @contextmanager
-def as_usage_error(path: Path, what: str, advice: str) -> Iterator[None]:
+def as_usage_error(
+    path: Path, what: str, advice: str, caught: tuple[type[Exception], ...] = (OSError, ValueError)
+) -> Iterator[None]:
     """Make one sentence of what the system says."""
     try:
         yield
-    except (OSError, ValueError) as error:
+    except caught as error:
         raise UsageError(f"{path}: {what} ({brief(error)}); {advice}") from error
+
+
+LONGEST = 200
+"""Signs that are told of what went wrong."""
 
 
 def brief(error: Exception) -> str:
     """Say briefly what went wrong."""
     said = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return said.splitlines()[0].rstrip(".").lower() if said else type(error).__name__
-
-
-LOCK_FILE = ".lock"
-"""Of the file; empty while nobody holds it."""
-
-if sys.platform == "win32":
-    import msvcrt
-
-    BEHIND = 1_000_000
-    """What is locked: a byte behind the text, which others could not read otherwise."""
-
-    def _take(descriptor: int) -> None:
-        os.lseek(descriptor, BEHIND, os.SEEK_SET)
-        msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-else:
-    import fcntl
-
-    def _take(descriptor: int) -> None:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-
-
-@contextmanager
-def locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a store.
-
-    Raises
-    ------
-    UsageError : another process has it; the sentence names it.
-    OSError : the folder cannot be written into, or its disk knows no locks.
-    """
-    # Files opened by Python are not handed down to processes that are started meanwhile.
-    descriptor = os.open(folder / LOCK_FILE, os.O_RDWR | os.O_CREAT, 0o666)
-    try:
-        try:
-            _take(descriptor)
-        except (BlockingIOError, PermissionError) as error:
-            raise UsageError(
-                f"{folder}: {_holder(folder)} is writing into this store; wait until it is done, "
-                "or stop it"
-            ) from error
-        with suppress(OSError):  # of a full disk, which will be told of where it matters
-            os.ftruncate(descriptor, 0)
-            os.lseek(descriptor, 0, os.SEEK_SET)
-            os.write(descriptor, f"process {os.getpid()} on {socket.gethostname()}".encode())
-        try:
-            yield
-        finally:
-            with suppress(OSError):
-                os.ftruncate(descriptor, 0)
-    finally:
-        os.close(descriptor)
-
-
-def _holder(folder: Path) -> str:
-    try:
-        return (folder / LOCK_FILE).read_text("utf-8") or "another process"
-    except (OSError, ValueError):
-        return "another process"
+    line = said.splitlines()[0].rstrip(".") if said else type(error).__name__
+    return line[:1].lower() + line[1:LONGEST]

@@ -9,7 +9,7 @@ import numpy as np
 
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.support import Mount, unit_vector
-from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene
+from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene, hull
 from equipoise.symbols.shapes import (
     PIN,
     Array,
@@ -213,14 +213,22 @@ def _links(scene: Scene) -> Iterator[Piece]:
     slotted = {guide.on for guide in scene.guides}
 
     def order(body: Body) -> tuple[bool, int, int]:
-        corners = scene.corners(body)
+        corners = hull(np.array([*scene.corners(body), *body.extent]))
         area = float(np.sum((np.conj(corners) * np.roll(corners, -1)).imag)) / 2
         length = float(np.max(abs(corners - corners[0])))
         finest = scene.unit / 100  # what is less is rounding
         return body.name not in slotted, -round(area / finest**2), -round(length / finest)
 
     for body in sorted(scene.bodies, key=order):
-        yield Piece("links", tuple(_body(scene, body)), _with(body), body.name)
+        shapes = (*_solids(body), *_body(scene, body))
+        yield Piece("links", shapes, _with(body), body.name)
+
+
+def _solids(body: Body) -> Iterator[Shape]:
+    """What a link is made of, to scale, below its sign."""
+    for corners, radius in body.solids:
+        role = "opening" if radius < 0 else "solid"
+        yield circle(role, corners[0], abs(radius)) if radius else line(role, *corners, closed=True)
 
 
 def _body(scene: Scene, body: Body) -> Iterator[Shape]:
@@ -230,10 +238,11 @@ def _body(scene: Scene, body: Body) -> Iterator[Shape]:
         nearest = min(corners, key=lambda corner: abs(corner - center))
         if len(corners) == 1:  # it reaches to where its mass is
             corners += [center] * (abs(center - nearest) > 6 * scene.unit)
-        elif off_outline(center, corners) > 8 * scene.unit:
+        elif not body.solids and off_outline(center, corners) > 8 * scene.unit:
             yield line("tie", nearest, center)
     if len(corners) > 1:
-        yield from plate(np.array(corners))
+        frame = body.solids and len(corners) > 2  # so that what it is made of is seen
+        yield from plate(np.array(corners), ("rod-edge", "rod") if frame else ("edge", "body"))
     for guide in scene.guides:
         if guide.on == body.name:
             yield from slot(*(scene.local(body, end) for end in _ends(scene, guide)))

@@ -11,8 +11,9 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism import kernels
+from equipoise.mechanism.bodies import Outline, outlines, place_of
 from equipoise.mechanism.joints import gear_pins
-from equipoise.mechanism.model import FRAME, Machine
+from equipoise.mechanism.model import FRAME, Link, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.support import Mount
 from equipoise.mechanism.tip import surface_of
@@ -27,11 +28,22 @@ class Body:
     """A link: its points, and those of them that lie around it.
 
     outline : one name for a point, two for a bar, more for a plate, counterclockwise.
+    solids : edges of what it is made of, to scale, from the back to the front: corners, complex, m,
+        from its first point and in its axes, or the centre and the radius of a circle, which is
+        below 0 of an opening.
     """
 
     name: str
     points: tuple[str, ...]
     outline: tuple[str, ...]
+    solids: tuple[Outline, ...] = ()
+
+    @property
+    def extent(self) -> Array:
+        """Corners of what it is made of, and of boxes around circles, as of `solids`, (n,)."""
+        box = np.array([1 + 1j, 1 - 1j, -1 + 1j, -1 - 1j])
+        around = [corners[0] + size * box if size else corners for corners, size in self.solids]
+        return np.concatenate([np.zeros(0, complex), *map(np.asarray, around)])
 
 
 @dataclass(frozen=True)
@@ -185,6 +197,9 @@ class Scene:
         for wheel in self.wheels:
             reach = wheel.radius * (1 + 1j)
             every += [self.places[wheel.center] + way for way in (reach, -reach)]
+        for body in self.bodies:
+            turned = np.exp(1j * self.angles[body.name])
+            every += [self.places[body.points[0]] + arm * turned for arm in body.extent]
         return _box(np.concatenate(every))
 
     @property
@@ -224,7 +239,12 @@ class Scene:
             for wheel in self.wheels
             for way in (1, -1, 1j, -1j)
         ]
-        return np.array([*(place[k] for place in self.places.values()), *wheels])
+        solids = [
+            self.places[body.points[0]][k] + arm * np.exp(1j * self.angles[body.name][k])
+            for body in self.bodies
+            for arm in body.extent
+        ]
+        return np.array([*(place[k] for place in self.places.values()), *wheels, *solids])
 
     def local(self, body: Body, place: Array) -> complex:
         """Where a place (N,) of a link is from its first point, in the link's own axes, m."""
@@ -271,7 +291,15 @@ def _bodies(machine: Machine) -> Iterator[Body]:
     for name, link in machine.links.items():
         named = {complex(*place): point for point, place in reversed(list(link.points.items()))}
         around = tuple(named[complex(place)] for place in hull(np.array(list(named))))
-        yield Body(name, tuple(link.points), around)
+        yield Body(name, tuple(link.points), around, tuple(_solids(link)))
+
+
+def _solids(link: Link) -> Iterator[Outline]:
+    origin = complex(*next(iter(link.points.values())))
+    for body in link.bodies:
+        holes = [([place_of(hole.at, link.points)], -hole.radius) for hole in body.holes]
+        for corners, radius in (*outlines(body, link.points), *holes):
+            yield [corner - origin for corner in corners], radius
 
 
 def _wheels(motion: Motion) -> Iterator[Wheel]:

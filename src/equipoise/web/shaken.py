@@ -1,4 +1,4 @@
-"""What takes longer to tell of a design: how its support is shaken, and what it plants."""
+"""What takes longer to tell of a design: strokes, what it plants, how its support is shaken."""
 
 from __future__ import annotations
 
@@ -7,12 +7,16 @@ from math import isfinite
 from typing import Any
 
 from equipoise.errors import EquipoiseError
+from equipoise.i18n import say
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.outputs import joint_named
+from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
-from equipoise.quantities import display, in_unit
+from equipoise.quantities import Dimension, display
+from equipoise.results.analysis import Analysis
 from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
 from equipoise.vibration.response import Response
@@ -68,7 +72,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
         block.add(array, curve.peak_to_peak)
         label = f"{_spoken(name)} against speed, peak to peak"
         choices.append(gauge_choice(name, label, curve.rotation, array))
-    rpm = in_unit("rpm")
+    rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
     content["charts"].append(chart("sweep", choices, x=over))
     content["arrays"] = block.told
@@ -102,6 +106,8 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
     outdated : tells when the design is no longer shown, so that the rest is not wanted.
     """
     machine = found.design.machine
+    if found.analysis.strokes and not outdated():
+        yield {"type": "strokes", "figures": [*_strokes(found.analysis)], "notes": []}, b""
     if machine.planting is not None and machine.drive.speed:
         planted = _planted(machine)
         if not outdated():
@@ -122,13 +128,23 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
         yield {"type": "response", **content}, data
 
 
-def _shown(name: str, value: float) -> Values:
+def _shown(value: float, dimension: Dimension | None, unit: str | None = None) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
-    told = cell(value, name)
-    assert told is not None
-    unit = display(told.dimension, [value]) if told.unit is None else in_unit(told.unit)
-    there = unit.factor * value if isfinite(value) else None
-    return {"unit": unit.name, "value": there, "text": text_of(there)}
+    shown = display(dimension, [value], unit)
+    there = shown.factor * value if isfinite(value) else None
+    return {"unit": shown.name, "value": there, "text": text_of(there)}
+
+
+def _strokes(analysis: Analysis) -> Iterator[Values]:
+    """Figures of every slider and rocker, but for the crank angles at which they are."""
+    for name, one in analysis.strokes.items():
+        for kind in declared_figures():
+            value = getattr(one, kind.name)
+            if value is not None and not kind.name.endswith("_at"):
+                path = f"strokes.{name}.{kind.name}"
+                label = f"{joint_named(name)}: {say(kind.metadata['label'])}"
+                shown = _shown(value, dimension_of(analysis.machine, f"{name}.{kind.name}"))
+                yield {"name": path, "label": label, **shown}
 
 
 def _planted(machine: Machine) -> Values:
@@ -138,8 +154,11 @@ def _planted(machine: Machine) -> Values:
     except EquipoiseError as error:
         return {"type": "planting", "figures": [], "notes": [str(error)]}
     figures = [
-        {"name": name, "label": one.words, **_shown(name, float(found.figures[name]))}
+        {"name": name, "label": one.words, **_shown(float(value), told.dimension, told.unit)}
         for name, one in FIGURES.items()
         if name in found.figures
+        for value in [found.figures[name]]
+        for told in [cell(float(value), name)]
+        if told is not None
     ]
     return {"type": "planting", "figures": figures, "notes": list(map(str, found.notes))}

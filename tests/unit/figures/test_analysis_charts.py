@@ -26,7 +26,7 @@ from equipoise.results.charts import Chart, Panel
 from equipoise.signals import Periodic
 from unit.figures.samples import BUNDLED, drawn, long_cycle, one_link, read_off, words
 
-MOTION = ["linkage", "curves", "hodograph"]
+MOTION = ["linkage", "curves", "hodograph", "centrodes"]
 FORCES = ["polar", "force", "moment", "torque"]
 JOINTS = ["joints", "joint-polars"]
 DRY = ["ratio-coupler", "ratio-rocker"]
@@ -143,6 +143,33 @@ def test_what_is_rounding_is_told_to_be_zero() -> None:
     assert np.max(orders[1::2]) < 1e-9 * np.max(orders) > 0
     couples = [one for one in of_joints.joints_of(eq.analyze(rotor(), 360)).values() if one.couple]
     assert all(not np.any(one.values) for one in couples)
+
+
+def test_centrodes_of_gears_are_their_pitch_circles() -> None:
+    """An idler rolls on the sun gear, which stands still; no link that is pinned has centrodes."""
+    idler, planet = charts_of("planetary-planting-arm")["centrodes"].panels
+    assert (idler.title, planet.title) == ("idler", "planet")
+    fixed, moving = places(idler)
+    motion = analysis_of("planetary-planting-arm").motion
+    sun, wheel = motion.points["A"].place[0], motion.points["B"].place[0]
+    np.testing.assert_allclose(np.abs(fixed - sun), 0.03, atol=1e-12)
+    np.testing.assert_allclose(np.abs(moving - wheel), 0.03, atol=1e-12)
+    assert "centrodes" not in charts_of("scotch-yoke")
+
+
+@pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "watt-six-bar"])
+def test_centrodes_roll_on_each_other(name: str) -> None:
+    """Along both the same way is covered, and they touch in the instant centre."""
+    for panel in charts_of(name)["centrodes"].panels:
+        fixed, moving = places(panel)
+        there = np.isfinite(fixed[:-1]) & np.isfinite(fixed[1:])
+        there &= np.isfinite(moving[:-1]) & np.isfinite(moving[1:])
+        ways = (np.abs(np.diff(z))[there] for z in (fixed, moving))
+        np.testing.assert_allclose(*ways, rtol=2e-2, atol=2e-5)
+        if (mark := panel.marks[-1]).text == "instant centre":  # it is not too far off
+            touching = int(np.nanargmin(np.abs(fixed - moving)))
+            assert fixed[touching] == pytest.approx(complex(mark.x, mark.y), abs=1e-12)
+            assert moving[touching] == pytest.approx(fixed[touching], abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["yamashita-1", "quick-return", "planetary-planting-arm"])

@@ -163,6 +163,7 @@ def test_a_side_of_the_wrong_kind() -> None:
     ("given", "joint", "words"),
     [
         (four_bar(1.0, 0.35, 0.9, 0.8), "B", "the dyads of this linkage meet at C"),
+        (four_bar(1.0, 0.35, 0.9, 0.8), "c", "on two sides; did you mean 'C'?"),
         (eq.load("scotch-yoke"), "B", "no dyad has its inner joint there"),
         (two_gears(eq.Gear("crank", "wheel", -1.0)), "A", "meet at no point"),
     ],

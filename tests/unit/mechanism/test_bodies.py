@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 import equipoise as eq
 from equipoise.balancing.design_variables import with_parameters
 from equipoise.codegen.figures import Figure
-from equipoise.codegen.gram import MassBatch
+from equipoise.codegen.gram import MassBatch, can_use
 from equipoise.errors import ModelError, UsageError
 from equipoise.mechanism.bodies import Body, Hole, inertia_of, polygon
 from equipoise.mechanism.family import can_vary, linkage_of, with_columns, wrong
@@ -303,9 +303,9 @@ NO_TRIANGLE = {"B-C": 0.1, "C-P": 0.02, "P-B": 0.03}
     ("given", "where", "words"),
     [
         ({"points": ("B", "C")}, "points", "length or sides"),
-        ({"points": ("B",), "length": 0.1}, "points", "got 1; length goes with the names of two"),
-        ({"points": ("B", "B"), "length": 0.1}, "points", "the names of two"),
-        ({"points": ("B", "C"), "sides": NO_TRIANGLE}, "points", "with the names of three"),
+        ({"points": ("B",), "length": 0.1}, "points", "got 1; length goes with two names"),
+        ({"points": ("B", "B"), "length": 0.1}, "points", "with two names, each once"),
+        ({"points": ("B", "C"), "sides": NO_TRIANGLE}, "points", "with three names"),
         ({"points": ("B", "C"), "length": -0.1}, "length", "got -0.1 m; give more than 0"),
         (
             {"points": {"B": (0, 0), "C": (1, 0)}, "length": 0.1},
@@ -634,7 +634,7 @@ def test_columns_of_sides_and_what_no_machine_can_have() -> None:
 @pytest.mark.parametrize(
     "path",
     [
-        "links.rocker.points.D.x",  # a corner of a plate
+        "links.rocker.points.D.x",  # where a hole is
         f"{ROCKER}[1].width",  # around a hole
         f"{ROCKER}[2].corners[2].x",
         f"{ROCKER}[1].holes[1].radius",
@@ -647,6 +647,46 @@ def test_no_such_columns(path: str) -> None:
     assert not can_vary(loads(TEXT), path)
     with pytest.raises(UsageError):
         with_columns(loads(TEXT), {path: np.ones((1, 1))})
+
+
+QUAD = """
+[[links.crank.bodies]]
+shape = "plate"
+corners = ["A", ["10 mm", "-20 mm"], "B", ["10 mm", "20 mm"]]
+thickness = "4 mm"
+material = "steel"
+"""
+
+
+def test_plates_of_columns() -> None:
+    """Corners that are points of the link: a plate is refused where its edges cross."""
+    own = '[links.crank]\npoints.A = ["0 mm", "0 mm"]\npoints.B = ["33.5 mm", "0 mm"]\n'
+    text = (
+        TEXT[: TEXT.index("[links.crank]")] + own + QUAD + TEXT[TEXT.index("\n[links.coupler]") :]
+    )
+    machine = loads(text)
+    base, path = assemble(machine), "links.crank.points.B.x"
+    values = [0.03, 0.04, -0.005, 0.012]
+    columns = {path: np.array(values)[:, None]}
+    columned = with_columns(machine, columns)
+    assert wrong(columned, base, columns).tolist() == [False, False, False, False]
+    crossing = {"links.crank.points.B.y": np.array([[0.0], [0.05]])}
+    made = with_columns(machine.with_number(tuple(path.split(".")), 0.002), crossing)
+    assert wrong(made, base, crossing).tolist() == [False, True]
+    for k, value in enumerate(values):
+        alone = machine.with_number(tuple(path.split(".")), value).links["crank"]
+        link = columned.links["crank"]
+        assert float(link.mass[k, 0]) == pytest.approx(alone.mass, rel=CLOSE)  # type: ignore[index]
+        assert float(link.inertia[k, 0]) == pytest.approx(alone.inertia, rel=1e-12)  # type: ignore[index]
+    with pytest.raises(ModelError, match="crosses"):
+        machine.with_link("crank", points={"A": (0.0, 0.0), "B": (0.002, 0.05)})
+
+
+def test_what_only_a_machine_of_its_own_tells_is_not_computed_at_once() -> None:
+    """A disc with a hole in it, whose radius varies: its designs are looked at one by one."""
+    machine, figure = loads(MASSY), Figure("shaking_force.y", "rms")
+    assert can_use(machine, [f"{ROCKER}[1].thickness"], [figure])
+    assert not can_use(machine, [f"{ROCKER}[1].width"], [figure])
 
 
 def test_mean_squares_by_masses_alone() -> None:

@@ -75,6 +75,18 @@ def test_three_free_motions() -> None:
     assert message.endswith("the drive leaves 'one', 'two', 'three' and 'four' undetermined")
 
 
+def test_pins_whose_names_differ_in_case() -> None:
+    four = crank_rocker()
+    coupler = four.links["coupler"]
+    points = {"c" if name == "C" else name: at for name, at in coupler.points.items()}
+    loose = replace(four, links={**four.links, "coupler": replace(coupler, points=points)})
+    assert refused(loose).endswith(
+        "; 'c' of coupler is no pin with 'C' of rocker: did you mean 'C'?"
+    )
+    traced = linked(four, arm=body(C=ORIGIN, d=(1.0, 0.0)))
+    assert refused(traced).endswith("; 'D' of frame is no pin with 'd' of arm: did you mean 'D'?")
+
+
 def tied(**more: eq.Link) -> eq.Machine:
     """A four-bar whose coupler has a third link to the frame."""
     four = crank_rocker()

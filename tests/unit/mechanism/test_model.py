@@ -162,6 +162,10 @@ JOINTS: list[tuple[str, str, Any]] = [
 LOADS: list[tuple[str, str, Any]] = [
     ("loads[1].link", "did you mean 'coupler'?...", lambda: loaded(link="couplr")),
     ("loads[1].link", "no link is called 'frame'...", lambda: loaded(link=FRAME)),
+    ("loads[1].link", "did you mean 'coupler'?...", lambda: loaded(link="COUPLER")),
+    ("loads[1].point", "no point of coupler is called 'c'; did you mean 'C'?",
+     lambda: loaded(point="c")),
+    ("loads[1].point", "did you mean 'C'?...", lambda: loaded(point="\uff23")),  # a wide C
     ("loads[1].point", "no point of coupler is called 'D'; there are 'B', 'C'",
      lambda: loaded(point="D")),
     ("loads[1]", ONE_OF, lambda: loaded(force=None)),

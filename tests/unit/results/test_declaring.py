@@ -20,7 +20,7 @@ from equipoise.mechanism.outputs import DECLARED, declaring, output
 from equipoise.present.composition import report_page
 from equipoise.present.findings import Findings
 from equipoise.results.blocks import Column, Table
-from equipoise.results.outputs import documented, unit_of
+from equipoise.results.outputs import documented, documented_strokes, unit_of
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import json_text, to_csv
 from equipoise.studies.figures import dimension_of
@@ -29,7 +29,8 @@ from equipoise.web.session import Session, opened_example
 from support.printing import words
 
 DOCS = Path(__file__).parents[3] / "docs" / "output.md"
-BEGIN, END = "<!-- declared outputs -->\n", "<!-- end of declared outputs -->\n"
+BEGIN, END = "<!-- declared {} -->\n", "<!-- end of declared {} -->\n"
+TABLES = {"outputs": documented, "strokes": documented_strokes}
 POWER = "drive_power"
 
 
@@ -187,9 +188,10 @@ def test_balancing_takes_it_or_says_why_not(linear: bool) -> None:
 # -- documentation ---------------------------------------------------------------------------------
 
 
-def test_the_documentation_has_all_of_them_and_nothing_else() -> None:
-    text = DOCS.read_text(encoding="utf-8")
-    assert text.partition(BEGIN)[2].partition(END)[0].strip() == documented().strip()
+@pytest.mark.parametrize("name", TABLES)
+def test_the_documentation_has_all_of_them_and_nothing_else(name: str) -> None:
+    after = DOCS.read_text(encoding="utf-8").partition(BEGIN.format(name))[2]
+    assert after.partition(END.format(name))[0].strip() == TABLES[name]().strip()
 
 
 def test_a_new_one_comes_into_the_documentation(linear: bool) -> None:
@@ -241,8 +243,9 @@ def test_everything_that_moves_has_its_diagrams() -> None:
     assert titles[0] == "travel of ram on frame, mm"
 
 
-if __name__ == "__main__":  # write the table of the documentation again
-    text = DOCS.read_text(encoding="utf-8")
-    before, _, rest = text.partition(BEGIN)
-    after = rest.partition(END)[2]
-    DOCS.write_text(f"{before}{BEGIN}{documented()}{END}{after}", encoding="utf-8")
+if __name__ == "__main__":  # write the tables of the documentation again
+    for name, table in TABLES.items():
+        begin, end = BEGIN.format(name), END.format(name)
+        before, _, rest = DOCS.read_text(encoding="utf-8").partition(begin)
+        after = rest.partition(end)[2]
+        DOCS.write_text(f"{before}{begin}{table()}{end}{after}", encoding="utf-8")

@@ -17,6 +17,7 @@ from equipoise.schema.records import (
     read_accelerations,
     read_record,
 )
+from equipoise.schema.tables import columns_of
 
 ROWS = 20
 
@@ -54,9 +55,19 @@ def test_exponents_spaces_blank_lines_and_a_byte_order_mark(tmp_path: Path) -> N
 def test_reading_as_a_whole_and_cell_by_cell_agree() -> None:
     plain = text("time [min],displacement [ft]")
     whole = parse_record(plain)
-    slow = parse_record(plain.replace("0.1,1", "0.1\N{NO-BREAK SPACE},1"))
-    np.testing.assert_allclose(whole.time, slow.time, rtol=3e-16)
-    np.testing.assert_allclose(whole.displacement, slow.displacement, rtol=3e-16)
+    slow = columns_of(plain, (("time", "displacement"),))
+    np.testing.assert_allclose(whole.time, slow["time"], rtol=3e-16)
+    np.testing.assert_allclose(whole.displacement, slow["displacement"], rtol=3e-16)
+
+
+def test_recordings_as_other_programs_write_them() -> None:
+    """A logger's, with semicolons, decimal commas and what it tells of itself."""
+    lines = [f"{k / 10:g};{k % 4}".replace(".", ",") for k in range(ROWS)]
+    record = parse_record("\n".join(["# Gerät 3", "time [s];angle [°]", *lines, "# end"]))
+    np.testing.assert_allclose(record.time, np.arange(ROWS) / 10, rtol=1e-15)
+    np.testing.assert_allclose(record.displacement, np.radians(np.arange(ROWS) % 4), rtol=1e-15)
+    tasks = "task;acceleration [m/s^2];duration [h]\nsaw, 2,4 kW;4,5;2,5\n"
+    assert parse_accelerations(tasks) == (Task("saw, 2,4 kW", 4.5, 9000.0),)
 
 
 RIGHT = "the header is time [s],displacement [mm] or time [s],angle [deg]"
@@ -195,7 +206,7 @@ UNREAD = {
     "task: no hours": (f"{TASKS}\na,1,0\n", "line 2, column duration: got 0 h; give more than 0"),
     "task: long": (f"{TASKS}\na,1,25\n", "line 2, column duration: got 25 h; give more"),
     "task: none": (TASKS, "line 1: there are no rows below the header; give at least one"),
-    "quotes": ('task,"acceleration\n', "line 1: this is no table of comma-separated values"),
+    "quotes": ('task,"acceleration\n', "line 1: this is no table of values with commas"),
 }  # fmt: skip
 
 

@@ -38,6 +38,36 @@ def test_the_order_of_columns_does_not_matter() -> None:
     assert parse_table("load", swapped) == parse_table("load", FORCES)
 
 
+ONE = LoadTable((0.0, pi / 2, 2 * pi), ((0.5, 1.033, 0.5), (0.0, 0.0, 0.0)))
+AS_WRITTEN = {
+    # what other programs write of one and the same table
+    "decimal commas": "crank_angle [deg];force_x [N];force_y [N]\n0;0,5;0\n90;1,033;0\n360;,5;0\n",
+    "one component": "crank_angle [deg],force_x [N]\n0,0.5\n90,1.033\n360,0.5\n",
+    "tabs": "crank_angle [deg]\tforce_x [N]\n0\t0.5\n90\t1.033\n360\t0.5\n",
+    "tabs and decimal commas": "crank_angle [deg]\tforce_x [N]\n0\t5,0e-1\n90\t1,033\n360\t0,5\n",
+    "quotes": 'crank_angle [deg],force_x [N]\n"0","0,5"\n"90,0","1,033"\n"360","0,5"\n',
+    "degree sign": "crank_angle [°],force_x [N]\n0,0.5\n90,1.033\n360,0.5\n",
+    "comments": "# by me, 3; x\ncrank_angle [deg],force_x [N]\n% up\n0,.5\n//\n90,1.033\n360,.5\n",
+    "header in a comment": "# May\n# crank_angle [deg], force_x [N]\n0,.5\n90,1.033\n360,.5\n",
+}
+
+
+@pytest.mark.parametrize("text", AS_WRITTEN.values(), ids=AS_WRITTEN.keys())
+def test_tables_as_other_programs_write_them(text: str) -> None:
+    assert parse_table("load", text) == ONE
+    assert parse_table("load", format_table(parse_table("load", text))) == ONE
+
+
+def test_comments_keep_the_numbers_of_lines() -> None:
+    with pytest.raises(ModelError, match="line 5, column torque: got 'x'"):
+        parse_table("load", "# a\n\ncrank_angle [deg];torque [N m]\n# b\n0;x\n")
+
+
+def test_the_other_component_alone() -> None:
+    up = parse_table("load", "crank_angle [turn],force_y [kN]\n0,2\n1,2\n")
+    assert up == LoadTable((0.0, 2 * pi), ((0.0, 0.0), (2000.0, 2000.0)))
+
+
 SORTS = {
     # the file in which it is named, the name, and the place of that
     "load": (FOUR_BAR + LOADED, "f.csv", "loads[1].table"),
@@ -54,8 +84,24 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
     "load": [
         ("", "line 1: got no column; the header is"),
         ("crank_angle [deg]\n0\n", "line 1: got crank_angle; the header is"),
-        ("crank_angle [deg],force_x [N]\n0,1\n", "line 1: got crank_angle, force_x; the header"),
-        ("crank_angle [deg];torque [N m]\n0;1\n", "line 1: got the column 'crank_angle [deg];t"),
+        ("crank_angle [deg],force_x [N],torque [N m]\n0,1,1\n", "line 1: got crank_angle, force_x"),
+        ("crank_angle [deg];torque [N m],x\n0;1\n", "line 1: the header has semicolons and commas"),
+        ("time [s],torque [N m]\n0,1\n", "line 1, column time: got the column time; a load goes"),
+        (
+            "crank_angle [deg];torque [N m]\n0;1,033\n",
+            "line 2, column torque: got '1,033'; a comma "
+            "may be the decimal sign or separate thousands; write 1.033 or 1033",
+        ),
+        ("crank_angle [deg];torque [N m]\n0,5;1.033,5\n", "column crank_angle: got '0,5'; the dec"),
+        (
+            "crank_angle [deg];torque [N m]\n0;1.033,5\n",
+            "leave out what separates thousands: 1033.5",
+        ),
+        (
+            "crank_angle [deg],torque [N m]\n0,5,1,5\n",
+            "line 2: got 4 values; the header has 2 columns; "
+            "decimal commas need semicolons between values",
+        ),
         ("crank_angle,torque [N m]\n0,1\n", "column crank_angle: the unit is missing; crank_angle"),
         ("crank_angle [mm],torque [N m]\n0,1\n", "line 1, column crank_angle: got '0 mm'; mm is"),
         ("crank_angle [deg],torque [N m],torque [N m]\n0,1,1\n", "column torque: given twice"),
@@ -66,8 +112,8 @@ BAD: dict[str, list[tuple[str | None, str]]] = {
         ("crank_angle [deg],torque [N m]\n0,\n", "line 2, column torque: got ''; give a finite"),
         ("crank_angle [deg],torque [N m]\n0,1e300\n", "line 2, column torque: got '1e300 N m', "),
         ("crank_angle [deg],torque [N m]\n0,1\n\n0,2\n", "line 4, column crank_angle: the angles"),
-        ('crank_angle [deg],torque [N m]\n0,"1\n', "no table of comma-separated values"),
-        (f"crank_angle [deg],torque [N m]\n0,{'1' * 200_000}\n", "no table of comma-separated"),
+        ('crank_angle [deg],torque [N m]\n0,"1\n', "no table of values with commas between"),
+        (f"crank_angle [deg],torque [N m]\n0,{'1' * 200_000}\n", "no table of values with commas"),
     ],
     "soil": [
         (None, "soil.csv: there is no such file"),

@@ -16,6 +16,7 @@ import zarr
 
 from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
+from equipoise.partial import beside
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
 from equipoise.studies.run import create_store
 from equipoise.studies.sampling import samples
@@ -201,7 +202,7 @@ def test_a_store_that_cannot_be_written_is_told_in_a_sentence(tmp_path: Path) ->
 HOLD = """
 import sys, time
 from pathlib import Path
-from equipoise.studies.store import locked
+from equipoise.partial import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     time.sleep(60)
@@ -224,3 +225,22 @@ def test_a_second_process_is_told_who_writes_until_that_is_killed(tmp_path: Path
         told = (store.path / ".lock").read_text()
         assert told == f"process {os.getpid()} on {socket.gethostname()}"
     assert (store.path / ".lock").read_bytes() == b""
+
+
+def test_what_killed_processes_have_begun_goes_with_the_next_store(tmp_path: Path) -> None:
+    """Of a store, and of a file; what a living process has begun stays."""
+    ended = subprocess.Popen([sys.executable, "-c", "pass"])
+    ended.wait()
+    with beside(tmp_path / "new.zarr") as own:
+        (tmp_path / own.name.replace(str(os.getpid()), str(ended.pid)) / "c").mkdir(parents=True)
+        for pid in (ended.pid, os.getppid()):
+            (
+                tmp_path / own.name.replace("new.zarr", "x.csv").replace(f"{os.getpid()}", f"{pid}")
+            ).touch()
+        (tmp_path / ".mine.tmp").touch()
+        assert len([*tmp_path.iterdir()]) == 4
+        create_store(tmp_path / "s", STUDY, 100, "compiled")
+        left = {path.name for path in tmp_path.iterdir()}
+    assert len(left) == 3
+    assert {"s", ".mine.tmp"} < left
+    assert any(name.endswith(f"-{os.getppid()}.tmp") for name in left)

@@ -7,7 +7,7 @@ import pytest
 
 import equipoise as eq
 from equipoise.figures.linkage import clear_angle
-from equipoise.mechanism import kernels
+from equipoise.mechanism import Body, Hole, kernels
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene, hull
@@ -163,6 +163,41 @@ def test_small_links_lie_on_large_ones(name: str) -> None:
             area = abs(np.sum((np.conj(corners) * np.roll(corners, -1)).imag))
             areas.append(round(float(area), 9))
     assert areas == sorted(areas, reverse=True)
+
+
+BODIES = (
+    Body("plate", corners=("B", "C", (0.02, 0.05)), mass=0.1, holes=[Hole((0.03, 0.02), 0.005)]),
+    Body("ring", at="C", radius=0.03, inner_radius=0.01, mass=0.1),
+    Body("bar", between=("B", "C"), outer_diameter=0.012, overhang=0.01, mass=0.1),
+    Body("bar", between=("B", "C"), mass=0.1),
+)
+
+
+def test_bodies_are_seen_to_scale_and_move_with_their_link() -> None:
+    machine = eq.load("yamashita-1").with_link("coupler", bodies=BODIES)
+    scene = scene_of(machine)
+    turn = np.exp(1j * scene.angles["coupler"])
+    start, end = scene.places["B"], scene.places["C"]
+    drawn = of_role(scene, "solid", "opening")
+    assert {piece.link for piece, *_ in drawn} == {"coupler"}
+    plate, hole, ring, bore, bar = (line for *_, line in drawn)
+    for corner, place in zip(plate, (start, end, start + (0.02 + 0.05j) * turn), strict=True):
+        assert np.max(abs(corner - place)) < 1e-12
+    assert np.max(abs(hole[0] - start - (0.03 + 0.02j) * turn)) < 1e-12
+    assert np.max(abs(ring[0] - end)) < 1e-12 and np.max(abs(bore[0] - end)) < 1e-12
+    way = (end - start) / abs(end - start)
+    wanted = [start - 0.01 * way, end + 0.01 * way]
+    middles = [(bar[0] + bar[3]) / 2, (bar[1] + bar[2]) / 2]
+    assert all(np.max(abs(z - at)) < 1e-12 for z, at in zip(middles, wanted, strict=True))
+    assert np.max(abs(abs(bar[0] - bar[3]) - 0.012)) < 1e-12
+    assert [shape.radius for _, shape, _ in drawn] == [0, 0.005, 0.03, 0.01, 0]
+    low, high = scene.box
+    for place in (*plate, *bar, ring[0] + 0.03, ring[0] - 0.03, ring[0] + 0.03j, ring[0] - 0.03j):
+        assert np.all((low.real <= place.real + 1e-12) & (place.real <= high.real + 1e-12))
+        assert np.all((low.imag <= place.imag + 1e-12) & (place.imag <= high.imag + 1e-12))
+    assert not of_role(scene, "tie")
+    for piece in pieces(scene):
+        assert all(shape.role in LOOKS for shape in piece.shapes)
 
 
 def test_mass_centers_have_their_sign_in_their_links() -> None:

@@ -57,10 +57,32 @@ def test_the_path_over_ground_advances_by_a_hill_a_turn() -> None:
     figures = eq.plant(eq.load("kim-chung-a"))
     assert moved[-1] - moved[0] == pytest.approx(way * figures["hill_spacing"], rel=1e-5)
     assert shown.content["planting"]["surface"] == pytest.approx(figures["surface"])
-    (more,) = session.tell_more()
+    strokes, more = session.tell_more()
     told = {one["name"]: one["value"] for one in more.content["figures"]}
     assert told["soil.depth"] == pytest.approx(1e3 * figures["soil.depth"])
+    assert strokes.content["type"] == "strokes"
     assert not session.has_more
+
+
+def test_figures_of_sliders_and_rockers_are_told_in_the_units_of_tables() -> None:
+    session, _ = opened("quick-return")
+    (more,) = session.tell_more()
+    told = {one["label"]: one for one in more.content["figures"]}
+    assert told["ram on frame: stroke"]["text"] == "304.0"
+    assert told["ram on frame: stroke"]["unit"] == "mm"
+    assert told["lever: time ratio"]["text"] == "1.710"
+    assert told["lever: dwell"]["unit"] == "°"
+    assert "block on lever: least mechanical advantage" not in told
+
+
+def test_what_is_infinite_is_drawn_with_gaps() -> None:
+    name = "sliders.piston on frame.advantage"
+    session, _ = opened("slider-crank-engine")
+    drawn = ask(session, "outputs", names=[name])[0]
+    offset, length = drawn.content["arrays"][f"output.{name}"]
+    sent = np.frombuffer(drawn.buffer, "<f4")[offset : offset + length]
+    assert np.any(np.isnan(sent))
+    assert np.nanmax(np.abs(sent)) < 1e3
 
 
 def test_a_machine_on_a_support_tells_its_response() -> None:

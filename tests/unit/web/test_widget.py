@@ -24,7 +24,9 @@ def test_a_widget_answers_as_the_server_does(monkeypatch: pytest.MonkeyPatch) ->
     change = {"set": "links.crank.mass", "text": "100 g"}
     widget._handle_custom_msg({"type": "edit", "seq": 2, "edits": [change]}, [])
     widget._handle_custom_msg("nonsense", [])
-    hello, first, second, refused = sent
+    kinds = [content["type"] for content, _ in sent]
+    assert kinds.count("strokes") == 2
+    hello, first, second, refused = (one for one in sent if one[0]["type"] != "strokes")
     assert hello[0]["type"] == "hello"
     assert len(first[1][0]) == 4 * sum(length for _, length in first[0]["arrays"].values())
     assert (second[0]["seq"], second[0]["undo"]) == (2, "edit")

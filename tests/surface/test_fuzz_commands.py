@@ -1,0 +1,172 @@
+"""Every bundled file, changed at random, through every command: it works, or is refused whole.
+
+Refused means one sentence, and no file that was not there before.  A Python warning is an error,
+and so is a command that takes longer or more memory than a reader would wait for.
+
+Set EQUIPOISE_FUZZ to a number of files to search longer, and at random.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import random
+import resource
+import shutil
+import signal
+from collections.abc import Iterator
+from contextlib import contextmanager
+from copy import deepcopy
+from pathlib import Path
+from types import FrameType
+from typing import Any
+
+import pytest
+import tomli_w
+
+from surface.running import (
+    EXAMPLES,
+    STUDIES,
+    TOOLS,
+    Result,
+    equipoise,
+    example,
+    no_constant,
+    refused,
+)
+from surface.test_fuzz import NUMBERS, OF_UNIT, UNITS, WORDS, places
+
+SEARCH = int(os.environ.get("EQUIPOISE_FUZZ", "0"))
+FILES = SEARCH or 120
+SECONDS, BYTES = 30, 2 * 2**30
+
+OF_EACH = {
+    "linkage": (
+        "check",
+        "analyze --json --split",
+        "analyze --csv a.csv",
+        "respond --json --csv r.csv",
+        "respond --speed 60:400rpm --speeds 9 --json",
+        "modes --json",
+        "simulate --time 0.2s --json",
+        "plant --csv p.csv",
+        "balance --json",
+        "balance --crank-counterweight --objective peak/shaking_moment -o new.toml",
+        "balance --crank-counterweight --objective shaking_force --csv b.csv --plot pictures",
+        "balance conditions",
+        "balance sensitivities shaking_force --json",
+        "plot -o pictures",
+        "animate -o moving.svg",
+        "report -o page.html",
+    ),
+    "tool": (
+        "check",
+        "tool --modes --json",
+        "tool --modes --number 4",
+        "tool --respond 1000:9000rpm --csv t.csv --plot pictures",
+        "tool --exposure --json",
+        "tool sensitivities --json",
+        "tool design -o better.toml",
+        "plot -o pictures",
+        "report -o page.html",
+    ),
+    "study": ("check", "sweep -o designs.zarr --json", "tolerance --designs 40 --json"),
+}
+"""Commands, with / for a space within a word."""
+KINDS = {"linkage": EXAMPLES, "tool": TOOLS, "study": STUDIES}
+FACTORS = (-1, 0, 1e-30, 1e-9, 1e-3, 0.5, 0.999999, 1.5, 10, 1e3, 1e9, 1e20, 1e30)
+
+
+def words_of(line: str, file: str) -> list[str]:
+    """A command with its file behind the name of the command."""
+    words = [word.replace("/", " ") for word in line.split()]
+    plain = next((k for k, word in enumerate(words) if word.startswith("-")), len(words))
+    name = 2 if words[0] in {"balance", "tool"} and plain > 1 else 1
+    return [*words[:name], file, *words[name:]]
+
+
+def altered(chance: random.Random, value: Any) -> Any:
+    """A quantity of another size, or something else."""
+    number, _, unit = str(value).partition(" ")
+    try:
+        size = float(number) * chance.choice(FACTORS)
+    except ValueError:
+        size, unit = 1.0, ""
+    if chance.random() < 0.25 or (unit not in OF_UNIT and not isinstance(value, int | float)):
+        junk = f"{chance.choice(NUMBERS)} {chance.choice(UNITS)}"
+        return chance.choice([junk, chance.choice(WORDS), 0, -1, 1e308, True, [], {}])
+    return f"{size!r} {unit}" if unit else size
+
+
+def mutate(chance: random.Random, document: Any) -> None:
+    """Lose, change, copy, rename or move one thing."""
+    everything = list(places(document))
+    table, key = chance.choice(everything)
+    other, other_key = chance.choice(everything)
+    match chance.choice(("delete", "change", "change", "change", "change", "copy", "rename")):
+        case "delete":
+            del table[key]
+        case "copy":
+            table[key] = deepcopy(other[other_key])
+        case "rename" if isinstance(table, dict):
+            table[chance.choice([*WORDS, str(other_key)])] = table.pop(key)
+        case _ if not isinstance(table[key], dict | list):
+            table[key] = altered(chance, table[key])
+        case _:
+            table[key] = chance.choice([[], {}, "x", 1])
+
+
+@contextmanager
+def in_time() -> Iterator[None]:
+    """A command that computes for too long is an error, however busy the machine is."""
+
+    def late(_: int, __: FrameType | None) -> None:
+        raise AssertionError(f"computes for more than {SECONDS} s")
+
+    before = signal.signal(signal.SIGPROF, late)
+    signal.setitimer(signal.ITIMER_PROF, SECONDS)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+
+
+def tried(seed: int) -> None:
+    """One file through one command, in an empty folder."""
+    chance = random.Random(seed)
+    kind = chance.choices(list(KINDS), (12, 5, 1))[0]
+    document = deepcopy(example(chance.choice(KINDS[kind])))
+    for _ in range(chance.choice((1, 1, 1, 2, 3))):
+        mutate(chance, document)
+    folder = Path("fuzz")
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    os.chdir(folder)
+    words, result = [""], Result(0, "", "")
+    try:
+        file = Path("model.toml")
+        file.write_text(tomli_w.dumps(document), encoding="utf-8")
+        words = words_of(chance.choice(OF_EACH[kind]), file.name)
+        with in_time():
+            result = equipoise(*words)
+        if result.status:
+            assert len(refused(result)) < 3000
+            assert os.listdir() == [file.name], "something was written and the rest refused"
+        elif "--json" in words:
+            json.loads(result.out, parse_constant=no_constant)
+    except BaseException as error:
+        raise AssertionError(
+            f"seed {seed}: {' '.join(words)}: {error!r}; {result.err[:300]}"
+        ) from error
+    finally:
+        os.chdir("..")
+    most = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
+    assert most < BYTES, f"seed {seed}: {most / 2**20:.0f} MiB"
+
+
+@pytest.mark.parametrize("part", range(4))
+def test_every_command_on_every_kind_of_file(part: int) -> None:
+    first = random.randrange(2**40) if SEARCH else 0
+    for seed in range(first + part, first + FILES, 4):
+        tried(seed)

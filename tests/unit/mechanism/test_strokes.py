@@ -1,0 +1,233 @@
+"""Strokes, dead positions, time ratios and dwells: closed forms, and dense sampling."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import acos, asin, degrees, hypot, pi, radians, sqrt
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.errors import UsageError
+from equipoise.mechanism.dwell import Path, longest_dwell
+from equipoise.mechanism.strokes import DeadPosition, _turning
+from unit.mechanism.build import ORIGIN, crank_rocker, four_bar, heavy, machine, slider_crank
+
+MACHINES = sorted(eq.examples("linkage"))
+
+
+def offset_slider_crank(offset: float, speed: float = 10.0) -> eq.Machine:
+    """A crank of 0.3 m and a rod of 1 m, whose guide runs beside the pivot."""
+    given = slider_crank(drive=eq.Drive("crank", speed))
+    guide = replace(given.sliders[0], through="G")
+    frame = {**given.frame, "G": (0.0, offset)}
+    return replace(given, frame=frame, sliders=(guide,))
+
+
+# -- strokes and time ratios -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.2, -0.45])
+@pytest.mark.parametrize("speed", [10.0, -10.0])
+def test_an_offset_slider_crank(offset: float, speed: float) -> None:
+    """Stroke and time ratio (180 + a) / (180 - a) by the triangles at both dead positions."""
+    found = eq.analyze(offset_slider_crank(offset, speed), 8).strokes["piston on frame"]
+    crank, rod = 0.3, 1.0
+    near, far = sqrt((rod - crank) ** 2 - offset**2), sqrt((rod + crank) ** 2 - offset**2)
+    assert (found.lowest, found.highest) == pytest.approx((near, far), abs=1e-13)
+    assert found.stroke == pytest.approx(far - near, abs=1e-13)
+    between = abs(asin(offset / (rod - crank)) - asin(offset / (rod + crank)))
+    assert found.time_ratio == pytest.approx((pi + between) / (pi - between), rel=1e-12)
+    assert found.rise + found.fall == pytest.approx(2 * pi)
+    forwards = (found.highest_at - found.lowest_at) % (2 * pi)
+    assert found.rise == pytest.approx(forwards if speed > 0 else 2 * pi - forwards)
+    assert found.highest_at == pytest.approx(asin(offset / (rod + crank)) % (2 * pi), abs=1e-12)
+
+
+def test_the_quick_return_of_a_shaper() -> None:
+    """A lever in whose slot the crank pin runs stands at its ends square to the crank."""
+    strokes = eq.analyze(eq.load("quick-return"), 8).strokes
+    half = asin(80 / 200)
+    ratio = (pi + 2 * half) / (pi - 2 * half)
+    assert strokes["lever"].stroke == pytest.approx(2 * half, rel=1e-12)
+    assert strokes["lever"].time_ratio == pytest.approx(ratio, rel=1e-12)
+    ram = strokes["ram on frame"]
+    assert ram.time_ratio == pytest.approx(ratio, rel=1e-12)
+    assert ram.rise > ram.fall
+    assert ram.stroke == pytest.approx(2 * 0.380 * 80 / 200, rel=1e-12)
+    assert strokes["block on lever"].stroke == pytest.approx(2 * 0.080, rel=1e-12)
+    assert strokes["block on lever"].least_advantage is None
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_rockers_of_four_bars_against_their_triangles(name: str) -> None:
+    found = eq.analyze(eq.load(name), 4)
+    bar = found.four_bar
+    if bar is None or bar.swing is None:
+        return
+    rocker = found.strokes[bar.rocker]
+    assert rocker.stroke == pytest.approx(bar.swing, rel=1e-11)
+    assert rocker.time_ratio == pytest.approx(bar.time_ratio, rel=1e-10)
+    assert len(rocker.dead_positions) == 2
+
+
+@pytest.mark.parametrize("name", MACHINES)
+def test_figures_of_every_example_against_dense_sampling(name: str) -> None:
+    found = eq.analyze(eq.load(name), 36_000 if name != "class-three" else 3600)
+    motion = found.motion
+    for item, one in found.strokes.items():
+        slides = one.kind == "slider"
+        values = motion.sliders[item].travel if slides else motion.links[item].angle
+        rate = motion.sliders[item].travel_1 if slides else motion.links[item].angle_1
+        assert one.stroke == pytest.approx(np.ptp(values), rel=1e-5)
+        assert one.stroke >= np.ptp(values) - 1e-12
+        turns = np.count_nonzero(np.diff(np.sign(np.append(rate, rate[0]))) != 0)
+        assert len(one.dead_positions) == turns or np.any(rate == 0)
+        if one.least_advantage is not None:
+            assert one.least_advantage == pytest.approx(1 / np.max(np.abs(rate)), rel=1e-6)
+        angles = [dead.crank_angle for dead in one.dead_positions]
+        there = eq.move(found.machine, angles)
+        speeds = there.sliders[item].travel_1 if slides else there.links[item].angle_1
+        np.testing.assert_allclose(speeds, 0, atol=1e-9 * np.max(np.abs(rate)))
+        assert angles == sorted(angles)
+
+
+def test_links_that_turn_fully_and_the_crank_have_no_stroke() -> None:
+    assert "wheel" not in eq.analyze(eq.load("drag-link"), 8).strokes
+    assert list(eq.analyze(crank_rocker(), 8).strokes) == ["rocker"]
+
+
+def test_there_are_none_where_the_crank_cannot_turn() -> None:
+    found = eq.analyze(four_bar(1.0, 0.9, 0.5, 0.55), [0.3])
+    assert dict(found.strokes) == {}
+    assert found.to_dict()["strokes"] == {}
+    assert not [one for one in found.blocks() if "stroke" in getattr(one, "title", "")]
+
+
+def test_turning_back_by_rounding_is_no_dead_position() -> None:
+    angles = np.array([0.1, 2.0, 2.5, 4.0])
+    found = _turning(angles, np.array([0.0, 1.0, 1.0 - 1e-14, 1.0]))
+    assert [one.crank_angle for one in found] == [0.1, 4.0]
+    kept = _turning(angles[::-1], np.array([1.0, 0.5, 0.9, 0.0]))
+    assert kept[0] == DeadPosition(0.1, 0.0)
+    assert len(kept) == 4
+
+
+def test_of_equal_extremes_the_first_is_told() -> None:
+    """A slider on a wheel that turns twice as fast as the crank is twice at each end."""
+    links = {"crank": heavy(A=ORIGIN), "wheel": heavy(E=ORIGIN, B=(0.1, 0.0))}
+    links |= {"rod": heavy(B=ORIGIN, C=(0.4, 0.0)), "piston": heavy(C=ORIGIN)}
+    found = eq.analyze(
+        machine(
+            {"A": ORIGIN, "E": (0.5, 0.0)},
+            links,
+            gears=(eq.Gear("crank", "wheel", ratio=-2.0),),
+            sliders=(eq.Slider("piston", "C", "frame", "E", 0.0),),
+            assembly={"C": "forward"},
+        ),
+        8,
+    ).strokes["piston on frame"]
+    assert len(found.dead_positions) == 4
+    assert degrees(found.highest_at) == pytest.approx(0.0, abs=1e-9)
+    assert degrees(found.lowest_at) == pytest.approx(90.0)
+    assert found.stroke == pytest.approx(0.2)
+
+
+# -- dwells ----------------------------------------------------------------------------------------
+
+
+def of_function(place: np.ndarray, count: int = 720) -> Path:
+    """A path from the amplitudes of its orders -K to K, complex."""
+    orders = np.arange(len(place)) - len(place) // 2
+    theta = np.arange(count) * (2 * pi / count)
+    waves = np.exp(1j * np.outer(theta, orders))
+    return Path(waves @ place, waves @ (1j * orders * place), waves @ (-(orders**2) * place))
+
+
+def brute(theta: np.ndarray, place: np.ndarray, tolerance: float) -> float:
+    """Longest part of a cycle, by going on from each sample until one is too far from another."""
+    count, best, last = len(place), 0, 0
+    twice = np.concatenate([place, place])
+    for first in range(count):
+        last = max(last, first)
+        while last + 1 < first + count:
+            if np.any(np.abs(twice[first : last + 1] - twice[last + 1]) > tolerance):
+                break
+            last += 1
+        best = max(best, last - first)
+    return float(best * (theta[1] - theta[0]))
+
+
+def test_between_samples_a_path_is_exact() -> None:
+    rng = np.random.default_rng(5)
+    amplitudes = rng.normal(size=9) + 1j * rng.normal(size=9)
+    path, theta = of_function(amplitudes), rng.uniform(-10, 10, 50)
+    exact = np.exp(1j * np.outer(theta, np.arange(9) - 4)) @ amplitudes
+    np.testing.assert_allclose(path.at(theta), exact, atol=1e-12)
+
+
+@pytest.mark.parametrize("share", [1e-4, 0.01, 0.3])
+def test_the_dwell_of_a_cosine(share: float) -> None:
+    """About an end: 2 acos(1 - 2 share); of both ends the first in the cycle is told."""
+    found = longest_dwell(of_function(np.array([0.5, 0, 0.5])), 2 * share)
+    assert found.angle == pytest.approx(2 * acos(1 - 2 * share), abs=2e-6)
+    assert (found.begin + found.angle / 2) % (2 * pi) == pytest.approx(pi, abs=2e-6)
+
+
+def test_the_dwell_of_a_circle_is_a_chord() -> None:
+    path = of_function(np.array([0, 0, 2.0 + 0j]))
+    assert longest_dwell(path, 1.0).angle == pytest.approx(2 * asin(0.25), abs=1e-6)
+    assert longest_dwell(path, 4.1).angle == pytest.approx(2 * pi)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_dwells_of_random_paths_against_dense_sampling(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    amplitudes = rng.normal(size=7) + 1j * rng.normal(size=7)
+    if seed % 2:  # to and fro
+        amplitudes = amplitudes + amplitudes[::-1].conj()
+    path, theta = of_function(amplitudes), np.arange(7200) * (2 * pi / 7200)
+    size = hypot(np.ptp(path.place.real), np.ptp(path.place.imag))
+    for share in (0.01, 0.1):
+        found = longest_dwell(path, share * size).angle
+        assert found == pytest.approx(brute(theta, path.at(theta), share * size), abs=2e-3)
+
+
+@pytest.mark.parametrize("tolerance", [radians(0.2), radians(0.5), radians(2.0)])
+def test_the_dwell_of_a_six_bar_against_dense_sampling(tolerance: float) -> None:
+    """It is built to dwell: its output hardly moves over a third of a turn."""
+    found = eq.analyze(eq.load("stephenson-six-bar"), 7200)
+    angle = found.motion.links["output"].angle
+    step = 2 * pi / 7200
+    dwell = found.dwell("output", tolerance)
+    assert dwell.angle == pytest.approx(brute(found.crank_angle, angle, tolerance), abs=2 * step)
+    assert dwell.angle > radians(100)
+    inside = (found.crank_angle - dwell.begin) % (2 * pi) < dwell.angle
+    assert np.ptp(angle[inside]) <= tolerance * (1 + 1e-6)
+
+
+def test_dwells_of_sliders_and_points() -> None:
+    found = eq.analyze(eq.load("quick-return"), 8)
+    ram = found.dwell("ram on frame", 0.5e-3)
+    assert ram.angle == pytest.approx(found.dwell("F", 0.5e-3).angle, rel=1e-9)
+    usual = found.dwell("ram on frame")
+    assert usual.angle == pytest.approx(found.strokes["ram on frame"].dwell, rel=1e-12)
+    assert usual.tolerance == pytest.approx(0.01 * found.strokes["ram on frame"].stroke, rel=1e-3)
+    lever = found.dwell("lever")
+    assert lever.angle == pytest.approx(found.strokes["lever"].dwell, abs=1e-4)
+    assert list(found.dwells(1e-3)) == ["block on lever", "ram on frame", "E", "F"]
+    assert "crank" not in found.dwells(0.01, "angle")
+
+
+@pytest.mark.parametrize(
+    ("name", "tolerance", "told"),
+    [
+        ("levre", None, "no slider, link or point is called 'levre'; did you mean 'lever'"),
+        ("lever", 0.0, "got 0 for the tolerance of a dwell; give more than 0"),
+        ("lever", float("nan"), "got nan for the tolerance of a dwell; give more than 0"),
+    ],
+)
+def test_wrong_dwells(name: str, tolerance: float | None, told: str) -> None:
+    with pytest.raises(UsageError, match=told):
+        eq.analyze(eq.load("quick-return"), 8).dwell(name, tolerance)
