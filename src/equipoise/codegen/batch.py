@@ -29,7 +29,7 @@ from equipoise.codegen.figures import (
     Figure,
     Gathered,
 )
-from equipoise.codegen.march import STEPS, March
+from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
 from equipoise.mechanism import cycle

@@ -6,7 +6,7 @@ both become one loop without calls.  NumPy runs ``state`` alone, on arrays.
 
 Where a group of loops goes from one crank angle to the next, ``state`` takes what the angle before
 carries on, and ``loop`` does some designs side by side, so that the processor can still handle
-several at once: `codegen.march`.
+several at once: `codegen.loops`.
 """
 
 from __future__ import annotations
