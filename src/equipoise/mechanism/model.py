@@ -214,10 +214,15 @@ class Machine(Frozen):
         """Return the machine with fields of one link changed."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
-        links = {**self.links, name: self.links[name].altered(**changes)}
-        return self._same_motion(
-            replace(self, links=links), set(changes) <= {*MASS_FIELDS, "bodies"}
-        )
+        found = self._with_link(name, lambda link: link.altered(**changes))
+        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, "bodies"})
+
+    def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
+        try:
+            link = change(self.links[name])
+        except ModelError as error:
+            raise error.within(f"links.{name}") from error
+        return replace(self, links={**self.links, name: link})
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
@@ -229,9 +234,17 @@ class Machine(Frozen):
         ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
         """
         first, last = steps[0], steps[-1]
+
+        def put(_: Any) -> float:
+            return number
+
         massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, "bodies"})
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
-        return self._same_motion(changed(self, steps, lambda _: number), same)
+        if first == "links":
+            found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
+        else:
+            found = changed(self, steps, put)
+        return self._same_motion(found, same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""
