@@ -83,9 +83,17 @@ class ModelError(EquipoiseError):
 
     def in_file(self, source: str) -> ModelError:
         """Return the same error with the name of the file in front."""
-        named = type(self)(self.where, self.what, source)
-        named.given = self.given
-        return named
+        return self._at(self.where, source)
+
+    def within(self, outer: str) -> ModelError:
+        """Return the same error, whose place is inside of another."""
+        point = "." if outer and self.where and self.where[0] != "[" else ""
+        return self._at(f"{outer}{point}{self.where}", self.source)
+
+    def _at(self, where: str, source: str) -> ModelError:
+        found = type(self)(where, self.what, source)
+        found.given = self.given
+        return found
 
 
 class MobilityError(EquipoiseError):

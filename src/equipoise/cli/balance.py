@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
@@ -21,6 +23,7 @@ from equipoise.cli.options import (
 from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
+from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -47,7 +50,8 @@ def balance(
     ----------
     file
         Path of a model file, or the name of a bundled example.  Its table [balance] says what may
-        change and what is to become small; the options below take the place of it.
+        change and what is to become small; the options below take the place of it.  Without either,
+        remedies that can be built are tried.
     objective
         What is to become small: "shaking_force.y", "peak shaking_moment about D".  May be repeated.
     limit
@@ -56,7 +60,7 @@ def balance(
     out
         Write the balanced machine as a new model file.
     """
-    from equipoise.balancing import optimisation as balancing
+    from equipoise.balancing import advice, optimisation
 
     machine = linkage_of(file, speed)
     outputs.check(sources_of(machine, file), [out])
@@ -65,12 +69,25 @@ def balance(
     with naming(file):
         plan = plan_of(machine, freed, objective, limit)
         with counted("program") as progress:
-            found = balancing.balance(machine, plan, progress)
+            solve = partial(optimisation.balance, progress=progress)
+            asked = freed.any or objective or limit
+            found = solve(machine, plan) if asked else advice.advise(machine, solve)
+        if out is not None and not found.helps:
+            _refuse(found)
         outputs.write(found.columns)
         outputs.draw_result(found)
         if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
         outputs.show(found)
+
+
+def _refuse(found: Balanced) -> None:
+    """Write no machine that is not better."""
+    from equipoise.balancing.told import nothing_told
+
+    if found.tried:
+        told = next(nothing_told(found)).removesuffix(".")
+        raise UsageError(f"--out: nothing is written: {told[:1].lower()}{told[1:]}")
 
 
 def _save(found: Balanced, out: str) -> None:
@@ -130,12 +147,14 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
     from equipoise.balancing.physical_consistency import feasibility
 
     machine = linkage_of(file, speed)
-    with naming(file):
+    # conditions are told in words when they are found; those of the JSON object are in SI units
+    shown = nullcontext() if outputs.json else outputs.showing(machine)
+    with naming(file), shown:
         found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
         values = {kind: one.to_dict() for kind, one in found.items()}
         told = feasibility(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: values | {"verdict": told.to_dict()},
             lambda: conditions_blocks(
                 *found.values(), verdict=[one.reason for one in told.answers]
@@ -199,7 +218,7 @@ def arrangements(
     with naming(file):
         check_moving(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
             lambda: pattern_blocks(machine, rows, spacing),
         )

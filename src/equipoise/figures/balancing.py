@@ -29,10 +29,10 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
-from equipoise.quantities import Dimension, in_unit
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.results.outputs import objective_named
+from equipoise.results.outputs import objective_named, shown_in
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
@@ -337,8 +337,7 @@ def front(found: Front) -> Chart:
 
 
 def _objective_axis(label: str, unit: str, values: Array) -> Axis:
-    """An axis with room on which a displacement is told in mm or mrad, anything else as it is."""
-    shown_in = {"m": "mm", "rad": "mrad"}.get(unit, unit)
+    """An axis with room, in the unit in which figures of an SI unit are told."""
     low, high = float(np.min(values)), float(np.max(values))
     room = MARGIN * (high - low if high > low else abs(high) or 1.0)
-    return Axis(label, in_unit(shown_in), low=low - room, high=high + room)
+    return Axis(label, shown_in(unit, values), low=low - room, high=high + room)

@@ -63,6 +63,7 @@ from equipoise.mechanism.parts import (
     wrong_gear,
     wrong_slider,
 )
+from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ class Machine(Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "gravity", "drive", "frame", "links",
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
                   "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
                   "support", "rows", "balance")  # fmt: skip
 
@@ -181,6 +182,10 @@ class Machine(Frozen):
         Tables(Table(Spring)), "linear springs between links and frame", default=()
     )
 
+    units: ShownUnits | None = key(
+        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
+    )
+
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Machine:
         del given["schema"]
@@ -209,10 +214,15 @@ class Machine(Frozen):
         """Return the machine with fields of one link changed."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
-        links = {**self.links, name: self.links[name].altered(**changes)}
-        return self._same_motion(
-            replace(self, links=links), set(changes) <= {*MASS_FIELDS, "bodies"}
-        )
+        found = self._with_link(name, lambda link: link.altered(**changes))
+        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, "bodies"})
+
+    def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
+        try:
+            link = change(self.links[name])
+        except ModelError as error:
+            raise error.within(f"links.{name}") from error
+        return replace(self, links={**self.links, name: link})
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
@@ -224,9 +234,17 @@ class Machine(Frozen):
         ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
         """
         first, last = steps[0], steps[-1]
+
+        def put(_: Any) -> float:
+            return number
+
         massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, "bodies"})
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
-        return self._same_motion(changed(self, steps, lambda _: number), same)
+        if first == "links":
+            found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
+        else:
+            found = changed(self, steps, put)
+        return self._same_motion(found, same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.balancing.told import capital
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
@@ -17,7 +18,6 @@ from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
-from equipoise.present.remedies import capital
 from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
 from equipoise.signals import highest_at
 

@@ -10,49 +10,60 @@ from math import cos, floor, isfinite, log10, pi, sin
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.optimisation import reach_of
+from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector
-from equipoise.quantities import parse, rounded
+from equipoise.quantities import SI, chosen_unit, parse, rounded
 from equipoise.quantities.units import HUGE, TINY, Dimension
 
 DIGITS, SHORT = 12, 9
 """Significant ones that are kept, and those of a number that somebody may have meant in SI."""
+MEANT, NEAR = 6, 1e-8
+"""Digits of a number that is meant where another differs by no more than this share from it: what a
+program finds at a limit of 100 mm is 99.999999637 mm."""
+DRAGGED = 7
+"""Those of a place to which something is dragged, over the size of the machine: a page knows places
+as 32-bit floats, and what it shows as 100 mm is to be that in a file, not 99.999999637 mm."""
 OTHER: dict[Dimension, str] = {"angle": "deg", "angular speed": "rpm"}
 """Units of files that are no power of ten of the SI unit."""
 
 
 def clean(value: float, dimension: Dimension | None = None) -> float:
     """A value (SI units, radians) of 12 digits, in the unit in which a file has it."""
-    unit = None if dimension is None else OTHER.get(dimension)
     plain = float(f"{value:.{DIGITS}g}")
-    short = plain == float(f"{value:.{SHORT}g}")
-    if dimension is None or unit is None or short or not TINY < abs(value) < HUGE:
+    if dimension is None or not TINY < abs(value) < HUGE:
         return plain
-    return parse(rounded(value, unit, DIGITS), dimension)
+    unit = chosen_unit(dimension) or OTHER.get(dimension, SI[dimension])
+    meant = parse(rounded(value, unit, MEANT), dimension)
+    if abs(meant - value) <= NEAR * abs(value):
+        return meant
+    short = plain == float(f"{value:.{SHORT}g}")
+    return plain if short else parse(rounded(value, unit, DIGITS), dimension)
 
 
-def clean_place(place: complex, size: float = 0.0) -> Vector:
-    """Coordinates (m) whose last digit is the 12th of the longer one, or of a size."""
+def clean_place(place: complex, size: float = 0.0, digits: int = DIGITS) -> Vector:
+    """Coordinates (m) whose last digit is such a one of the longer of them, or of a size."""
     longest = max(abs(place.real), abs(place.imag), size)
     if not longest or not isfinite(longest):
         return place.real, place.imag
-    last = DIGITS - 1 - floor(log10(longest))
+    last = digits - 1 - floor(log10(longest))
     return round(place.real, last) + 0.0, round(place.imag, last) + 0.0
 
 
 @dataclass(frozen=True)
 class Counterweight:
-    """A point mass on a link that is pinned to the frame.
+    """A mass on a link that is pinned to the frame.
 
     mass : kg.  radius : from the pin, m.  direction : in the link's axes, rad.
+    gyration : radius of gyration about its own centre of mass, m; 0 of a point mass.
     """
 
     mass: float = 0.0
     radius: float = 0.0
     direction: float = 0.0
+    gyration: float = 0.0
 
     @property
     def arm(self) -> complex:
@@ -153,16 +164,16 @@ def _opposite(machine: Machine, link: str) -> Counterweight:
 
 
 def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
-    """A link with a point mass on it in mass, centre of mass and inertia.
+    """A link with a counterweight on it in mass, centre of mass and inertia.
 
     pin : from which the weight's place is told, in the link's axes, m.
     """
     if not weight.mass:
         return link
-    place = pin + weight.arm
+    place, inertia = pin + weight.arm, weight.mass * weight.gyration**2
     if link.bodies:
-        return link.with_added(weight.mass, clean_place(place))
-    made = link.with_added(weight.mass, (place.real, place.imag))
+        return link.with_added(weight.mass, clean_place(place), clean(inertia))
+    made = link.with_added(weight.mass, (place.real, place.imag), inertia)
     assert made.mass is not None and made.center_of_mass is not None and made.inertia is not None
     center = clean_place(complex(*made.center_of_mass))
     return replace(made, mass=clean(made.mass), center_of_mass=center, inertia=clean(made.inertia))
