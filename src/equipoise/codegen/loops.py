@@ -264,7 +264,7 @@ def _greatest(one: Any, other: Any) -> Any:
     return Term("greatest({}, {})", one, other)
 
 
-# -- once round the cycle ---------------------------------------------------------------------------
+# -- once round the cycle --------------------------------------------------------------------------
 
 STEPS = (radians(4), radians(0.5), radians(1 / 12))
 """Farthest that crank angles are apart; the next for designs that have not stayed on their branch.
