@@ -227,7 +227,7 @@ class Machine(Frozen):
         return replace(self, links={**self.links, name: link})
 
     def with_point(self, body: str, point: str, place: Vector) -> Machine:
-        """Return the machine with a point of a link or the frame elsewhere in the body's axes, m."""
+        """Return the machine with one point of a link or the frame elsewhere, in its axes, m."""
         if body not in self.bodies:
             raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
         where = "frame" if body == FRAME else f"links.{body}"
