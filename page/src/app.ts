@@ -4,7 +4,7 @@ import { Charts } from "./charts";
 import { Conversation, type Events, type Memory } from "./conversation";
 import { h, write } from "./dom";
 import { dropZone, save, tooLarge } from "./files";
-import { follow } from "./format";
+import { follow, measure } from "./format";
 import { Frames } from "./frames";
 import { Hands } from "./hands";
 import { Heading } from "./heading";
@@ -196,6 +196,7 @@ export class App {
     this.opened = "";
     const angle = this.state ? this.player.angle : 0;
     this.state = state;
+    measure(state.length);
     this.player.take(state);
     if (other) {
       this.player.angle = 0;

@@ -9,15 +9,20 @@ const FIXED = "\u00a0";
 let rules: NumberRules = {
   least: 0,
   most: Infinity,
-  length: { unit: "m", factor: 1 },
   units: [],
 };
+let drawing: Unit = { unit: "m", factor: 1 };
 let quantity = /$^/g;
 
 export function follow(told: NumberRules): void {
   rules = told;
   const units = told.units.map((unit) => unit.replace(/[/^]/g, "\\$&")).join("|");
   quantity = new RegExp(`([\\d)]) (${units})(?![\\w/^])`, "g");
+}
+
+/** The unit of the machine that is open. */
+export function measure(length: Unit): void {
+  drawing = length;
 }
 
 /** Some significant digits, a true minus, no power of ten where it can be helped. */
@@ -58,12 +63,12 @@ export function plain(value: number): string {
 
 /** Unit of the drawing's lengths. */
 export function lengths(): Unit {
-  return rules.length;
+  return drawing;
 }
 
 /** Lengths (m) as the drawing tells them, without their unit. */
 export function length(metres: number): string {
-  return signed((metres * rules.length.factor).toFixed(2));
+  return signed((metres * drawing.factor).toFixed(2));
 }
 
 export function degrees(angle: number): number {

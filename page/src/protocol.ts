@@ -47,8 +47,6 @@ export interface NumberRules {
   /** Sizes between which there is no power of ten. */
   least: number;
   most: number;
-  /** Of drawings. */
-  length: Unit;
   /** What may follow a number in a sentence; longer ones first. */
   units: string[];
 }
@@ -144,6 +142,8 @@ export interface StateMessage {
   angles: number;
   turns: number;
   speed: number;
+  /** Unit of the drawing's lengths. */
+  length: Unit;
   has_forces: boolean;
   missing: string[];
   fields: Field[];

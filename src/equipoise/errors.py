@@ -141,7 +141,23 @@ def needed(module: str, purpose: str) -> Any:
     except ModuleNotFoundError as error:
         if error.name is None or error.name.partition(".")[0] != library:
             raise
-        raise UsageError(
-            f"{purpose} needs {library}, which is not installed; install it with: "
-            f'pip install "equipoise[{EXTRAS.get(library, "studies")}]"'
-        ) from error
+        raise UsageError(_install(library, purpose)) from error
+
+
+LIBRARIES = {"a sweep": ("zarr",), "a search": ("pymoo", "moocore")}
+"""What some purposes need."""
+
+
+def lacking(purpose: str) -> str:
+    """Say what has to be installed for a purpose; empty where everything is there."""
+    from importlib.util import find_spec
+
+    absent = (library for library in LIBRARIES[purpose] if find_spec(library) is None)
+    return next((_install(library, purpose) for library in absent), "")
+
+
+def _install(library: str, purpose: str) -> str:
+    return (
+        f"{purpose} needs {library}, which is not installed; install it with: "
+        f'pip install "equipoise[{EXTRAS.get(library, "studies")}]"'
+    )

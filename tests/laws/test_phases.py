@@ -18,7 +18,8 @@ from scipy.optimize import differential_evolution, minimize
 import equipoise as eq
 from equipoise.balancing.multi_row import Combine
 from equipoise.balancing.phase_bound import CLOSE
-from equipoise.balancing.phase_search import PhaseSearch, Phasing, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.mechanism.balance import Objective, Phases
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of

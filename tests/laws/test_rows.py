@@ -13,7 +13,8 @@ import equipoise as eq
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.phase_grid import Grid
 from equipoise.balancing.phase_polish import Tops, square_with_slopes
-from equipoise.balancing.phase_search import PhaseSearch, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
 from equipoise.vibration.forced import respond, usual_step
 from support.machines import make

@@ -4,14 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache
 from math import pi
 from typing import Any, TypeVar
 
 import numpy as np
+import pint
 
 import equipoise as eq
+from equipoise.keys import Frozen, Kind, Point, Table, innermost
+from equipoise.keys.declaring import declarations
+from equipoise.mechanism.balance import Limit
 from equipoise.mechanism.field import Planting
 from equipoise.mechanism.model import FRAME, Vector
+from equipoise.mechanism.objectives import quantity_of
+from equipoise.quantities import SI
 
 Value = TypeVar("Value")
 Map = Callable[[complex], complex]
@@ -186,58 +193,78 @@ class Units:
 
     @property
     def force(self) -> float:
-        return self.mass * self.length / self.time**2
+        return self.of("N")
 
     @property
     def moment(self) -> float:
-        return self.force * self.length
+        return self.of("N m")
+
+    def of(self, unit: str) -> float:
+        """How many of the new units make one of these; what they are made of is pint's."""
+        powers = _powers(unit)
+        sizes = {"[length]": self.length, "[mass]": self.mass, "[time]": self.time}
+        return float(np.prod([sizes[name] ** power for name, power in powers.items()]))
 
 
-def in_units(machine: eq.Machine, units: Units) -> eq.Machine:
-    """The machine in other units."""
-    length, mass, time, force = units.length, units.mass, units.time, units.force
-    lengths = ("frame", "points", "center_of_mass", "free_length", "hill_spacing", "depth",
-               "surface", "tray")  # fmt: skip
-    factors = {
-        **dict.fromkeys(lengths, length),
-        "mass": mass,
-        "inertia": mass * length**2,
-        "force": force,
-        "torque": units.moment,
-        "stiffness": force / length,
-        "speed": 1 / time,
-        "acceleration": 1 / time**2,
-        "gravity": length / time**2,
-        "forward_speed": length / time,
-        "acceleration_limit": length / time**2,
-        "soil_acceleration_limit": length / time**2,
-        "resistance": force,
-        "per_depth": force / length,
-        "per_speed": force * time / length,
-        "per_depth_and_speed": force * time / length**2,
+@cache
+def _powers(unit: str) -> Mapping[str, float]:
+    written = unit.replace(" ", "*").replace("turn", "radian")
+    found = pint.application_registry.Quantity(1, written).dimensionality
+    return {name: float(power) for name, power in found.items()}
+
+
+COLUMNS = {
+    "SoilTable": {"depth": "m", "resistance": "N"},
+    "MotorTable": {"speed": "rad/s", "torque": "N m"},
+}
+"""SI units of numbers in tables that stand in files of their own."""
+
+
+def in_units(thing: Any, units: Units, machine: eq.Machine | None = None) -> Any:
+    """A machine, or what belongs to one, with every declared quantity in other units."""
+    machine = thing if isinstance(thing, eq.Machine) else machine
+    kinds = {one.field: innermost(one.kind) for one in declarations(type(thing))}
+    given = {name: getattr(thing, name) for name in kinds}
+    factors = {name: units.of(unit) for name, unit in COLUMNS.get(type(thing).__name__, {}).items()}
+    if isinstance(thing, eq.mechanism.LoadTable):
+        factors["values"] = units.force if len(thing.values) == 2 else units.moment
+    if isinstance(thing, Limit) and thing.at_most is not None:
+        assert machine is not None
+        factors["at_most"] = units.of(SI[quantity_of(thing.objective, machine) or "energy"])
+    changes = {
+        name: grown(value, factors[name])
+        if name in factors
+        else _in_units(value, kinds[name], units, machine)
+        for name, value in given.items()
     }
+    return replace(thing, **changes)
 
-    def measured(load: eq.Load) -> eq.Load:
-        """A table's values are forces in two columns, and torques in one."""
-        if load.table is None:
-            return load
-        factor = force if len(load.table.values) == 2 else units.moment
-        return replace(load, table=rescaled(load.table, {"values": factor}))
 
-    loads = tuple(measured(load) for load in machine.loads)
-    linkage = rescaled(replace(machine, loads=loads, support=None), factors)
-    return replace(linkage, support=machine.support)  # which has no part in forces
+def _in_units(value: Any, kind: Kind, units: Units, machine: eq.Machine | None) -> Any:
+    if isinstance(value, Frozen):
+        return in_units(value, units, machine)
+    if isinstance(kind, Table):  # with one key, which the object has without it
+        kind = innermost(declarations(kind.type)[0].kind)
+    if isinstance(value, Mapping):
+        return {name: _in_units(one, kind, units, machine) for name, one in value.items()}
+    if isinstance(value, tuple):
+        return tuple(_in_units(one, kind, units, machine) for one in value)
+    dimension = "length" if isinstance(kind, Point) else getattr(kind, "dimension", None)
+    unit = None if isinstance(value, str) or dimension is None else SI[dimension]
+    return value if unit is None else grown(value, units.of(unit))
+
+
+def grown(value: Any, factor: float) -> Any:
+    """Numbers, wherever they stand, so many times as large."""
+    if isinstance(value, Mapping):
+        return {name: grown(one, factor) for name, one in value.items()}
+    if isinstance(value, tuple):
+        return tuple(grown(one, factor) for one in value)
+    return None if value is None else factor * value
 
 
 def rescaled(thing: Any, factors: Mapping[str, float]) -> Any:
     """With all that bears these names so many times as large, wherever it stands."""
-
-    def grown(value: Any, factor: float) -> Any:
-        if isinstance(value, Mapping):
-            return {name: grown(one, factor) for name, one in value.items()}
-        if isinstance(value, tuple):
-            return tuple(grown(one, factor) for one in value)
-        return None if value is None else factor * value
 
     if isinstance(thing, Mapping):
         return {name: rescaled(one, factors) for name, one in thing.items()}

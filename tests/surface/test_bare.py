@@ -65,11 +65,17 @@ def left_out() -> list[str]:
     ]
 
 
-def statuses(folder: Path, commands: list[list[str]]) -> tuple[dict[str, int], str]:
-    """Exit status of each command, and what all of them said."""
+def bare(folder: Path, commands: list[list[str]]) -> subprocess.CompletedProcess[str]:
+    """Commands one after the other, without what extras bring."""
     words = [sys.executable, "-c", SCRIPT, json.dumps(left_out()), json.dumps(commands)]
     done = subprocess.run(words, cwd=folder, capture_output=True, encoding="utf-8", check=False)
     assert done.returncode == 0, done.stderr[-2000:]
+    return done
+
+
+def statuses(folder: Path, commands: list[list[str]]) -> tuple[dict[str, int], str]:
+    """Exit status of each command, and what all of them said."""
+    done = bare(folder, commands)
     found = re.findall(r"^status (\d+) (.*)$", done.stdout, re.MULTILINE)
     return {command: int(status) for status, command in found}, done.stderr
 
@@ -102,3 +108,15 @@ def test_every_command_answers(tmp_path: Path) -> None:
     assert found == dict.fromkeys(works, 0) | dict.fromkeys(refused, 2)
     for name in refused.values():
         assert name in said
+
+
+def test_a_study_is_told_what_it_lacks(tmp_path: Path) -> None:
+    """Neither compiled loops nor a store, but tolerances need nothing else."""
+    names = ("study-of-lengths", "study-of-tolerances")
+    told = bare(tmp_path, [["check", name] for name in names]).stdout
+    assert told.count("computed many at once, by NumPy\n") == 2
+    assert told.count('install it with: pip install "equipoise[studies]"') == 3
+    assert told.count("a sweep needs zarr, which is not installed") == 2
+    assert told.count("a search needs pymoo, which is not installed") == 1
+    assert "ready for: equipoise tolerance study-of-tolerances\n" in told
+    assert told.count("ready for") == 1

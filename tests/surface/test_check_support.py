@@ -93,5 +93,5 @@ def test_loads() -> None:
     assert [line.split() for line in lines[begin + 4 : begin + 7]] == [
         ["crank,", "N", "m", "torque,", "stroke.csv", "0.0", "180.0", "zero", "10.00", "15.71"],
         ["C", "of", "coupler,", "N", "force", "always", "5.000", "0"],
-        ["crank,", "N", "m", "torque", "300.0", "30.0", "0", "2.000", "-3.142"],
+        ["crank,", "N", "m", "torque", "300.0", "30.0", "zero", "2.000", "-3.142"],
     ]

@@ -117,7 +117,8 @@ def test_help_names_every_command(asked: str) -> None:
     assert sorted(listed) == sorted(COMMANDS)
 
 
-DRAWN = ["--json", "--plot", "--format"]
+PRINTED = ["--units", "--json"]
+DRAWN = [*PRINTED, "--plot", "--format"]
 OUTPUTS = [*DRAWN, "--csv"]
 FREED = [
     *["--move-cm", "--crank-counterweight", "--counterweight", "--geared-counterweight"],
@@ -127,21 +128,21 @@ FREED = [
 OPTIONS = {
     "analyze": [
         *["FILE", "--angles", "--speed", "--acceleration", "--about", "--split", "--csv"],
-        *["--orders", "--crank-zero", "--output", "--dwell", "--json"],
+        *["--orders", "--crank-zero", "--output", "--dwell", *PRINTED],
     ],
     "animate": [
         *["FILE", "--out", "--seconds", "--turns", "--width", "--trace", "--force", "--speed"],
         *["--dark"],
     ],
     "balance": ["FILE", "--objective", "--limit", "--speed", "--out", *OUTPUTS, *FREED],
-    "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", "--json"],
-    "balance conditions": ["FILE", "--speed", "--json"],
-    "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", "--json"],
+    "balance arrangements": ["FILE", "ROWS", "--spacing", "--speed", *PRINTED],
+    "balance conditions": ["FILE", "--speed", *PRINTED],
+    "balance sensitivities": ["FILE", "OUTPUT", "--crank-zero", "--speed", *PRINTED],
     "balance trade-off": [
         *["FILE", "FIRST", "SECOND", "--points", "--limit", "--speed", *OUTPUTS, *FREED],
     ],
     "best": ["STORE", "--by", "--largest", "--count", "--out", "--design", *OUTPUTS],
-    "check": ["FILE"],
+    "check": ["FILE", "--units"],
     "decay": ["CSV", "--stiffness", "--arm", "--spring-arm", "--confidence", *DRAWN],
     "examples": [],
     "export": ["STORE", "--out", "--kept"],
@@ -151,31 +152,31 @@ OPTIONS = {
     ],
     "modes": ["FILE", "--model", *DRAWN],
     "new": ["FILE", "--tool", "--study"],
-    "plant": ["FILE", "--speed", "--crank-zero", "--angles", "--units", *OUTPUTS],
-    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", "--units", *OUTPUTS],
-    "plot": ["FILE", "--out", "--format", "--only", "--output", "--at", "--speed"],
+    "plant": ["FILE", "--speed", "--crank-zero", "--angles", *OUTPUTS],
+    "plant fit": ["FILE", "TARGETS", "--out", "--seed", "--speed", *OUTPUTS],
+    "plot": ["FILE", "--out", "--format", "--only", "--output", "--at", "--speed", "--units"],
     "plot map": [
         *["FILE", "FIRST", "SECOND", "OUTPUT", "--set", "--points", "--speed", "--out"],
-        "--format",
+        *["--format", "--units"],
     ],
-    "report": ["FILE", "--out", "--language", "--pdf", "--speed"],
-    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", "--units", *OUTPUTS],
-    "resume": ["STORE", "--workers", "--cluster", "--json"],
+    "report": ["FILE", "--out", "--language", "--pdf", "--speed", "--units"],
+    "respond": ["FILE", "--model", "--speed", "--speeds", "--drive", *OUTPUTS],
+    "resume": ["STORE", "--workers", "--cluster", *PRINTED],
     "schema": ["--tool", "--study"],
     "search": [
         *["STUDY", "--population", "--generations", "--seed", "--out", "--design", *OUTPUTS],
     ],
     "serve": ["FILE", "--port", "--no-browser"],
-    "simulate": ["FILE", "DURATION", "--speed", "--drive", "--units", *OUTPUTS],
-    "sweep": ["STUDY", "--out", "--workers", "--cluster", "--json"],
+    "simulate": ["FILE", "DURATION", "--speed", "--drive", *OUTPUTS],
+    "sweep": ["STUDY", "--out", "--workers", "--cluster", *PRINTED],
     "tolerance": ["STUDY", "--designs", *DRAWN],
     "tool": [
         *["FILE", "--modes", "--number", "--respond", "--speeds", "--at", "--exposure"],
-        *["--duration", "--units", *OUTPUTS],
+        *["--duration", *OUTPUTS],
     ],
-    "tool design": ["FILE", "--out", "--units", *DRAWN],
-    "tool sensitivities": ["FILE", "--speeds", "--units", "--json"],
-    "tool vary": ["FILE", "CHANGE", "--number", "--units", *DRAWN],
+    "tool design": ["FILE", "--out", *DRAWN],
+    "tool sensitivities": ["FILE", "--speeds", *PRINTED],
+    "tool vary": ["FILE", "CHANGE", "--number", *DRAWN],
 }
 
 

@@ -12,7 +12,8 @@ import pytest
 
 import equipoise as eq
 from equipoise.cli import progress as progress_lines
-from equipoise.cli.progress import left_told, rate_told, swept, time_told
+from equipoise.cli.progress import left_told, swept
+from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.schema.study_units import unit_named
 from equipoise.studies.outcomes import Progress
 from surface.running import command_lines, equipoise, refuses, succeeded

@@ -16,7 +16,7 @@ from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
 from equipoise.balancing.multi_row import Rows, Term
 from equipoise.balancing.objectives import measured, unit_of
-from equipoise.balancing.phase_search import Phasing
+from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
@@ -229,11 +229,11 @@ def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
         prices=_prices(found),
         looked_at=best.nodes,
         notes=tuple(_notes(found)),
-        scope=tuple(_scope(found)),
+        scope=tuple(proved_of(found)),
     )
 
 
-def _scope(found: Solution) -> Iterator[Note]:
+def proved_of(found: Solution) -> Iterator[Note]:
     """Of what the bound is proved, where that is not all that the plan allows."""
     problem = found.problem
     if problem.reads_gauges and problem.supports_more:

@@ -18,7 +18,7 @@ from equipoise.results.outputs import MEASURES, objective_named, output_named, u
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
 
 EXACT, SMALL = 1e-12, 1.01e-4
 """Gap below which nothing more is told of it; above which it is told in percent."""
@@ -95,10 +95,11 @@ def objectives_table(found: Balanced) -> Table:
 
 def _worse(found: Balanced) -> Iterator[str]:
     """What has become larger by more than a tenth, the worst first."""
+    least = EXACT * max(found.before.values(), default=0.0)
     grown = {
         name: found.after.get(name, 0.0) / old - 1
         for name, old in found.before.items()
-        if old > EXACT and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
+        if old > least and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
     }
     for name in sorted(grown, key=grown.__getitem__, reverse=True)[:MOST_WORSE]:
         if grown[name] > WORSE:

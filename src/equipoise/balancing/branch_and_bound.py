@@ -148,7 +148,7 @@ class _Search:
         if exact or root.solved.bound > above:
             return self._as_best(root.solved, self.program, root.solved.bound)
         if any(not isfinite(s.high - s.low) for s in self.squares):
-            root = self._node(tuple(_finite(s) for s in self.squares))
+            root = self._node(tuple(finite(s) for s in self.squares))
         order = count()
         waiting = [(root.solved.bound, next(order), root)]
         bound = root.solved.bound
@@ -224,7 +224,7 @@ class _Search:
         """The program with every square replaced by its tangent at a ratio."""
         program = self.program.without_squares({square.lift for square in self.squares})
         for square, ratio in zip(self.squares, ratios, strict=True):
-            low, high = _finite(square)
+            low, high = finite(square)
             square.keep_tangent(program, ratio, width * (high - low))
         return program
 
@@ -246,7 +246,8 @@ class _Search:
         return [(*before, half, *after) for half in ((low, cut), (cut, high))]
 
 
-def _finite(square: Square) -> tuple[float, float]:
+def finite(square: Square) -> tuple[float, float]:
+    """Ends of a square's ratio, of which there is one where it has none."""
     low = square.low if isfinite(square.low) else -WIDE
     high = square.high if isfinite(square.high) else WIDE
     return low, high

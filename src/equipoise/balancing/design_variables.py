@@ -23,6 +23,7 @@ from equipoise.mechanism.force_elements import Spring
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.motion import Motion
 from equipoise.mechanism.parameters import parameters_of, spring_columns
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 
 ROUNDING = 1e-14
@@ -139,7 +140,7 @@ class MovedCenter(DesignVariables):
         self.mass, self.before = body.mass, body.center_of_mass
         limits = [*(move.x or ()), *(move.y or ()), *(move.center or ()), move.radius or 0.0]
         sizes = [hypot(*point) for point in body.points.values()] + [abs(x) for x in limits]
-        self.length = max(sizes) or 1.0
+        self.length = max(sizes) or float(size_of_bodies(machine))
 
     @property
     def effect(self) -> Array:

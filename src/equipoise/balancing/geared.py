@@ -28,8 +28,8 @@ directions are looked for too; directions."""
 LARGEST_DENOMINATOR = 3
 """Of the ratios that are tried where the driver turns fully: turns until the shaft is back."""
 TURNS = 720
-SAME = 1e-6
-"""m: lengths that are told as equal."""
+SAME = 2e-5
+"""Share of the distance of two shafts to which gears have to fill it."""
 
 
 @dataclass(frozen=True)
@@ -135,9 +135,13 @@ class Gearing:
         half, counts = self.geared.module / 2, range(low, high + 1)
         for a, b, way in product(counts, counts, self._directions()):
             mesh = Mesh(half * a, half * b, way, (a, b))
-            meets = self.geared.axis is None or abs(mesh.driver + mesh.shaft - self.apart) < SAME
+            meets = self.geared.axis is None or self._fills(mesh)
             if meets:
                 yield mesh
+
+    def _fills(self, mesh: Mesh) -> bool:
+        """Whether the pitch circles touch."""
+        return abs(mesh.driver + mesh.shaft - self.apart) < SAME * self.apart
 
     def _directions(self) -> list[float]:
         if self.geared.direction is None:
@@ -254,7 +258,7 @@ def nearest(motion: Motion, link: str, place: complex) -> float:
     least = min(float(np.min(np.abs(p - place))) for p in points)
     for one, other in combinations(points, 2):
         along = other - one
-        share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-30)
+        share = np.real((place - one) * np.conj(along)) / np.maximum(np.abs(along) ** 2, 1e-300)
         foot = one + np.clip(share, 0.0, 1.0) * along
         least = min(least, float(np.min(np.abs(foot - place))))
     return least

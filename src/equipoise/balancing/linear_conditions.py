@@ -28,6 +28,7 @@ from equipoise.mechanism.parameters import (
     parameter_values,
     regressor,
 )
+from equipoise.quantities import Dimension, display
 from equipoise.results.blocks import Block, Column, Facts, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
@@ -294,9 +295,10 @@ def _term(link: str, quantity: str, value: float) -> tuple[str, str]:
     sign, size, name = "-" if value < 0 else "+", abs(value), f"{link}.{quantity}"
     if quantity == "mass":
         return sign, name if f"{size:.5g}" == "1" else f"{size:.5g} {name}"
-    if quantity == "inertia":
-        return sign, f"{name} / ({1e3 / size**0.5:.5g} mm)^2"
-    return sign, f"{name} / {1e3 / size:.5g} mm"
+    length = 1 / (size**0.5 if quantity == "inertia" else size)
+    unit = display("length", [length])
+    told = f"{unit.factor * length:.5g} {unit.unit}"
+    return sign, f"{name} / ({told})^2" if quantity == "inertia" else f"{name} / {told}"
 
 
 def _joined(terms: list[tuple[str, str]]) -> str:
@@ -307,8 +309,12 @@ def _joined(terms: list[tuple[str, str]]) -> str:
 # -- what is shown ---------------------------------------------------------------------------------
 
 WANTED = {"zero": to_say("zero"), "sine": to_say("a pure sine of the crank angle")}
-SHOWN = {"kg": ("kg", 1.0), "kg m": ("kg mm", 1e3), "kg m2": ("kg mm^2", 1e6)}
-"""SI unit of a combination -> unit in which it is shown, and how many of these it is."""
+SHOWN: dict[str, tuple[Dimension, str]] = {
+    "kg": ("mass", "kg"),
+    "kg m": ("unbalance", "kg mm"),
+    "kg m2": ("inertia", "kg mm^2"),
+}
+"""SI unit of a combination -> what it is, and the unit in which it is usually shown."""
 
 
 def conditions_blocks(*found: Conditions, verdict: Sequence[str] = ()) -> Iterator[Block]:
@@ -328,10 +334,12 @@ def _conditions(found: Conditions) -> Block:
     told = {"what": subject, "wanted": say(WANTED[found.kind])}
     if not found.count:
         return Text(say("Conditions for {what} to be {wanted}: none, it always is.", **told))
+    now = [one.factor * float(k) for one, k in zip(found.readings, found.residuals, strict=True)]
     rows = tuple(
-        (f"{one.text} = 0", Value(times * one.factor * float(residual)), unit)
-        for one, residual in zip(found.readings, found.residuals, strict=True)
-        for unit, times in [SHOWN[one.unit]]
+        (f"{one.text} = 0", Value(unit.factor * value), unit.unit)
+        for one, value in zip(found.readings, now, strict=True)
+        for dimension, usual in [SHOWN[one.unit]]
+        for unit in [display(dimension, now, usual)]
     )
     title = say("Conditions for {what} to be {wanted}", **told)
     return Table(title, (Column(""), Column(say("now")), Column("")), rows)

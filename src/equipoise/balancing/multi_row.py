@@ -43,6 +43,8 @@ AREA_SAMPLES = 1440
 SAMPLES, NEAR, NEWTON_ROUNDS, REACH = 360, 0.03, 4, 0.03
 """In a turn, among which tops are looked for; share of the range by which a sample may miss its
 top; steps of Newton's method from there, and how far they may lead, rad."""
+PENALTY = 1e3
+"""On a limit that is passed by its own size."""
 NOTHING = 1e-12
 """Share of the loudest at which an amplitude or a value is rounding."""
 
@@ -245,11 +247,17 @@ class Term:
 @dataclass(frozen=True, eq=False)
 class Cost:
     """Several objectives as one: their weighted sum, or the root of the sum of squares, each over
-    the value that counts as one.
+    the value that counts as one; it rises steeply where limits are more than their scale.
     """
 
     terms: tuple[Term, ...]
     combine: Combine = "sum"
+    limits: tuple[Term, ...] = ()
+
+    @property
+    def measured(self) -> tuple[Term, ...]:
+        """Everything whose value counts."""
+        return (*self.terms, *self.limits)
 
     @property
     def rows(self) -> int:
@@ -267,15 +275,16 @@ class Cost:
 
     def values(self, phases: Array) -> Array:
         """Combined value (...) at phases (..., m), rad."""
-        return self.of([term.values(phases) for term in self.terms])
+        return self.of([term.values(phases) for term in self.measured])
 
     def of(self, values: Sequence[Any]) -> Array:
-        """Combined value (...) of the values (...) of all terms."""
-        pairs = zip(self.factors, values, strict=True)
-        parts = [factor * np.asarray(value) for factor, value in pairs]
+        """Combined value (...) of the values (...) of all terms, and of all limits."""
+        parts = [factor * np.asarray(x) for factor, x in zip(self.factors, values, strict=False)]
+        over = zip(self.limits, values[len(parts) :], strict=False)
+        beyond = sum(PENALTY * np.maximum(np.asarray(x) / one.scale - 1, 0.0) for one, x in over)
         if self.combine == "sum" or len(parts) == 1:
-            return np.asarray(sum(parts))
-        return np.asarray(np.sqrt(sum(part**2 for part in parts)))
+            return np.asarray(sum(parts) + beyond)
+        return np.asarray(np.sqrt(sum(part**2 for part in parts)) + beyond)
 
     @property
     def whole(self) -> float:
@@ -285,7 +294,7 @@ class Cost:
     @property
     def smooth(self) -> bool:
         """Whether mean squares at one speed each are all there is."""
-        return all(
+        return not self.limits and all(
             by_orders(term.measure) and len(term.signals.amplitudes) == 1 for term in self.terms
         )
 

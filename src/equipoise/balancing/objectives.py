@@ -7,6 +7,7 @@ derivative by each number there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 
@@ -48,39 +49,47 @@ class Near:
 
 def signals_of(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
     """Signals whose largest measure an objective is: one for each speed at which it is read."""
-    output, about = objective.output, objective.about
+    output, machine = objective.output, effects.machine
     if output.startswith(GAUGES):
         found = _gauge_signals(effects, objective, near)
-    elif output in OF_ROWS or (len(effects.machine.rows) > 1 and not output.startswith(JOINTS)):
-        found = [of_all_rows(effects, output, about)]
+    elif output in OF_ROWS or (len(machine.rows) > 1 and not output.startswith(JOINTS)):
+        found = [of_all_rows(effects, output, objective.about)]
     else:
-        found = [effects.signal(output, about)]
+        found = [effects.signal(output, objective.about)]
     return [signal.kept(objective.orders) for signal in found]
 
 
 def of_all_rows(effects: Effects, output: str, about: str | None = None) -> Signal:
     """An output summed over all rows in their phases."""
+    return in_their_phases(of_rows_alone(effects, output, about), effects.machine)
+
+
+def in_their_phases(each: Sequence[Signal], machine: Machine) -> Signal:
+    """The sum of what rows do in phase 0, each ahead by its phase."""
+    turned = [one.ahead_by(row.phase) for one, row in zip(each, machine.rows, strict=True)]
+    start, columns = sum(one.start for one in turned), sum(one.columns for one in turned)
+    return Signal(np.asarray(start), np.asarray(columns), turned[0].turns)
+
+
+def of_rows_alone(effects: Effects, output: str, about: str | None = None) -> list[Signal]:
+    """An output of every row by itself, in phase 0."""
     kind, _, axis = output.rpartition(".")
     if axis in {"x", "y"} and kind:
-        whole = of_all_rows(effects, kind, about)
         part = np.real if axis == "x" else np.imag
-        return Signal(part(whole.start), part(whole.columns), whole.turns)
+        whole = of_rows_alone(effects, kind, about)
+        return [Signal(part(one.start), part(one.columns), one.turns) for one in whole]
+    machine = effects.machine
     force = effects.signal("frame_force" if output.startswith("frame") else "shaking_force")
     one = force if output in OF_ROWS else effects.signal(output)
-    start: Array = 0.0 * one.start
-    columns: Array = 0.0 * one.columns
-    if output in OF_ROWS:
-        start, columns = start.real, columns.real
-    for row in effects.machine.rows:
-        here = one
-        if output.endswith("_moment"):
-            arm = arm_of(effects.machine, effects.motion, row, about)
-            there = moment_of_row(output, row, arm, force.start, one.start)
-            by_number = moment_of_row(output, row, arm, force.columns, one.columns)
-            here = Signal(there, by_number, one.turns)
-        here = here.ahead_by(row.phase)
-        start, columns = start + here.start, columns + here.columns
-    return Signal(start, columns, one.turns)
+    if not output.endswith("_moment"):
+        return [one] * len(machine.rows)
+    found = []
+    for row in machine.rows:
+        arm = arm_of(machine, effects.motion, row, about)
+        there = moment_of_row(output, row, arm, force.start, one.start)
+        by_number = moment_of_row(output, row, arm, force.columns, one.columns)
+        found.append(Signal(there, by_number, one.turns))
+    return found
 
 
 def arm_of(machine: Machine, motion: Motion, row: Row, about: str | None) -> complex:
@@ -106,6 +115,13 @@ def moment_of_row(output: str, row: Row, arm: complex, force: Array, moment: Arr
 
 def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[Signal]:
     """A gauge's displacement (m or rad, without its mean) at each of the objective's speeds."""
+    linear, row = reading_of(objective, near)
+    speeds, rows = objective.speeds or (effects.machine.drive.speed,), rows_of(near.machine)
+    return [read(effects, linear, row, speed, near.numbers, rows) for speed in speeds]
+
+
+def reading_of(objective: Objective, near: Near) -> tuple[Linear, Array]:
+    """The support near the solution, and a row (D,) that reads a gauge off its coordinates."""
     like = near.machine
     if like.support is None:
         raise ModelError("support", "missing; a gauge needs a support that it stands on")
@@ -113,16 +129,19 @@ def _gauge_signals(effects: Effects, objective: Objective, near: Near) -> list[S
     gauges, name = gauges_of(linear.body), objective.output.removeprefix(GAUGES)
     if name not in gauges:
         raise ModelError("support.gauges", unknown(name, gauges, "gauge"))
-    row = linear.body.row(gauges[name])[linear.body.free]
-    speeds = objective.speeds or (effects.machine.drive.speed,)
-    return [_read(effects, linear, row, speed, near.numbers) for speed in speeds]
+    return linear, linear.body.row(gauges[name])[linear.body.free]
 
 
-def _read(
-    effects: Effects, linear: Linear, row: Array, speed: float, numbers: Array | None
+def read(
+    effects: Effects,
+    linear: Linear,
+    row: Array,
+    speed: float,
+    numbers: Array | None,
+    rows: Sequence[Row],
 ) -> Signal:
-    """What a reading (D,) of the free coordinates sees at a speed, rad/s."""
-    wrench = _wrench(effects.at(speed), linear)  # (6, 1 + K, orders)
+    """What a reading (D,) of the free coordinates sees of some rows at a speed, rad/s."""
+    wrench = _wrench(effects.at(speed), linear, rows)  # (6, 1 + K, orders)
     frequency = wrench.orders[1:] * speed
     along = np.broadcast_to(row[:, None], (len(frequency), len(row), 1))
     seen = np.linalg.solve(linear.impedance(frequency), along)[..., 0]
@@ -178,8 +197,8 @@ def _tidy(columns: Array, whole: Array) -> Array:
     return np.where(np.abs(columns) > ROUNDING * np.max(np.abs(whole)), columns, 0.0)
 
 
-def _wrench(effects: Effects, linear: Linear) -> Periodic:
-    """Wrench (6, 1 + K, orders) on the support: of what is there, and of a unit of each number.
+def _wrench(effects: Effects, linear: Linear, rows: Sequence[Row]) -> Periodic:
+    """Wrench (6, 1 + K, orders) of rows on the support: as they are, and of a unit of each number.
 
     The machine's weight is no part of it; its moment is as the step has it, about the drive's
     pivot.
@@ -190,7 +209,7 @@ def _wrench(effects: Effects, linear: Linear) -> Periodic:
     signals = np.stack([forces.real, forces.imag, _moments(effects, linear)])
     one = Periodic.of(signals, effects.motion.turns)
     flat, total = one.amplitudes.reshape(3, -1), Periodic(np.zeros((6, 1, 1)), one.turns)
-    for place in rows_of(linear.body.machine):
+    for place in rows:
         here = excitation.about_reference(flat, place).reshape(6, *one.amplitudes.shape[1:])
         total = total + Periodic(here, one.turns).shifted(place.phase)
     return total

@@ -3,8 +3,8 @@
 Plan -> shafts -> free numbers -> cone program -> best numbers -> new machine -> what it does.
 
 Of gears, numbers of teeth are tried one and all; of ratios and directions a grid, whose best are
-followed as far down as they go.  Where phases of rows are free, the linkage is balanced first, and
-its rows are turned after it.
+followed as far down as they go.  Where phases of rows are free, they and the masses are searched
+together, after the gears.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ import numpy as np
 
 from equipoise.balancing.balanced import Balanced, result_of
 from equipoise.balancing.geared import Gearing, Mesh, with_shafts
-from equipoise.balancing.phase_search import PhaseSearch, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.rows_and_masses import Together
 from equipoise.balancing.solution import Solution, solve_problem
 from equipoise.balancing.weights import AddedWeight
 from equipoise.balancing.workshop import Change
@@ -27,6 +29,8 @@ from equipoise.i18n import Note
 from equipoise.mechanism.balance import AddedMass, Balance, Objective, Phases, Weight
 from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import JOINTS
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 from equipoise.vibration.forced import check_moving
 
@@ -79,7 +83,8 @@ def _checked(machine: Machine, plan: Balance | None) -> Balance:
 
 
 SMALLEST = 0.05
-"""Room of a counterweight on a link that has no other point than its pin, m."""
+"""Room of a counterweight on a link that has no other point than its pin, m; less in a machine
+that is smaller."""
 
 
 def default_plan(machine: Machine) -> Balance:
@@ -115,7 +120,8 @@ def reach_of(machine: Machine, link: str) -> float:
     """Distance of a link's farthest point from its pin, m."""
     points = machine.links[link].points
     center = complex(*points[pin_of(machine, link)])
-    return max(abs(complex(*point) - center) for point in points.values()) or SMALLEST
+    found = max(abs(complex(*point) - center) for point in points.values())
+    return found or min(SMALLEST, float(size_of_bodies(machine)))
 
 
 LARGE = 1e300
@@ -233,42 +239,72 @@ def _follow(gearing: Gearing, start: Mesh, cost: Callable[[Mesh], float]) -> Non
     minimize(at, begin, method="Nelder-Mead", bounds=limits, options=options)
 
 
-ROWS_AFTER_LINKAGE = Note(
-    "the linkage was balanced first and its rows were turned after it; both together "
-    "might do better"
-)
-
-
 def balance_rows(machine: Machine, plan: Balance, progress: Progress | None = None) -> Balanced:
-    """Balance the linkage where the plan frees anything of it, then choose the phases of its rows.
-
-    Everything before is read off the machine as it was.
-    """
+    """Choose the phases of a machine's rows; together with masses where the plan frees these."""
     assert plan.phases is not None
-    if plan.limits:
-        raise UsageError("limits are not kept while phases are looked for; leave one of them out")
-    linkage = replace(plan, phases=None)
-    found: Balanced | None = None
-    if not linkage.changes_nothing:
-        found = result_of(machine, linkage, solve_plan(machine, linkage, progress))
-    start = machine if found is None else found.machine
-    phasing = choose_phases(start, plan.objectives, plan.phases, plan.combine, progress)
-    search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine)
-    before = {term.objective.name: term.value_at(search.present) for term in search.cost.terms}
-    after = phasing.after
-    change = Change("phases", "rows", {"phases": phasing.phases})
-    notes = phasing.notes if found is None else (ROWS_AFTER_LINKAGE, *found.notes, *phasing.notes)
+    told = progress or (lambda done, most: None)
+    linkage, solution = replace(plan, phases=None), None
+    scope: tuple[Note, ...] = ()
+    limits = tuple(one for one in plan.limits if not one.objective.output.startswith(JOINTS))
+    search = PhaseSearch(machine, plan.objectives, plan.phases, plan.combine, limits)
+    method = Note("branch and bound over all phases of the rows")
+    if linkage.changes_nothing:
+        if len(limits) < len(plan.limits):
+            raise UsageError("no phase changes the force in a joint; leave its limit out")
+        phasing = choose_phases(
+            machine, plan.objectives, plan.phases, plan.combine, progress, limits
+        )
+    else:
+        try:
+            first = solve_plan(machine, linkage, progress)
+        except UsageError:  # in these phases, and perhaps in no others
+            if plan.shafts or plan.geared:
+                raise
+            first = None
+        problem = Problem.of(machine, linkage) if first is None else first.problem
+        together = Together(problem, search)
+        solution, phasing = together.run(first, told)
+        method = Note("branch and bound over all phases of the rows and all masses")
+        scope = together.scope
+    found = _in_phases(machine, plan, phasing, method, scope)
+    if solution is None:
+        return found
+    changed = result_of(machine, plan, solution)
+    return replace(
+        changed,
+        changes=(*changed.changes, *found.changes),
+        objectives={
+            one.objective.name: (
+                one.value_at(search.present),
+                changed.objectives[one.objective.name][1],
+            )
+            for one in search.cost.terms
+        },
+        bound=min(phasing.bound, changed.cost),
+        method=method,
+        looked_at=phasing.looked_at,
+        notes=(*changed.notes, *phasing.notes),
+        phasing=phasing,
+        scope=scope,
+    )
+
+
+def _in_phases(
+    machine: Machine, plan: Balance, phasing: Phasing, method: Note, scope: tuple[Note, ...]
+) -> Balanced:
+    """The result where nothing but phases has changed."""
     return Balanced(
         machine=phasing.machine,
         original=machine,
         plan=plan,
-        changes=(*(() if found is None else found.changes), change),
-        objectives={name: (before[name], after[name]) for name in after},
-        cost=float(search.cost.of([after[name] for name in before])),
-        bound=phasing.bound if found is None else 0.0,
-        method=Note("branch and bound over all phases of the rows"),
-        prices={} if found is None else found.prices,
-        looked_at=phasing.combinations,
-        notes=notes,
+        changes=(Change("phases", "rows", {"phases": phasing.phases}),),
+        objectives={name: (phasing.before[name], after) for name, after in phasing.after.items()},
+        cost=phasing.combined[1],
+        bound=min(phasing.bound, phasing.combined[1]),
+        method=method,
+        prices={},
+        looked_at=phasing.looked_at,
+        notes=phasing.notes,
         phasing=phasing,
+        scope=scope,
     )

@@ -27,7 +27,7 @@ from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.objectives import OF_ROWS
 from equipoise.mechanism.support import Row
-from equipoise.quantities import angle, number
+from equipoise.quantities import display, fixed, told
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.signals import Array
@@ -203,14 +203,14 @@ def arranged(machine: Machine, pattern: str | Pattern, spacing: float) -> Machin
 
 def pattern_blocks(machine: Machine, rows: int, spacing: float) -> Iterator[Block]:
     """Patterns for a number of rows at a spacing (m): what each leaves, and how it twists."""
-    apart = number(1e3 * spacing)
-    yield Text(say("{rows} rows, {apart} mm from row to row", rows=rows, apart=apart))
-    patterns = patterns_for(rows)
+    apart = told(spacing, "length")
+    yield Text(say("{rows} rows, {apart} from row to row", rows=rows, apart=apart))
+    patterns, unit = patterns_for(rows), display("angle")
     phases = [
-        (one.name, " ".join(angle(p).removesuffix(".0") for p in one.phases), one.source)
+        (one.name, " ".join(fixed(unit, p, 1).removesuffix(".0") for p in one.phases), one.source)
         for one in patterns
     ]
-    heads = ("", f"{say('phases of the rows')}, deg", say("printed by Yamashita et al. in"))
+    heads = ("", f"{say('phases of the rows')}, {unit.unit}", say("printed by Yamashita et al. in"))
     yield Table(say("Patterns"), tuple(map(Column, heads)), tuple(phases))
     left = [(one.name, one.left, say("yes") if one.twists else say("no")) for one in patterns]
     heads = ("", say("orders left, of how many rows"), say("twist"))

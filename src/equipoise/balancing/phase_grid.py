@@ -71,7 +71,7 @@ class Grid:
     @property
     def affordable(self) -> bool:
         """Whether all arrangements can be looked at."""
-        rows, terms = self.cost.rows, self.cost.terms
+        rows, terms = self.cost.rows, self.cost.measured
         summed = sum(
             term.signals.amplitudes[:, :, :, 0].size * self._samples
             for term in terms
@@ -87,10 +87,10 @@ class Grid:
 
     def best(self, progress: Callable[[int], None]) -> Array:
         """The best arrangements (R, m), rad, the best first; `progress` hears how many are done."""
-        sampled = any(not by_orders(term.measure) for term in self.cost.terms)
+        sampled = any(not by_orders(term.measure) for term in self.cost.measured)
         judges = [
             self._by_pairs(term) if by_orders(term.measure) else self._by_samples(term)
-            for term in self.cost.terms
+            for term in self.cost.measured
         ]
         levels, costs = np.zeros((0, self.cost.rows), np.int64), np.zeros(0)
         done = 0
@@ -156,9 +156,13 @@ class Grid:
         return judge
 
 
-def alike(cost: Cost) -> list[list[int]]:
-    """Rows that do the same to every objective, by groups; what does not vary is left out."""
-    signals = [term.signals.amplitudes[..., 1:] for term in cost.terms]
+def alike(cost: Cost, more: Sequence[Array] = ()) -> list[list[int]]:
+    """Rows that do the same to every objective, by groups; what does not vary is left out.
+
+    more : amplitudes (K, V, m, C, N) in which they must be alike as well.
+    """
+    signals = [term.signals.amplitudes[..., 1:] for term in cost.measured]
+    signals += [one[..., 1:] for each in more for one in each]
     tops = [np.max(np.abs(a)) for a in signals]
     groups: list[list[int]] = []
     for k in range(cost.rows):

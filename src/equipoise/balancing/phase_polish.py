@@ -15,6 +15,7 @@ import numpy as np
 
 from equipoise.balancing.multi_row import (
     AREA_SAMPLES,
+    PENALTY,
     Cost,
     Term,
     by_orders,
@@ -146,7 +147,7 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
     """
     from scipy.optimize import linprog
 
-    found = [Tops.of(term, phases).pieces(phases) for term in cost.terms]
+    found = [Tops.of(term, phases).pieces(phases) for term in cost.measured]
     now = np.array([np.max(values) for values, _ in found])
     weights, unit = _weights(cost, now), np.where(now > 0, now, 1.0)
     free = len(phases) - 1
@@ -156,11 +157,11 @@ def _step(cost: Cost, phases: Array, region: float) -> tuple[Array, float]:
         np.concatenate([np.zeros(free), weights * unit]),
         rows,
         -np.concatenate([values for values, _ in found]),
-        bounds=[(-1.0, 1.0)] * free + [(None, None)] * len(found),
+        bounds=[(-1.0, 1.0)] * free + _kept(cost, unit),
     )
     if result.x is None:
         return np.zeros(free), 0.0
-    return result.x[:free] * region, float(weights @ now - result.fun)
+    return result.x[:free] * region, float(weights @ np.maximum(now, _least(cost)) - result.fun)
 
 
 def _below(found: list[Pieces], unit: Array) -> Array:
@@ -177,7 +178,7 @@ def _curved(cost: Cost, phases: Array) -> Array:
     """
     from scipy.optimize import minimize
 
-    tops = [Tops.of(term, phases) for term in cost.terms]
+    tops = [Tops.of(term, phases) for term in cost.measured]
     now = np.array([np.max(each.pieces(phases)[0]) for each in tops])
     unit, free = np.where(now > 0, now, 1.0), len(phases) - 1
 
@@ -202,10 +203,10 @@ def _curved(cost: Cost, phases: Array) -> Array:
 
     result = minimize(
         total,
-        np.concatenate([np.zeros(free), now / unit]),
+        np.concatenate([np.zeros(free), np.maximum(now, _least(cost)) / unit]),
         jac=total_slope,
         method="SLSQP",
-        bounds=[(-LEAP, LEAP)] * free + [(None, None)] * len(tops),
+        bounds=[(-LEAP, LEAP)] * free + _kept(cost, unit),
         constraints={"type": "ineq", "fun": room, "jac": slopes},
         options={"ftol": 1e-16, "maxiter": 100},
     )
@@ -213,11 +214,22 @@ def _curved(cost: Cost, phases: Array) -> Array:
 
 
 def _weights(cost: Cost, now: Array) -> Array:
-    """Slope of the combined value by that of each term."""
-    if cost.combine == "sum":
-        return cost.factors
-    parts = cost.factors * now
-    return np.asarray(cost.factors * parts / max(float(np.linalg.norm(parts)), TINY))
+    """Slope of the combined value by that of each term, and of each limit where it is passed."""
+    factors, beyond = cost.factors, [PENALTY / one.scale for one in cost.limits]
+    if cost.combine == "squares":
+        parts = factors * now[: len(factors)]
+        factors = factors * parts / max(float(np.linalg.norm(parts)), TINY)
+    return np.concatenate([factors, beyond])
+
+
+def _least(cost: Cost) -> Array:
+    """Values of terms and limits below which it is all the same."""
+    return np.array([0.0] * len(cost.terms) + [one.scale for one in cost.limits])
+
+
+def _kept(cost: Cost, unit: Array) -> list[tuple[float, None]]:
+    """Ends of the numbers that are the largest values, over their units."""
+    return [(float(least), None) for least in _least(cost) / unit]
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,16 +9,14 @@ twist.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from math import ceil, degrees, pi
-from typing import Any
 
 import numpy as np
 
 from equipoise.balancing.multi_row import NOTHING, Combine, Cost, Rows, RowSignals, Term
-from equipoise.balancing.phase_bound import CLOSE, prove
 from equipoise.balancing.phase_grid import (
     BETTER,
     Grid,
@@ -30,11 +28,8 @@ from equipoise.balancing.phase_grid import (
 )
 from equipoise.balancing.phase_polish import polished
 from equipoise.errors import ModelError, UsageError
-from equipoise.i18n import Note
-from equipoise.mechanism.balance import Objective, Phases
+from equipoise.mechanism.balance import Limit, Objective, Phases
 from equipoise.mechanism.model import Machine
-from equipoise.mechanism.objectives import OF_ROWS
-from equipoise.results.result import Result
 from equipoise.signals import Array
 
 Progress = Callable[[int, int], None]
@@ -65,6 +60,7 @@ class PhaseSearch:
     objectives: tuple[Objective, ...]
     phases: Phases
     combine: Combine
+    limits: tuple[Limit, ...] = ()
 
     def __post_init__(self) -> None:
         count, step = len(self.machine.rows), self.phases.step
@@ -97,7 +93,7 @@ class PhaseSearch:
     @cached_property
     def cost(self) -> Cost:
         terms = tuple(self._term(k, wish) for k, wish in enumerate(self.objectives, 1))
-        return Cost(terms, self.combine)
+        return Cost(terms, self.combine, tuple(map(self._limit, self.limits)))
 
     def _term(self, number: int, objective: Objective) -> Term:
         term = Term(objective, self.rows.signals(objective, f"objectives[{number}]"))
@@ -107,6 +103,17 @@ class PhaseSearch:
             )
         before = float(term.values(self.present))
         return replace(term, scale=term.single if self.vanishes(term) else before)
+
+    def _limit(self, limit: Limit) -> Term:
+        term = Term(limit.objective, self.rows.signals(limit.objective, "limits"))
+        before = float(term.values(self.present))
+        most = (limit.ratio or 0.0) * before if limit.at_most is None else limit.at_most
+        if not most > NOTHING * term.single:
+            raise UsageError(
+                f"the {limit.name} is 0 before, of which there is no share; give the limit in "
+                "a unit"
+            )
+        return replace(term, scale=most)
 
     def vanishes(self, term: Term) -> bool:
         """Whether an objective is 0 already, so that it counts over the sum of all rows alone."""
@@ -140,6 +147,16 @@ class PhaseSearch:
     def polished(self, phases: Array) -> Array:
         """Phases (m,) of the least next to these, on the grid where they nearly are."""
         return self._snapped(polished(self.cost, phases, self.step))
+
+    def improved(self, phases: Array, known: float) -> tuple[Array, float]:
+        """The same with its cost, where phases are better than what is known; else no better.
+
+        Peaks that are read at samples flatter.
+        """
+        if not self.cost.values(phases) < known:
+            return phases, np.inf
+        found = self.polished(phases)
+        return found, float(self.cost.values(found))
 
     def _starts(self, progress: Progress) -> Array:
         """The best cells (S, m) of the grid; and the present and the equally spaced phases."""
@@ -202,149 +219,9 @@ class PhaseSearch:
         return np.asarray((found - found[0]) % self.cost.period)
 
 
-SURVIVES = 1e-9
-"""Share of the largest amplitude of all rows in phase, above which an order is left."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Phasing(Result):
-    """Phases found for the rows of a machine.
-
-    machine : with the rows in these phases.  phases : rad, of each row; row 1 has kept its own.
-    before, after : objective -> its value, in SI units.
-    combined : all objectives together, before and after; each counts over its value before.
-    remaining : orders of the shaking force of all rows together that are left.
-    lateral : ``roll_moment`` and ``yaw_moment`` -> RMS before and after, N m.
-    combinations : arrangements that the first grid has, of `step`, rad; 0 without a grid.
-    bound : proved, of all objectives together in any phases.  looked_at : boxes that it took.
-    """
-
-    machine: Machine
-    phases: tuple[float, ...]
-    before: Mapping[str, float]
-    after: Mapping[str, float]
-    combined: tuple[float, float]
-    remaining: tuple[float, ...]
-    lateral: Mapping[str, tuple[float, float]]
-    combinations: int
-    step: float
-    bound: float
-    looked_at: int
-    notes: tuple[Note, ...] = ()
-
-    def to_dict(self) -> dict[str, Any]:
-        """The machine-readable output, in SI units and rad."""
-        return {
-            "title": self.machine.title,
-            "phases": list(self.phases),
-            "objectives": [
-                {"name": name, "before": self.before[name], "after": self.after[name]}
-                for name in self.before
-            ],
-            "combined": {"before": self.combined[0], "after": self.combined[1]},
-            "remaining_orders": list(self.remaining),
-            "lateral": {
-                name: {"before": before, "after": after}
-                for name, (before, after) in self.lateral.items()
-            },
-            "bound": self.bound,
-            "looked_at": self.looked_at,
-            "combinations": self.combinations,
-            "step": self.step,
-            "notes": list(map(str, self.notes)),
-        }
-
-
-def choose_phases(
-    machine: Machine,
-    objectives: Sequence[Objective],
-    phases: Phases | None = None,
-    combine: Combine = "sum",
-    progress: Progress | None = None,
-) -> Phasing:
-    """Find the phases of a machine's rows that make objectives smallest; row 1 keeps its own.
-
-    Where several are as good, those with the least roll and yaw moment.  None is below `bound`.
-
-    Parameters
-    ----------
-    objectives : outputs with their measures; see `multi_row.Rows.signals`.
-    phases : how finely to look; every 5 deg if None.
-    combine : several objectives by their weighted sum, or by the root of the sum of squares.
-    progress : is told how many arrangements of the grid have been looked at.
-
-    Raises
-    ------
-    ModelError : there are fewer than two rows, or an objective cannot be measured.
-    UsageError : no phase changes an objective, or there is none.
-    MassError, MotionError, ResponseError : the machine cannot be computed.
-    """
-    search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine)
-    present, cost, grid = search.present, search.cost, search.grid
-    pool = search.pool(progress or (lambda done, total: None))
-    found = search.best(pool)
-    proof = prove(cost, found, search.polished)
-    if proof.phases is not found:
-        found = search.best(np.vstack([pool, proof.phases]))
-    placed = _placed(search, found)
-    varying = (Objective(output, "ripple") for output in OF_ROWS)
-    lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
-    before, after = (
-        {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
-    )
-    force = search.force
-    left = np.max(np.abs(force.total(found)[0]), axis=0)[1:]
-    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(found)
-    return Phasing(
-        machine=placed,
-        phases=tuple(row.phase for row in placed.rows),
-        before=before,
-        after=after,
-        combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
-        remaining=tuple(force.orders[1:][left > SURVIVES * loudest].tolist()),
-        lateral={
-            one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
-        },
-        combinations=0 if grid is None else grid.count,
-        step=search.step if grid is None else grid.step,
-        bound=proof.bound,
-        looked_at=proof.boxes,
-        notes=tuple(_notes(search, found, float(cost.values(found)) - proof.bound)),
-    )
-
-
-def _placed(search: PhaseSearch, found: Array) -> Machine:
-    """The machine with phases (m,) relative to row 1."""
-    if found is search.present or np.all(found == search.present):
-        return search.machine
-    first, *others = search.machine.rows
-    turned = (first.phase + found[1:]) % search.cost.period
-    moved = [replace(row, phase=phase) for row, phase in zip(others, turned.tolist(), strict=True)]
-    return search.machine.with_rows([first, *moved])
-
-
-def _notes(search: PhaseSearch, found: Array, gap: float) -> Iterator[Note]:
-    if np.all(found == search.present):
-        yield Note("no phases were found that are better than the present ones")
-    grid = search.grid
-    if grid is None:
-        yield Note("there are too many rows for a grid: random arrangements were polished instead")
-    elif grid.levels < search.levels:
-        yield Note(
-            "a grid of {step} deg has too many arrangements: one of {coarse} deg "
-            "was looked at as a whole, and the fine one about its best "
-            "arrangements",
-            step=f"{np.degrees(search.step):.4g}",
-            coarse=f"{np.degrees(grid.step):.4g}",
-        )
-    for term in search.cost.terms:
-        if search.vanishes(term):
-            yield Note(
-                "{name} is 0 before, so it counts over the sum of what each row does alone",
-                name=term.objective.name,
-            )
-    if gap > CLOSE * search.cost.whole:
-        yield Note(
-            "the search ended before it had proved that nothing better exists; "
-            "the gap tells how far it came"
-        )
+def with_phases(machine: Machine, phases: Array, period: float) -> Machine:
+    """The machine with phases (m,) relative to row 1, which keeps its own, rad."""
+    first, *others = machine.rows
+    turned = (first.phase + phases[1:]) % period
+    pairs = zip(others, turned.tolist(), strict=True)
+    return machine.with_rows([first, *(replace(row, phase=phase) for row, phase in pairs)])

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from equipoise.balancing.linear_conditions import (
+    SHOWN,
     Conditions,
     conditions,
     machine_size,
@@ -25,6 +26,7 @@ from equipoise.balancing.linear_conditions import (
 from equipoise.balancing.program import Affine, NoSolutionError, Program
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.parameters import QUANTITIES
+from equipoise.quantities import SI, display
 from equipoise.signals import Array
 
 MASS, X, Y, INERTIA = range(len(QUANTITIES))
@@ -324,8 +326,10 @@ def _answer(machine: Machine, what: str) -> Answer:
 def _possible(what: str, added: Mapping[str, float]) -> str:
     if not added:
         return f"The {what} can be made zero, with every mass as it is."
+    unit = display("mass", [*added.values()])
     where = ", ".join(
-        f"{1e3 * more:.4g} g on {link}" if more else f"some mass, however little, on {link}"
+        f"{f'{unit.factor * more:.4g} {unit.unit}' if more else 'some mass, however little,'} "
+        f"on {link}"
         for link, more in added.items()
     )
     return f"The {what} can be made zero, but not with every mass as it is: it takes {where}."
@@ -334,9 +338,12 @@ def _possible(what: str, added: Mapping[str, float]) -> str:
 def _impossible(what: str, proof: Proof | None, points: bool) -> str:
     if proof is None:
         return f"The {what} can at best be approached, by ever larger masses."
+    dimension, _ = SHOWN[proof.unit]
+    unit = display(dimension, [proof.least], SI[dimension])
     because = (
         f"The {what} cannot be made zero: {proof.text} would have to be 0, but is at least "
-        f"{proof.least:.4g} {proof.unit} with masses and moments of inertia no smaller than now"
+        f"{unit.factor * proof.least:.4g} {unit.unit} with masses and moments of inertia no "
+        "smaller than now"
     )
     if points:
         return f"{because}; only mass points, without moments of inertia, could do it."

@@ -205,10 +205,7 @@ class Problem:
         squares = [
             one for part, at in self.with_numbers(places) for one in part.constrain(program, at)
         ]
-        masses, units = self.added_masses(places)
-        if plan.added_mass is not None and len(masses):
-            rows = Affine.of(masses, -units, plan.added_mass)
-            program.nonnegative(rows, ADDED, Affine.fixed(1.0))
+        self.keep_added_mass(program, places)
         numbers = np.concatenate(places)
         terms = [self._term(program, numbers, one) for one in plan.objectives]
         for limit in plan.limits:
@@ -220,6 +217,13 @@ class Problem:
         self._cost(program, terms)
         matter = dict(zip(numbers.tolist(), self._matters, strict=True))
         return Built(program, places, [square for square in squares if matter[square.lift]])
+
+    def keep_added_mass(self, program: Program, places: list[Array]) -> None:
+        """Keep the most that may be added in all."""
+        masses, units = self.added_masses(places)
+        if self.plan.added_mass is not None and len(masses):
+            rows = Affine.of(masses, -units, self.plan.added_mass)
+            program.nonnegative(rows, ADDED, Affine.fixed(1.0))
 
     def added_masses(self, places: list[Array]) -> tuple[Array, Array]:
         """Places of the numbers that are added masses, and a unit of each, kg."""

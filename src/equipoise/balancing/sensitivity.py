@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import product
-from math import degrees
 from typing import Any
 
 import numpy as np
@@ -23,20 +22,20 @@ from equipoise.mechanism.motion import Motion, move
 from equipoise.mechanism.outputs import DECLARED, Found
 from equipoise.mechanism.parameters import QUANTITIES, regressor
 from equipoise.mechanism.tip import roots
-from equipoise.quantities import angle
+from equipoise.quantities import Dimension, angle, display, fixed
 from equipoise.results.blocks import Block, Cell, Column, Table, Text, Value
 from equipoise.results.outputs import output_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
-CHANGES: dict[str, tuple[str, float]] = {
-    "mass": ("kg", 1.0),
-    "center_x": ("mm", 1e-3),
-    "center_y": ("mm", 1e-3),
-    "inertia": ("kg mm^2", 1e-6),
+CHANGES: dict[str, tuple[Dimension, str]] = {
+    "mass": ("mass", "kg"),
+    "center_x": ("length", "mm"),
+    "center_y": ("length", "mm"),
+    "inertia": ("inertia", "kg mm^2"),
 }
-"""Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: unit in which each
-is shown, and what that is in SI units."""
+"""Mass at a fixed centre of mass, that centre at a fixed mass, inertia about it: what each is, and
+the unit in which it is usually shown."""
 NOTHING = 1e-10
 """Share of the largest effect below which there is none."""
 LEAST_ANGLES = 8
@@ -212,20 +211,22 @@ def _sign_changes(motion: Motion, output: str, values: Array) -> list[Array]:
 def sensitivities_blocks(found: Sensitivities, zero: float = 0.0) -> Iterator[Block]:
     """What each parameter does to an output, the largest first; crank angles from `zero`, rad."""
     if zero:
-        yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+        yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     rows: list[tuple[Cell, ...]] = []
+    turned = display("angle")
     for one in found.ranked:
-        unit, size = CHANGES[one.change]
+        dimension, usual = CHANGES[one.change]
+        unit = display(dimension, (), usual)
         shifted = np.sort(np.mod(one.no_effect_at - zero, 2 * np.pi * found.turns))
-        places = say(", ").join(f"{degrees(at):.1f}" for at in shifted) or say("never")
-        rows.append((one.name, Value(size * one.rms), unit, Value(one.percent), places))
+        places = say(", ").join(fixed(turned, at, 1) for at in shifted) or say("never")
+        rows.append((one.name, Value(one.rms / unit.factor), unit.unit, Value(one.percent), places))
     kind = DECLARED[found.output].dimension
     columns = (
         Column(""),
-        Column(say("RMS"), kind),
+        Column(say("RMS"), kind, alike=False),
         Column(say("per")),
         Column(say("RMS of 1 %"), kind),
-        Column(f"{say('no effect at')}, deg"),
+        Column(f"{say('no effect at')}, {turned.unit}"),
     )
     title = say(
         "{what}: effect of each parameter, at constant crank speed",

@@ -25,6 +25,7 @@ from equipoise.balancing.workshop import SPREAD, Change, pieces_of
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Weight, largest_mass
 from equipoise.mechanism.model import Machine, Vector, size_of
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 
 NAMES = {
@@ -60,7 +61,8 @@ class AddedWeight(DesignVariables):
         self.cap = (machine.mass or 1.0) * CAP
         self.most = min(weight.mass or weight.at_most or self.cap, largest_mass(weight))
         self.mass_unit = min(self.most, machine.mass or 1.0)
-        self.reach = weight.radius if isfinite(weight.radius) else size_of(body.points) or 1.0
+        self.reach = weight.radius if isfinite(weight.radius) else size_of(body.points)
+        self.reach = self.reach or float(size_of_bodies(machine))
         self.name = f"mass on {link}"
 
     def lightened(self, numbers: Array, matters: Array) -> Array:

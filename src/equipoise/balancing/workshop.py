@@ -10,15 +10,15 @@ from typing import Any
 
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Weight
-from equipoise.quantities import number
-from equipoise.results.machine_blocks import place
+from equipoise.quantities import display, fixed, number, told
+from equipoise.results.machine_blocks import place_told
 
 Piece = dict[str, Any]
 
-NOTHING = 1e-9
-"""kg: less than this is no piece."""
 SPREAD = 1e-7
 """Over the squared distance: inertia beyond that of one point that is taken for rounding."""
+SIZE_OF_0 = 1e-15
+"""Of the sine of half a turn, which is 0 but for rounding."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def pieces_of(
     mass, moment, inertia : kg, kg m and kg m2, the last two about the centre of the room.
     center : of the room in the link's axes, m.  Places are in the link's axes too.
     """
-    if mass < NOTHING:
+    if mass <= 0:
         return []
     plate = (weight.thickness or 0.0) * (weight.density or 0.0)
     if weight.shape == "ring":
@@ -89,7 +89,7 @@ def _sectors(
     half = min(mass / (plate * (outer**2 - inner**2)), pi)
     most = 2 / 3 * plate * (outer**3 - inner**3)
     middle = phase(moment) if moment else 0.0
-    if abs(moment) >= most * sin(half) * (1 - SPREAD) - 1e-15:
+    if abs(moment) >= most * (sin(half) * (1 - SPREAD) - SIZE_OF_0):
         return [_sector(weight, mass, half, middle, center)]
     aside = acos(min(1.0, abs(moment) / (2 * most * sin(half / 2))))
     return [_sector(weight, mass / 2, half / 2, middle + s * aside, center) for s in (1, -1)]
@@ -123,12 +123,11 @@ def sentences(change: Change) -> Iterator[str]:
     link, values = change.link, dict(change.values)
     if change.kind == "center of mass":
         yield say(
-            "{link}: move the centre of mass from ({old}) mm to ({new}) mm, "
-            "with a mass of {mass} g",
+            "{link}: move the centre of mass from {old} to {new}, with a mass of {mass}",
             link=link,
-            old=place(values["from"]),
-            new=place(values["to"]),
-            mass=_milli(values["mass"]),
+            old=place_told(values["from"]),
+            new=place_told(values["to"]),
+            mass=told(values["mass"], "mass"),
         )
     elif change.kind == "added mass":
         yield _added(link, values)
@@ -139,51 +138,54 @@ def sentences(change: Change) -> Iterator[str]:
     elif change.kind == "gears":
         yield "; ".join(_gears(link, values))
     else:
-        phases = ", ".join(map(_direction, values["phases"]))
-        yield say("Rows: set the phases to {phases}°", phases=phases)
+        *others, last = values["phases"]
+        phases = ", ".join([*(_direction(one, named=False) for one in others), _direction(last)])
+        yield say("Rows: set the phases to {phases}", phases=phases)
 
 
 def _added(link: str, values: dict[str, Any]) -> str:
     if not values["pieces"]:
         return say("{link}: add nothing", link=link)
-    told = {"link": link, "mass": _milli(values["mass"]), "point": values["at"]}
+    words = {"link": link, "mass": told(values["mass"], "mass"), "point": values["at"]}
     if not values["moment"]:
-        return say("{link}: add {mass} g about {point}", **told)
+        return say("{link}: add {mass} about {point}", **words)
     return say(
-        "{link}: add a counterweight of {mass} g, its centre of mass {radius} mm from {point} "
-        "at {direction}° in the axes of the link ({moment} g mm)",
-        radius=_milli(values["radius"]),
+        "{link}: add a counterweight of {mass}, its centre of mass {radius} from {point} "
+        "at {direction} in the axes of the link ({moment})",
+        radius=told(values["radius"], "length"),
         direction=_direction(values["direction"]),
-        moment=number(1e6 * values["moment"]),
-        **told,
+        moment=told(values["moment"], "unbalance", "g mm"),
+        **words,
     )
 
 
 def _made(piece: Piece, center: tuple[float, float]) -> str:
     """A piece in words; rings and sectors are told about the centre of their room."""
     shape = piece["shape"]
-    sizes = ("mass", "radius", "outer_radius", "inner_radius", "thickness")
-    told = {name: _milli(piece[name]) for name in sizes if name in piece}
-    told["at"] = place(piece["place"])
+    sizes = ("radius", "outer_radius", "thickness")
+    words = {name: told(piece[name], "length") for name in sizes if name in piece}
+    words |= {"mass": told(piece["mass"], "mass"), "at": place_told(piece["place"])}
     if shape == "point":
-        return say("point mass of {mass} g at ({at}) mm", **told)
+        return say("point mass of {mass} at {at}", **words)
     if shape == "disc":
         return say(
-            "disc of {mass} g, radius {radius} mm, {thickness} mm thick, its centre at ({at}) mm",
-            **told,
+            "disc of {mass}, radius {radius}, {thickness} thick, its centre at {at}",
+            **words,
         )
-    told |= {"at": place(center), "inner": told["inner_radius"], "outer": told["outer_radius"]}
+    unit = display("length", [piece["outer_radius"]])
+    words |= {"at": place_told(center), "inner": unit.text(piece["inner_radius"])}
+    words["outer"] = words.pop("outer_radius")
     if shape == "ring":
         return say(
-            "ring of {mass} g about ({at}) mm, radius {inner} to {outer} mm, {thickness} mm thick",
-            **told,
+            "ring of {mass} about {at}, radius {inner} to {outer}, {thickness} thick",
+            **words,
         )
     return say(
-        "sector of {mass} g about ({at}) mm, radius {inner} to {outer} mm, "
-        "{thickness} mm thick, {wide}° wide, its middle at {direction}°",
+        "sector of {mass} about {at}, radius {inner} to {outer}, {thickness} thick, {wide} wide, "
+        "its middle at {direction}",
         wide=_direction(piece["angle"]),
         direction=_direction(piece["direction"]),
-        **told,
+        **words,
     )
 
 
@@ -191,49 +193,47 @@ def _spring(link: str, values: dict[str, Any]) -> str:
     if not values["stiffness"]:
         return say("{link}: set no spring", link=link)
     return say(
-        "{link}: set a spring of {stiffness} N/m with a free length of {length} mm from {point} "
-        "to {to}",
+        "{link}: set a spring of {stiffness} with a free length of {length} from {point} to {to}",
         link=link,
-        stiffness=number(values["stiffness"]),
-        length=_milli(values["free_length"]),
+        stiffness=told(values["stiffness"], "stiffness", "N/m"),
+        length=told(values["free_length"], "length"),
         point=values["point"],
         to=values["to"],
     )
 
 
 def _gears(link: str, values: dict[str, Any]) -> Iterator[str]:
+    unit = display("length", values["pitch_radii"])
     yield say(
-        "{link}: a shaft at ({at}) mm of the frame, geared to {driver} with the ratio {ratio}, "
-        "pitch radii {radii} mm",
+        "{link}: a shaft at {at} of the frame, geared to {driver} with the ratio {ratio}, "
+        "pitch radii {radii}",
         link=link,
-        at=place(values["axis"]),
+        at=place_told(values["axis"]),
         driver=values["driver"],
         ratio=number(values["ratio"]),
-        radii=" / ".join(map(_milli, values["pitch_radii"])),
+        radii=unit.with_unit(" / ".join(map(unit.text, values["pitch_radii"]))),
     )
     if "teeth" in values:
         first, second = values["teeth"]
         yield say(
-            "{first} and {second} teeth of module {module} mm",
+            "{first} and {second} teeth of module {module}",
             first=first,
             second=second,
-            module=_milli(values["module"]),
+            module=told(values["module"], "length"),
         )
     if "masses" in values:
-        first, second = map(_milli, values["masses"])
+        first, second = (told(mass, "mass") for mass in values["masses"])
         yield say(
-            "the gears add {first} g to {driver} and {second} g to the shaft",
+            "the gears add {first} to {driver} and {second} to the shaft",
             first=first,
             second=second,
             driver=values["driver"],
         )
 
 
-def _direction(radians: float) -> str:
-    shown = round(degrees(radians), 2) + 0.0
-    return f"{shown if shown > -180 else shown + 360:.2f}".removesuffix(".00")
-
-
-def _milli(value: float) -> str:
-    """A mass in g, or a length in mm."""
-    return number(1e3 * value)
+def _direction(radians: float, named: bool = True) -> str:
+    """An angle above minus half a turn, with its unit where that is to be named."""
+    unit = display("angle")
+    radians += 2 * pi * (round(degrees(radians), 2) <= -180)
+    text = fixed(unit, radians, 2).removesuffix(".00")
+    return unit.with_unit(text) if named else text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
@@ -130,12 +131,14 @@ def conditions(file: File, /, *, speed: Speed = None, outputs: Printed = Printed
     from equipoise.balancing.physical_consistency import feasibility
 
     machine = linkage_of(file, speed)
-    with naming(file):
+    # conditions are told in words when they are found; those of the JSON object are in SI units
+    shown = nullcontext() if outputs.json else outputs.showing(machine)
+    with naming(file), shown:
         found = {kind: balancing.conditions(machine, kind) for kind in ("zero", "sine")}
         values = {kind: one.to_dict() for kind, one in found.items()}
         told = feasibility(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: values | {"verdict": told.to_dict()},
             lambda: conditions_blocks(
                 *found.values(), verdict=[one.reason for one in told.answers]
@@ -199,7 +202,7 @@ def arrangements(
     with naming(file):
         check_moving(machine)
         outputs.print(
-            machine.title,
+            machine,
             lambda: {"patterns": [one.to_dict() for one in patterns_for(rows)]},
             lambda: pattern_blocks(machine, rows, spacing),
         )

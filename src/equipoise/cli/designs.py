@@ -52,7 +52,7 @@ def best(
         Most designs that are told.
     """
     from equipoise.figures.studies import best_charts
-    from equipoise.schema.study_units import machine_of, study_of, units_in
+    from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
     from equipoise.studies import selection as of_stores
     from equipoise.studies.blocks import columns_of
     from equipoise.studies.store import open_store
@@ -66,16 +66,18 @@ def best(
     found = of_stores.best(opened, most, ways)
     first = int(found.designs[0]) if chosen.design is None else chosen.design
     model = None if chosen.out is None else machine_of(opened, first)
-    title, units = opened.title, units_in(opened)
+    title, owner = opened.title, owner_of(opened)
 
     columns = columns_of(found.numbers, found.values, found.outputs, found.figures)
     outputs.write(lambda: _columns(found.designs, columns, opened.units))
-    outputs.draw(lambda: best_charts(found, title, units))
-    outputs.print(
-        title,
-        lambda: {"title": title, **found.to_dict()},
-        lambda: found.blocks(outputs=opened.wishes, units=units),
-    )
+    with outputs.showing(owner):
+        units = units_in(opened)
+        outputs.draw(owner, lambda: best_charts(found, title, units))
+        outputs.print(
+            title,
+            lambda: {"title": title, **found.to_dict()},
+            lambda: found.blocks(outputs=opened.wishes, units=units),
+        )
     if model is not None and chosen.out is not None:
         _save(model, chosen.out, first, f'the study "{title}"')
 
@@ -139,9 +141,9 @@ def search(
     outputs.check([study], [chosen.out])
     if chosen.out is not None:
         check_new(asked.model.base(), chosen.out)
-    units = units_of(asked)
     size, turns = population or POPULATION, generations or GENERATIONS
-    with naming(study):
+    with naming(study), outputs.showing(asked):
+        units = units_of(asked)
         with swept(units) as told:
             watched = Watched(asked, told)
             found = search_designs(
@@ -158,8 +160,8 @@ def search(
         designs, made_of = range(len(found.values)), found.study
         columns = columns_of(made_of.paths, found.values, made_of.names, found.figures)
         outputs.write(lambda: _columns(designs, columns, _si_units(made_of)))
-        outputs.draw(lambda: searched_charts(found, units, own))
-        outputs.print(made_of.title, found.to_dict, lambda: found.blocks(units=units, own=own))
+        outputs.draw(made_of, lambda: searched_charts(found, units, own))
+        outputs.print(made_of, found.to_dict, lambda: found.blocks(units=units, own=own))
     if chosen.out is not None:
         number = chosen.design or 0
         of = f'a search of the study "{found.study.title}", seed {found.seed}'

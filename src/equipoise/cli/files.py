@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 from cyclopts import Parameter
 
 from equipoise.cli.options import count, file_named, naming
-from equipoise.cli.outputs import wrote
+from equipoise.cli.outputs import Shown, wrote
 from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
@@ -37,7 +37,12 @@ def examples() -> None:
         print(fill(title, width, initial_indent=first, subsequent_indent=" " * indent))
 
 
-def check(file: Annotated[str, file_named("Path of a model file or a study file")], /) -> None:
+def check(
+    file: Annotated[str, file_named("Path of a model file or a study file")],
+    /,
+    *,
+    shown: Shown = Shown(),
+) -> None:
     """Check a file and tell how the linkage or tool is built up, or what a study will compute."""
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
@@ -46,7 +51,7 @@ def check(file: Annotated[str, file_named("Path of a model file or a study file"
     from equipoise.schema.files import printable
 
     found = load(file)
-    with naming(file):
+    with naming(file), shown.showing(found):
         if isinstance(found, Tool):
             blocks = checks.tool_blocks(found, printable(file))
         elif isinstance(found, Machine):

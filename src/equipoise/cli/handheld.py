@@ -13,7 +13,6 @@ from cyclopts import App, Parameter
 
 from equipoise.cli.options import (
     Out,
-    ShownIn,
     ToolFile,
     blaming,
     check_belonging,
@@ -46,7 +45,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep
-    from equipoise.present.cells import Units
 
 app = App(name="tool")
 RANGE = '"2000 rpm : 9000 rpm"'
@@ -83,7 +81,6 @@ def tool(
     at: Annotated[Any, sizes("length")] = None,
     exposure: bool = False,
     duration: Annotated[Any, read_by(time_a_day)] = None,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """A hand-held tool: how its shaft vibrates, and what the hands get.
@@ -121,7 +118,7 @@ def tool(
         parts = [getattr(asked, name) for name in names]
     if outputs.csv is not None:
         outputs.write(asked.respond.columns)
-    _give(loaded, parts, lambda: asked.pictures(names), units, outputs)
+    _give(loaded, parts, lambda: asked.pictures(names), outputs)
 
 
 @dataclass(frozen=True)
@@ -210,7 +207,6 @@ def _give(
     tool: Tool,
     parts: Sequence[Any],
     drawings: Drawings,
-    units: Units | None,
     outputs: Drawn,
     key: str = "",
 ) -> None:
@@ -224,9 +220,12 @@ def _give(
         told = {name: one for part in parts for name, one in part.to_dict().items()}
         return {"title": tool.title, **({key: told} if key else told)}
 
-    outputs.draw(drawings)
-    blocks = chain(summary_blocks(tool), *(part.blocks() for part in parts))
-    outputs.print(tool.title, values, lambda: blocks, units)
+    outputs.draw(tool, drawings)
+    outputs.print(
+        tool,
+        values,
+        lambda: chain(summary_blocks(tool), *(part.blocks() for part in parts)),
+    )
 
 
 # -- other questions -------------------------------------------------------------------------------
@@ -239,7 +238,6 @@ def vary(
     /,
     *,
     number: Number = None,
-    units: ShownIn = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """Natural frequencies against a number of a station.
@@ -275,7 +273,7 @@ def vary(
     with naming(file), blaming("CHANGE"):
         values = np.linspace(low, high, VALUES)
         found = vary_tool(loaded, station, key, values, number or MODES)
-    _give(loaded, [found], lambda: pictures_of(found), units, outputs, "variation")
+    _give(loaded, [found], lambda: pictures_of(found), outputs, "variation")
 
 
 @app.command
@@ -284,7 +282,6 @@ def sensitivities(
     /,
     *,
     speeds: Speeds = None,
-    units: ShownIn = None,
     outputs: Printed = Printed(),
 ) -> None:
     """What each number of a tool does to the hands.
@@ -313,8 +310,11 @@ def sensitivities(
             told.setdefault(station, {})[key] = slope
         return {"title": loaded.title, "sensitivities": told}
 
-    blocks = chain(summary_blocks(loaded), sensitivity_blocks(loaded, found, ends))
-    outputs.print(loaded.title, values, lambda: blocks, units)
+    outputs.print(
+        loaded,
+        values,
+        lambda: chain(summary_blocks(loaded), sensitivity_blocks(loaded, found, ends)),
+    )
 
 
 @app.command
@@ -323,7 +323,6 @@ def design(
     /,
     *,
     out: Out = None,
-    units: ShownIn = None,
     outputs: Drawn = Drawn(),
 ) -> None:
     """Change what [design] allows so that the hands feel least.
@@ -343,4 +342,4 @@ def design(
         found = design_tool(loaded, progress)
     if out is not None:
         write_model(found.better, out, what_next=f"; next: equipoise tool {out}")
-    _give(loaded, [found], lambda: pictures_of(found), units, outputs, "design")
+    _give(loaded, [found], lambda: pictures_of(found), outputs, "design")

@@ -15,7 +15,6 @@ from equipoise.cli.options import (
     Model,
     Out,
     PlantingFile,
-    ShownIn,
     Speed,
     SupportFile,
     Text,
@@ -116,7 +115,7 @@ def analyze(
 
         write_text(csv, to_csv(analysis, chosen))
     outputs.print(
-        analysis.title,
+        machine,
         lambda: analysis.to_dict(split, chosen) | further,
         lambda: analysis.blocks(orders=orders, zero=zero, outputs=chosen, dwells=held),
     )
@@ -165,7 +164,6 @@ def respond(
     speed: Annotated[Any, read_by(_speeds)] = None,
     speeds: Annotated[int | None, count(2, 20_000)] = None,
     drive: bool = False,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """How the support of a machine vibrates under its linkages, at one speed or over a range.
@@ -200,11 +198,11 @@ def respond(
             with counted("speed") as told:
                 count = speeds or sweep.SPEEDS
                 over_speed = sweep.sweep_speed(machine, ends[0], ends[1], model, drive, count, told)
-            outputs.give(over_speed, units)
+            outputs.give(over_speed)
         else:
             found = forced.respond(machine, ends[0] if ends else None, model, drive)
             others = None if drive or outputs.json else _others(machine, found)
-            outputs.give(found, units, others=others)
+            outputs.give(found, others=others)
 
 
 def _others(machine: Machine, found: Response) -> dict[str, Response | None]:
@@ -233,7 +231,6 @@ def simulate(
     *,
     speed: Speed = None,
     drive: bool = False,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """How the support vibrates when the machine starts from rest, by the model exact.
@@ -251,7 +248,7 @@ def simulate(
     outputs.check(sources_of(machine, file))
     with naming(file):
         found = transient.simulate(machine, duration, speed, drive)
-    outputs.give(found, units)
+    outputs.give(found)
 
 
 # -- planting --------------------------------------------------------------------------------------
@@ -265,7 +262,6 @@ def plant(
     speed: Speed = None,
     crank_zero: CrankZero = None,
     angles: Annotated[int | None, count(0, MOST)] = None,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """The path of a planting finger relative to machine and ground, and every figure of it.
@@ -285,7 +281,7 @@ def plant(
         figures = read_off(machine)
         outputs.write(lambda: table(figures, 360 if angles is None else angles))
     outputs.draw_result(figures)
-    outputs.show(figures, units, zero=crank_zero or 0.0)
+    outputs.show(figures, zero=crank_zero or 0.0)
 
 
 @planting.command
@@ -297,7 +293,6 @@ def fit(
     out: Out = None,
     seed: int | None = None,
     speed: Speed = None,
-    units: ShownIn = None,
     outputs: Outputs = Outputs(),
 ) -> None:
     """Look for the geometry that meets targets and limits, and write it as a new model file.
@@ -341,4 +336,4 @@ def fit(
     write_model(fitted.machine, new, ", fitted", origin)
     outputs.write(lambda: table(fitted.after))
     outputs.draw_result(fitted.after)
-    outputs.show(fitted, units)
+    outputs.show(fitted)

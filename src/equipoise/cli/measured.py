@@ -91,7 +91,7 @@ def decay(
     with blaming(printable(csv)):
         found = identify_decay(record, value, arm=arm, spring_arm=spring_arm, confidence=confidence)
     title = printable(os.path.basename(csv))
-    outputs.draw(lambda: pictures.decay_charts(found, title))
+    outputs.draw(None, lambda: pictures.decay_charts(found, title))
     outputs.print(title, found.to_dict, found.blocks)
 
 
@@ -216,7 +216,7 @@ def _give(told: list[Told], outputs: Drawn) -> None:
     measured = [(each.name, each.weighted) for each in told if each.weighted is not None]
     tools = [(each.name, each.a_hv) for each in told]
 
-    outputs.draw(lambda: pictures.exposure_charts(measured, tools, day))
+    outputs.draw(None, lambda: pictures.exposure_charts(measured, tools, day))
     outputs.print(
         "",
         lambda: _values(measured, tools, day),

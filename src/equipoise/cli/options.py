@@ -24,7 +24,7 @@ from equipoise.errors import (
 
 if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
-    from equipoise.present.cells import Units
+    from equipoise.quantities import Units
 
 Model = Literal["linear", "torque", "moment", "coupled", "exact"]
 """As in `vibration.response`, which would bring NumPy into every start of the command line."""
@@ -118,9 +118,10 @@ def tolerance(option: str, text: str) -> tuple[float, str]:
 
 
 def _units(option: str, text: str) -> Units:
-    from equipoise.present.cells import read_units
+    from equipoise.mechanism.shown_units import read_units
 
-    return read_units(text)
+    with blaming(option):
+        return read_units(text)
 
 
 def time_a_day(option: str, text: str) -> float:
@@ -178,7 +179,8 @@ ShownIn = Annotated[
     Any,
     read_by(_units),
     Parameter(
-        help='Units of the printed tables where they are not to be the usual ones: "um, rad/s".'
+        help="Units of tables and pictures where they are not to be the usual ones or the file's: "
+        '"length=in, force=lbf" or "um, rad/s".'
     ),
 ]
 

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TextIO
 
 from cyclopts import Parameter
 
-from equipoise.cli.options import Out, check_belonging, count
+from equipoise.cli.options import Out, ShownIn, check_belonging, count
 from equipoise.errors import UsageError
 from equipoise.partial import afterwards
 
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
     from equipoise.figures import Picture
     from equipoise.handheld.model import Tool
     from equipoise.mechanism.model import Machine
-    from equipoise.present.cells import Units
     from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
 
@@ -34,14 +34,34 @@ Drawings = Callable[[], "Mapping[str, Picture]"]
 
 @Parameter(name="*")
 @dataclass(frozen=True)
-class Printed:
+class Shown:
+    """In which units a command shows what it tells."""
+
+    units: ShownIn = None
+
+    @contextmanager
+    def showing(self, of: Any = None) -> Iterator[None]:
+        """Inside, values are shown in the units that are chosen, else in those of a file."""
+        from equipoise.mechanism.shown_units import units_of
+        from equipoise.quantities import showing, showing_by_default
+
+        with showing(self.units or {}), showing_by_default(units_of(of)):
+            yield
+
+
+@Parameter(name="*")
+@dataclass(frozen=True)
+class Printed(Shown):
     """What a command prints."""
 
     json: bool = False
     """Print one JSON object in SI units, and nothing else."""
 
-    def print(self, title: str, values: Values, blocks: Blocks, units: Units | None = None) -> None:
-        """Print values as JSON, or a title and blocks below it."""
+    def print(self, of: Any, values: Values, blocks: Blocks) -> None:
+        """Print values as JSON, or a title and blocks below it.
+
+        of : the machine, tool or study; its title where there is none.
+        """
         if self.json:
             from equipoise.schema.files import json_text
 
@@ -49,11 +69,13 @@ class Printed:
         else:
             from equipoise.present import show_blocks
 
-            show_blocks(title, blocks(), units=units)
+            with self.showing(of):
+                show_blocks(of if isinstance(of, str) else of.title, blocks())
 
-    def show(self, found: Result, units: Units | None = None, **options: Any) -> None:
+    def show(self, found: Result, **options: Any) -> None:
         """Print a result; further arguments as of its `blocks`."""
-        self.print(found.title, found.to_dict, lambda: found.blocks(**options), units)
+        of = found.title if found.owner is None else found.owner
+        self.print(of, found.to_dict, lambda: found.blocks(**options))
 
 
 @Parameter(name="*")
@@ -71,21 +93,22 @@ class Drawn(Printed):
         if self.plot is not None:
             check_folder("--plot", self.plot)
 
-    def draw(self, drawings: Drawings) -> None:
-        """Write pictures into the folder if there is to be one, and say so."""
+    def draw(self, of: Any, drawings: Drawings) -> None:
+        """Write pictures of a machine, tool or study into the folder if there is to be one."""
         if self.plot is not None:
-            write_pictures(drawings(), self.plot, self.format or "svg")
+            with self.showing(of):
+                write_pictures(drawings(), self.plot, self.format or "svg")
 
     def draw_result(self, found: Result) -> None:
         """Write the pictures of a result."""
         from equipoise.figures.pictures import pictures_of
 
-        self.draw(lambda: pictures_of(found))
+        self.draw(found.owner, lambda: pictures_of(found))
 
-    def give(self, found: Result, units: Units | None = None, **options: Any) -> None:
+    def give(self, found: Result, **options: Any) -> None:
         """Write the files that are wanted, then print; further arguments as of `show`."""
         self.draw_result(found)
-        self.show(found, units, **options)
+        self.show(found, **options)
 
 
 @Parameter(name="*")
@@ -108,9 +131,9 @@ class Outputs(Drawn):
 
             write_text(self.csv, csv_text(columns()))
 
-    def give(self, found: Result, units: Units | None = None, **options: Any) -> None:
+    def give(self, found: Result, **options: Any) -> None:
         self.write(found.columns)
-        super().give(found, units, **options)
+        super().give(found, **options)
 
 
 @Parameter(name="*")

@@ -24,7 +24,7 @@ from equipoise.cli.options import (
     quantity,
     read_by,
 )
-from equipoise.cli.outputs import Kind, check_folder, tell, tell_pictures, write_pictures
+from equipoise.cli.outputs import Kind, Shown, check_folder, tell, tell_pictures, write_pictures
 from equipoise.cli.plan import read_objective
 from equipoise.cli.progress import counted
 from equipoise.errors import ModelError, UsageError
@@ -71,6 +71,7 @@ def plot(
     output: Many = None,
     at: Annotated[Any, read_by(_crank_angles)] = None,
     speed: Rate = None,
+    shown: Shown = Shown(),
 ) -> None:
     """Every picture of a linkage or a tool: motion, forces, vibration, balance.
 
@@ -99,7 +100,7 @@ def plot(
     found = find(file, speed=speed)
     if at is not None and isinstance(found, ToolFindings):
         raise UsageError("--at: a tool has no crank angles; leave it out")
-    with naming(file):
+    with naming(file), shown.showing(found.owner):
         chosen = _outputs(found, output) if output else _chosen(each(found, at), only)
         for picture in chosen:
             name = f"{picture.name}.{format}"
@@ -152,6 +153,7 @@ def landscape(
     speed: Speed = None,
     out: Out = None,
     format: Kind = "svg",
+    shown: Shown = Shown(),
 ) -> None:
     """An output over two numbers of a machine.
 
@@ -192,12 +194,14 @@ def landscape(
         numbers["drive.speed"] = speed
     with naming(file), counted("machine") as progress:
         found = studies.landscape(model, dict(both), objective, numbers, progress)
-    pictures = {"landscape": drawn_map(found)}
-    write_pictures(pictures, folder, format)
+    with shown.showing(model.base()):
+        pictures = {"landscape": drawn_map(found)}
+        write_pictures(pictures, folder, format)
+        best = told_best(found)
     for name in pictures:
         tell(os.path.join(folder, f"{name}.{format}"))
     edge = [f"; {path} is at an end of its range" for path in found.at_edge]
-    tell(told_best(found) + "".join(edge))
+    tell(best + "".join(edge))
 
 
 def _range(model: Model, option: str, text: str, count: int) -> tuple[str, np.ndarray[Any, Any]]:

@@ -14,6 +14,8 @@ from dataclasses import dataclass, field
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
+from equipoise.quantities.numbers import rate_told, time_told
+
 if TYPE_CHECKING:
     from rich.console import RenderableType
 
@@ -217,21 +219,3 @@ def left_told(progress: Progress, ago: float = 0.0) -> str:
     if progress.left is None or early:
         return ""
     return f"{time_told(max(0.0, progress.left - ago))} left"
-
-
-def rate_told(rate: float | None) -> str:
-    """Designs a second."""
-    if not rate:
-        return ""
-    return f"{float(f'{rate:.3g}'):.0f} designs/s" if rate >= 100 else f"{rate:.3g} designs/s"
-
-
-def time_told(seconds: float) -> str:
-    """A time as one says it."""
-    if seconds < 60:
-        return f"{seconds:.1f} s"
-    minutes, rest = divmod(round(seconds), 60)
-    if minutes < 60:
-        return f"{minutes} min {rest} s"
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours} h {minutes} min"

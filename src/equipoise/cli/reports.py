@@ -20,7 +20,7 @@ from equipoise.cli.options import (
     naming,
     quantity,
 )
-from equipoise.cli.outputs import check_result_file, sources_of, wrote
+from equipoise.cli.outputs import Shown, check_result_file, sources_of, wrote
 from equipoise.cli.pictures import default_name
 from equipoise.cli.progress import counted
 from equipoise.errors import UsageError
@@ -146,6 +146,7 @@ def report(
     language: Language = "en",
     pdf: bool = False,
     speed: Text = None,
+    shown: Shown = Shown(),
 ) -> None:
     """One page that tells all of a linkage or a tool: summary, pictures, tables, before and after.
 
@@ -168,7 +169,7 @@ def report(
     check(paths, language)
 
     found = find(file, speed=rate)
-    with naming(file):
+    with naming(file), shown.showing():
         document = build(found, language, _command(file, language, speed), together=True)
     write_document(document, paths)
     for path in paths:

@@ -22,8 +22,9 @@ from equipoise.cli.options import (
     naming,
 )
 from equipoise.cli.outputs import Drawn, Printed
-from equipoise.cli.progress import Watched, rate_told, swept, time_told
+from equipoise.cli.progress import Watched, swept
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import rate_told, time_told
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Summary, Unit
@@ -75,7 +76,7 @@ def sweep(
     asked = load_study(study)
     if not out:
         raise UsageError("--out: missing; say where the store is to be, such as -o designs.zarr")
-    with naming(study):
+    with naming(study), outputs.showing(asked):
         work = partial(run_study, asked, out, **vars(computers))
         _compute(work, out, units_of(asked), outputs)
 
@@ -91,8 +92,10 @@ def resume(
     from equipoise.schema import study_units
     from equipoise.studies.store import open_store
 
-    units = study_units.units_in(open_store(store))
-    _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
+    opened = open_store(store)
+    with outputs.showing(study_units.owner_of(opened)):
+        units = study_units.units_in(opened)
+        _compute(partial(study_units.resume, store, **vars(computers)), store, units, outputs)
 
 
 def _compute(
@@ -193,12 +196,12 @@ def tolerance(
 
     asked = load_study(study)
     given: dict[tuple[str, ...], str] = {("sampling", "designs"): "--designs"}
-    with naming(study):
+    with naming(study), outputs.showing(asked):
         if designs is not None:
             asked = replace(asked, sampling=replace(asked.sampling, designs=designs))
         units = units_of(asked)
         with blaming_by_place({} if designs is None else given), swept(units) as told:
             watched = Watched(asked, told)
             found = of_study(asked, progress=lambda _, total: watched.tell(total), compute=watched)
-    outputs.draw(lambda: tolerance_charts(found, units))
-    outputs.print(found.study.title, found.to_dict, lambda: found.blocks(units=units))
+    outputs.draw(asked, lambda: tolerance_charts(found, units))
+    outputs.print(asked, found.to_dict, lambda: found.blocks(units=units))

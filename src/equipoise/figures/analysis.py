@@ -24,7 +24,7 @@ from equipoise.figures.shared import (
 from equipoise.figures.style import short
 from equipoise.i18n import say
 from equipoise.mechanism.reactions import JointForce, SliderForce
-from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import DEGREES, Array, Axis, Chart, Curve, Mark, Panel, quantity
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -58,7 +58,7 @@ def about(analysis: Analysis) -> str:
     for name, place in analysis.machine.frame.items():
         if complex(*place) == pole:
             return short(name)
-    return f"({shown(1000 * pole.real)} mm, {shown(1000 * pole.imag)} mm)"
+    return f"({quantity(pole.real, 'length')}, {quantity(pole.imag, 'length')})"
 
 
 def over(analysis: Analysis, values: Array) -> tuple[Array, Array]:

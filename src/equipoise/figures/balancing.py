@@ -29,10 +29,10 @@ from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.balance import Objective
 from equipoise.mechanism.objectives import GAUGES, JOINTS, OF_ROWS, output_of
-from equipoise.quantities import Dimension, in_unit
+from equipoise.quantities import Dimension
 from equipoise.results.analysis import analyze
 from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
-from equipoise.results.outputs import objective_named
+from equipoise.results.outputs import objective_named, shown_in
 from equipoise.signals import Periodic
 
 if TYPE_CHECKING:
@@ -326,7 +326,7 @@ def front(found: Front) -> Chart:
         marks.append(Mark.of(complex(*before), text, "own", 90.0))
     for k, wish in ((0, 20.0), (len(values) - 1, 110.0)):
         text = f"{x.quantity(values[k, 0])}, {y.quantity(values[k, 1])}"
-        if (added := found.points[k].added_mass) > 1e-9:
+        if (added := found.points[k].added_mass) > NOTHING * found.original.mass:
             text += "\n" + say("with {mass} more", mass=grams(added))
         marks.append(Mark.of(complex(*values[k]), text, "best", wish, sign=False))
     curve = Curve(values[:, 0], values[:, 1], "", "best")
@@ -337,8 +337,7 @@ def front(found: Front) -> Chart:
 
 
 def _objective_axis(label: str, unit: str, values: Array) -> Axis:
-    """An axis with room on which a displacement is told in mm or mrad, anything else as it is."""
-    shown_in = {"m": "mm", "rad": "mrad"}.get(unit, unit)
+    """An axis with room, in the unit in which figures of an SI unit are told."""
     low, high = float(np.min(values)), float(np.max(values))
-    room = MARGIN * (high - low if high > low else max(abs(high), 1e-12))
-    return Axis(label, in_unit(shown_in), low=low - room, high=high + room)
+    room = MARGIN * (high - low if high > low else abs(high) or 1.0)
+    return Axis(label, shown_in(unit, values), low=low - room, high=high + room)

@@ -15,7 +15,7 @@ from equipoise.figures.linkage import clear_angle, drawn, joint_names, plane_axe
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import Motion, move
-from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, shown
+from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, coils, zigzag
 
@@ -201,9 +201,12 @@ def _spring(posed: Posed, change: Change) -> Addition:
     values = change.values
     one = posed.at(change.link, posed.machine.links[change.link].points[values["point"]])
     other = MM * complex(*posed.machine.frame[values["to"]])
-    stiffness, free = values["stiffness"], round(MM * values["free_length"], FINEST)
-    told = {"stiffness": shown(stiffness), "length": shown(free)}
-    text = say("{stiffness} N/m, {length} mm free", **told)
+    free = round(MM * values["free_length"], FINEST) / MM
+    text = say(
+        "{stiffness}, {length} free",
+        stiffness=quantity(values["stiffness"], "stiffness", "N/m"),
+        length=quantity(free, "length"),
+    )
     return Addition(
         "spring", np.array([one, other]), (one + other) / 2, text, 1j * _way(other - one)
     )
@@ -217,7 +220,7 @@ def _gears(posed: Posed, change: Change) -> Iterator[Addition]:
     at = MM * complex(*frame[next(name for name in points if name in frame)])
     aside = 1j * _way(axis - at)
     for middle, radius in zip((at, axis), (MM * one for one in values["pitch_radii"]), strict=True):
-        text = say("gear, {radius} mm", radius=shown(radius))
+        text = say("gear, {radius}", radius=quantity(radius / MM, "length"))
         yield Addition("gear", circle(middle, radius), middle + radius * aside, text, aside)
 
 
@@ -242,7 +245,7 @@ def _rooms(posed: Posed, plan: Balance) -> Iterator[Addition]:
 
 def grams(mass: float) -> str:
     """A mass (kg) as a workshop would tell it."""
-    return f"{shown(mass)} kg" if mass >= 10 else f"{shown(MM * mass)} g"
+    return quantity(mass, "mass", "kg" if mass >= 10 else "g")
 
 
 # -- the drawing -----------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import move
 from equipoise.mechanism.tip import TipCurve
 from equipoise.planting.ground import GroundPath
-from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, shown
+from equipoise.results.charts import Array, Arrow, Axis, Chart, Curve, Mark, Panel, quantity
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import soil
 
@@ -205,7 +205,7 @@ def _held(paths: Paths) -> list[tuple[complex, complex]]:
 
 
 def _axis(label: str) -> Axis:
-    return Axis.of(label, "length", [0.5], ("cm", "cm", "cm"), room=0.0)
+    return Axis.of(label, "length", [0.5], "cm", room=0.0)
 
 
 def _machine_panel(paths: Paths, held: tuple[complex, complex]) -> Panel:
@@ -333,7 +333,7 @@ def _hill_spacing(
     deep = float(np.min(paths.over_ground(paths.ways).imag))
     room = deep - held[0].imag
     y, top = deep - 0.5 * room, deep - 0.15 * room
-    text = say("hill spacing {spacing} cm", spacing=shown(100 * abs(spacing)))
+    text = say("hill spacing {spacing}", spacing=quantity(abs(spacing), "length", "cm"))
     whole = held[0].real < spacing < held[1].real and paths.curve.turns == 1
     x = spacing / 2 if whole else (held[0].real + held[1].real) / 2
     mark = Mark(x, y, text, "ink", -90.0, sign=False, near=3.0)

@@ -12,7 +12,7 @@ from equipoise.results.charts import Chart
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
     from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
@@ -112,7 +112,7 @@ def balance_pictures(
     original : the machine before; phases alone do not know it.
     """
     from equipoise.balancing.pareto import Front
-    from equipoise.balancing.phase_search import Phasing
+    from equipoise.balancing.phasing import Phasing
     from equipoise.figures import balancing as view
     from equipoise.figures.changes import changes
 

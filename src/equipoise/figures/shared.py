@@ -29,23 +29,24 @@ ALIKE = 0.015
 MOST_PANELS = 10
 """In one picture of small axes."""
 
-GAUGES: dict[tuple[str, bool], tuple[Dimension, tuple[str, str, str]]] = {
-    ("displacement", False): ("length", ("mm", "um", "m")),
-    ("velocity", False): ("speed", ("mm/s", "um/s", "m/s")),
-    ("acceleration", False): ("acceleration", ("m/s^2", "mm/s^2", "m/s^2")),
-    ("displacement", True): ("angle", ("mrad", "urad", "rad")),
-    ("velocity", True): ("angular speed", ("mrad/s", "urad/s", "rad/s")),
-    ("acceleration", True): ("angular acceleration", ("rad/s^2", "mrad/s^2", "rad/s^2")),
-    ("force", False): ("force", ("N", "mN", "kN")),
-    ("force", True): ("torque", ("N m", "mN m", "kN m")),
+GAUGES: dict[tuple[str, bool], tuple[Dimension, str | None]] = {
+    ("displacement", False): ("length", None),
+    ("velocity", False): ("speed", "mm/s"),
+    ("acceleration", False): ("acceleration", None),
+    ("displacement", True): ("angle", "mrad"),
+    ("velocity", True): ("angular speed", "mrad/s"),
+    ("acceleration", True): ("angular acceleration", None),
+    ("force", False): ("force", None),
+    ("force", True): ("torque", None),
 }
-"""What is read of a support, whether it is a rotation -> dimension, and units that suit it."""
+"""What is read of a support, whether it is a rotation -> dimension, and the unit that is usual of a
+support where it is another than elsewhere."""
 
 
 def read_axis(label: str, quantity: str, rotation: bool, values: Any, **rest: Any) -> Axis:
     """An axis of something that is read of a support, in the unit that suits values (SI)."""
-    dimension, usual = GAUGES[quantity, rotation]
-    return Axis.of(label, dimension, values, usual, **rest)
+    dimension, unit = GAUGES[quantity, rotation]
+    return Axis.of(label, dimension, values, unit, **rest)
 
 
 # -- the axis --------------------------------------------------------------------------------------

@@ -12,7 +12,7 @@ import numpy as np
 
 from equipoise.errors import UsageError
 from equipoise.i18n import say
-from equipoise.results.charts import shown
+from equipoise.results.charts import quantity
 from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT, Array
@@ -220,10 +220,10 @@ def _strip(stage: Stage) -> Iterator[list[Label]]:
     words = f"{1000 * length:g} mm" if length < 10 else f"{length:g} m"
     yield [Label(words, right + 8 * stage.unit - 2j, "start")]
     if stage.arrow is not None:
-        peak = shown(abs(stage.arrow.force).max())
-        words = say("shaking force, at most {peak} N", peak=peak)
+        peak = quantity(float(abs(stage.arrow.force).max()), "force")
+        words = say("shaking force, at most {peak}", peak=peak)
         if stage.arrow.of_one:
-            words = say("shaking force of one row, at most {peak} N", peak=peak)
+            words = say("shaking force of one row, at most {peak}", peak=peak)
         corner = complex(stage.width - 12 * stage.unit, right.imag - 2)
         yield [Label(words, corner, "end", "stress")]
 

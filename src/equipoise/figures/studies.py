@@ -15,7 +15,7 @@ import numpy as np
 from equipoise.figures.shared import by_name, continued, groups, told_speed
 from equipoise.figures.style import short
 from equipoise.i18n import say
-from equipoise.quantities import Dimension, Display, display, in_unit, typeset
+from equipoise.quantities import Dimension, Display, display, typeset
 from equipoise.results.charts import (
     Array,
     Axis,
@@ -294,9 +294,7 @@ def number_unit(dimension: str | None) -> Display:
     """The unit in which a number of the model is told."""
     if dimension is None:
         return Display("", 1.0)
-    if dimension in HANDY:
-        return in_unit(HANDY[dimension])
-    return display(cast(Dimension, dimension))
+    return display(cast(Dimension, dimension), (), HANDY.get(dimension))
 
 
 def told_best(found: Landscape) -> str:

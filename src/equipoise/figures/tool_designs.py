@@ -48,7 +48,7 @@ NUMBERS = {
     "rotational_stiffness": to_say("rotational stiffness"),
     "rotational_damping": to_say("rotational damping"),
 }
-SHOWN_IN = {"mass": ("kg", "g", "kg"), "stiffness": ("kN/m", "kN/m", "kN/m")}
+SHOWN_IN = {"mass": "kg", "stiffness": "kN/m"}
 ALLOWED = {"lowest": to_say("lowest allowed"), "highest": to_say("highest allowed")}
 
 

@@ -14,7 +14,19 @@ from equipoise.figures.style import short
 from equipoise.handheld.exposed import grips
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, to_say
-from equipoise.results.charts import RPM, Array, Axis, Chart, Curve, Flag, Line, Mark, Panel, shown
+from equipoise.results.charts import (
+    RPM,
+    Array,
+    Axis,
+    Chart,
+    Curve,
+    Flag,
+    Line,
+    Mark,
+    Panel,
+    quantity,
+    shown,
+)
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
@@ -238,7 +250,8 @@ def _moments(tool: Tool, places: Array, line: ShaftLine, loudest: list[int]) -> 
             curves.append(Curve(places, np.sqrt(squares[:, k]), "", role))
     k = int(highest_at(total, smooth=False))
     at, top = float(places[k]), float(total[k])
-    text = say("{value} at {place} mm", value=y.quantity(top), place=f"{MM * at:.0f}")
+    place = quantity(round(at, 3), "length")
+    text = say("{value} at {place}", value=y.quantity(top), place=place)
     mark = Mark(at, top, text, "ink", 60.0, sign=False)
     return Panel(
         shaft_axis(tool),

@@ -18,7 +18,6 @@ from equipoise.i18n import say, to_say
 from equipoise.quantities import Display
 from equipoise.results.charts import (
     DEGREES,
-    RPM,
     Area,
     Array,
     Axis,
@@ -54,7 +53,7 @@ def engine_axis(speed: Array) -> Axis:
     low, high = float(speed[0]), float(speed[-1])
     if len(speed) < 2:
         low, high = (1 - ALONE) * low, (1 + ALONE) * high
-    return Axis(say("speed of the engine"), RPM, low=low, high=high)
+    return Axis.of(say("speed of the engine"), "angular speed", (), "rpm", low=low, high=high)
 
 
 def work_line(tool: Tool, axis: Axis) -> tuple[Line, ...]:

@@ -23,7 +23,6 @@ from equipoise.figures.style import free_name, short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.support import AXES
 from equipoise.results.charts import (
-    RPM,
     Array,
     Axis,
     Band,
@@ -133,7 +132,7 @@ def drive(response: Response) -> Chart:
     panels = [_with_mean(response, found.torque, y)]
     if found.speed is not None:
         title = say("varies by {share} % of its mean", share=shown(100 * found.fluctuation))
-        y = Axis(say("crank speed"), RPM, room=ROOM)
+        y = Axis.of(say("crank speed"), "angular speed", (), "rpm", room=ROOM)
         panels.append(_with_mean(response, found.speed, y, title=title))
     what = say("Drive of {link}", link=short(response.machine.drive.link))
     rows = len(response.machine.rows)
@@ -289,7 +288,9 @@ def transient_charts(transient: Transient) -> dict[str, Chart]:
     if float(np.ptp(speed)) > VARIES * float(np.max(np.abs(speed))):
         what = say("Speed of {link}", link=short(transient.machine.drive.link))
         what += f", {_from_rest(transient)}"
-        panel = _time_panel(transient, Axis(say("crank speed"), RPM, room=0.08), speed)
+        panel = _time_panel(
+            transient, Axis.of(say("crank speed"), "angular speed", (), "rpm", room=0.08), speed
+        )
         found["speed"] = Chart("speed", transient.machine.title, what, (panel,))
     return found
 

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.handheld.model import PLANES
 from equipoise.handheld.response import rms_over_time
 from equipoise.i18n import Note, say, to_say
-from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.quantities import PER_RPM, Dimension, number, told
 from equipoise.results.blocks import (
     Block,
     Cell,
@@ -80,13 +80,13 @@ def summary_blocks(tool: Tool) -> Iterator[Block]:
     section = shaft.profile.section(shaft.theory)
     yield Text(
         say(
-            "Shaft of {length} mm and {mass} kg, bending stiffness {stiffness} N m² ({theory}); "
-            "the whole tool has {whole} kg.",
-            length=number(1e3 * shaft.length),
-            mass=number(shaft.mass),
-            stiffness=number(section.bending_stiffness),
+            "Shaft of {length} and {mass}, bending stiffness {stiffness} ({theory}); "
+            "the whole tool has {whole}.",
+            length=told(shaft.length, "length"),
+            mass=told(shaft.mass, "mass", "kg"),
+            stiffness=told(section.bending_stiffness, "bending stiffness"),
             theory=shaft.theory,
-            whole=number(tool.mass),
+            whole=told(tool.mass, "mass", "kg"),
         )
     )
 
@@ -212,10 +212,9 @@ def sweep_blocks(found: ToolSweep) -> Iterator[Block]:
     k = int(highest_at(moment, smooth=False))
     yield Text(
         say(
-            "Largest bending moment: {moment} N m RMS at {place} mm of the shaft, engine at "
-            "{speed} rpm",
-            moment=number(float(moment[k])),
-            place=number(1e3 * float(place[k])),
+            "Largest bending moment: {moment} RMS at {place} of the shaft, engine at {speed} rpm",
+            moment=told(float(moment[k]), "torque"),
+            place=told(float(place[k]), "length"),
             speed=rpm(float(found.speed[k])),
         )
     )

@@ -51,6 +51,7 @@ from equipoise.keys import (
 )
 from equipoise.mechanism.checks import numbered, too_many, unknown, wrong_speeds, wrong_text
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.shown_units import ShownUnits
 
 __all__ = [
     "NOTHING",
@@ -205,7 +206,7 @@ class Tool(Frozen):
     """A hand-held tool: a shaft in bending, what sits on it and what shakes it."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description")
+    file_order = ("schema", "title", "description", "units")
 
     title: str = key(Text(), "shown in reports", example="Brush cutter")
     shaft: Shaft = key(Table(ShaftTable), "the beam")
@@ -219,6 +220,9 @@ class Tool(Frozen):
         Table(DesignPlan), "what may be changed so that the hands feel less", default=None
     )
     description: str = key(Text(), "further text", default="")
+    units: ShownUnits | None = key(
+        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
+    )
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Tool:

@@ -221,12 +221,21 @@ def wrong_load(where: str, load: Load, bodies: Bodies) -> Iterator[ModelError]:
             where, "from and to must differ, by one turn at most; leave both out for always"
         )
     if load.table is not None:
-        yield from _wrong_loads(where, load.table, load.outside)
+        yield from _wrong_loads(where, load.table, load.outside is not None or _within_rows(load))
     elif load.outside is not None:
         yield ModelError(f"{where}.outside", "goes with a table; leave it out")
 
 
-def _wrong_loads(where: str, table: LoadTable, outside: str | None) -> Iterator[ModelError]:
+def _within_rows(load: Load) -> bool:
+    """Whether a load acts nowhere but between the first row of its table and the last."""
+    table, start, stop = load.table, load.start, load.stop
+    if table is None or start is None or stop is None or not table.crank_angle or table.turns > 1:
+        return False
+    begin = (start - table.crank_angle[0] + NEARLY) % (2 * pi) - NEARLY
+    return begin + (stop - start) % (2 * pi) <= table.span + NEARLY
+
+
+def _wrong_loads(where: str, table: LoadTable, known: bool) -> Iterator[ModelError]:
     at, angles, named = f"{where}.table", table.crank_angle, table.file or "the table"
     if not angles:
         yield ModelError(at, "the table has no rows")
@@ -238,7 +247,7 @@ def _wrong_loads(where: str, table: LoadTable, outside: str | None) -> Iterator[
         yield ModelError(at, f"{named} covers {table.turns} turns; give at most {MOST_TURNS}")
     elif table.covers:
         yield from _contradiction(at, table, named)
-    elif outside is None:
+    elif not known:
         turns = "a turn" if table.turns == 1 else f"{table.turns} turns"
         yield ModelError(
             f"{where}.outside",

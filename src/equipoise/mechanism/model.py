@@ -63,6 +63,7 @@ from equipoise.mechanism.parts import (
     wrong_gear,
     wrong_slider,
 )
+from equipoise.mechanism.shown_units import ShownUnits
 from equipoise.mechanism.support import Row, Support, wrong_support
 
 if TYPE_CHECKING:
@@ -135,7 +136,7 @@ class Machine(Frozen):
     """A planar linkage with its drive, loads, springs and gravity."""
 
     beside: ClassVar[Keys] = {"schema": VERSION}
-    file_order = ("schema", "title", "description", "gravity", "drive", "frame", "links",
+    file_order = ("schema", "title", "description", "units", "gravity", "drive", "frame", "links",
                   "assembly", "sliders", "gears", "loads", "springs", "position", "planting",
                   "support", "rows", "balance")  # fmt: skip
 
@@ -179,6 +180,10 @@ class Machine(Frozen):
     )
     springs: tuple[Spring, ...] = key(
         Tables(Table(Spring)), "linear springs between links and frame", default=()
+    )
+
+    units: ShownUnits | None = key(
+        Table(ShownUnits), "in which values are shown, as by `--units`", default=None
     )
 
     @classmethod

@@ -76,7 +76,7 @@ class BaseParameters:
     def __str__(self) -> str:
         names = [f"{link}.{quantity}" for link, quantity in self.parameters]
         rows = [zip(row, names, strict=True) for row in self.combinations]
-        return "\n".join(" ".join(f"{x:+.6g} {n}" for x, n in r if abs(x) > 1e-12) for r in rows)
+        return "\n".join(" ".join(f"{x:+.6g} {n}" for x, n in r if x) for r in rows)
 
 
 def parameter_names(machine: Machine) -> tuple[tuple[str, str], ...]:

@@ -24,7 +24,7 @@ from equipoise.planting.names import (
     figure_named,
 )
 from equipoise.planting.stroke import finger_base
-from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.quantities import PER_RPM, Dimension, angle, number, told
 from equipoise.results.blocks import Block, Cell, Column, Notes, Table, Text, Value
 
 if TYPE_CHECKING:
@@ -33,10 +33,8 @@ if TYPE_CHECKING:
 
 LIMITS = {"acceleration": to_say("all the way"), "soil_acceleration": to_say("in the soil")}
 DRIVEN = (
-    to_say(
-        "{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at {forward} m/s"
-    ),
-    to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward} m/s"),
+    to_say("{link} driven at {speed} rpm, counterclockwise; machine drives {travel} at {forward}"),
+    to_say("{link} driven at {speed} rpm, clockwise; machine drives {travel} at {forward}"),
 )
 UNITS: dict[Dimension, str] = {"time": "ms", "angular speed": "rpm", "length": "mm"}
 """Units in which these are told."""
@@ -110,15 +108,15 @@ def _heading(page: Page) -> Iterator[str]:
         link=drive.link,
         speed=number(abs(speed) / PER_RPM),
         travel=figures.planting.travel,
-        forward=number(abs(figures["forward_speed"])),
+        forward=told(abs(figures["forward_speed"]), "speed"),
     )
     base = finger_base(figures.curve)
     tip = say("tip {tip} on {link}", tip=figures.planting.tip, link=figures.curve.link)
     finger = [] if base is None else [say("finger from {base}", base=base)]
-    surface = number(1e3 * figures["surface"])
-    yield say(", ").join([tip, *finger, say("surface of the soil at y = {y} mm", y=surface)])
+    surface = told(figures["surface"], "length")
+    yield say(", ").join([tip, *finger, say("surface of the soil at y = {y}", y=surface)])
     if page.zero:
-        yield say("Crank angles count from {angle}°.", angle=angle(page.zero, 2))
+        yield say("Crank angles count from {angle}.", angle=angle(page.zero, 2))
 
 
 def _instants(page: Page) -> Table:
@@ -212,7 +210,7 @@ def _loops(page: Page) -> Iterator[Block]:
         yield Table(title, (*columns, Column(say("crossing"))), rows)
     for cusp in page.figures.cusps:
         at = angle(page.from_zero(cusp), 2)
-        yield Text(say("Cusp of the path over ground at crank angle {angle}°", angle=at))
+        yield Text(say("Cusp of the path over ground at crank angle {angle}", angle=at))
 
 
 def _clearances(page: Page) -> Iterator[Block]:

@@ -196,8 +196,8 @@ def _collisions(known: Mapping[str, float]) -> Iterator[Note]:
         if not name.endswith(".value"):
             continue
         if body.startswith("clearance.soil.") and value < 0:
-            link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g}"
-            yield Note("{link} goes {depth} mm into the soil", link=link, depth=depth)
+            link, depth = body.removeprefix("clearance.soil."), f"{-1e3 * value:.4g} mm"
+            yield Note("{link} goes {depth} into the soil", link=link, depth=depth)
         if body.startswith("clearance.tray.") and value == 0 and ".tray.tip " not in body:
             link = body.removeprefix("clearance.tray.")
             yield Note("{link} goes through the tray's edge", link=link)

@@ -5,40 +5,43 @@ Content stands beside the results, in the modules ``blocks`` of their rooms; her
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from equipoise.present.cells import Units
+    from equipoise.quantities import Dimension
     from equipoise.results.blocks import Block, Section
     from equipoise.results.result import Result
 
 
 def show(
-    result: Result, width: int | None = None, units: Units | None = None, **options: Any
+    result: Result,
+    width: int | None = None,
+    units: Mapping[Dimension, str] | None = None,
+    **options: Any,
 ) -> None:
     """Print what a result shows.
 
     width : signs in a line; those of the terminal if None.
-    units : that are chosen, by dimension, such as ``{"length": "cm"}``.
+    units : that are chosen, by dimension, such as ``{"length": "cm"}``; before those of its file.
     options : of the result's `blocks`.
     """
-    show_blocks(result.title, result.blocks(**options), width, units)
+    from equipoise.quantities import showing
+
+    with showing(units or {}), result.in_own_units():
+        show_blocks(result.title, result.blocks(**options), width)
 
 
 def show_blocks(
-    title: str | None,
-    blocks: Iterable[Block | Section],
-    width: int | None = None,
-    units: Units | None = None,
+    title: str | None, blocks: Iterable[Block | Section], width: int | None = None
 ) -> None:
     """Print blocks below a title, or where that is None below what was printed before.
 
-    Further arguments as of `show`.
+    width : as of `show`.
     """
     from equipoise.present.terminal import print_blocks
 
-    print_blocks(title, blocks, width, units)
+    print_blocks(title, blocks, width)
 
 
 def html_of(result: Result) -> str:

@@ -3,32 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from math import isnan
+from math import isfinite, isnan
 
-from equipoise.errors import UsageError
 from equipoise.i18n import Note, say, spoken
-from equipoise.quantities import (
-    KINDS,
-    Dimension,
-    Display,
-    change,
-    display,
-    in_unit,
-    number,
-    typeset,
-)
+from equipoise.quantities import Dimension, Display, change, display, fixed, typeset
+from equipoise.quantities.numbers import ROUNDING
 from equipoise.results.blocks import Cell, Change, Column, Many, Span, Table, Value
 
-Units = Mapping[Dimension, str]
-"""Units that a reader has chosen, by dimension."""
 Kind = tuple[Dimension | None, str | None]
+"""Dimension and unit of a number; those of one kind have one unit in a table."""
+Sizes = Mapping[tuple[int, Kind], float]
+"""The largest number of each kind in each column; what is rounding beside it is told as 0."""
 
 UNCHANGED = change(1.0, 1.0)
 """What `change` tells of two equal figures."""
-MORE_DIGITS = {"rad": 2, "turn": 3}
-"""Of angles, beyond those behind the point in degrees."""
 
 
 @dataclass(frozen=True)
@@ -78,23 +68,24 @@ class Grid:
         return not any(row[column].number for row in self.rows)
 
 
-def grid(table: Table, units: Units | None = None) -> Grid:
-    """A table as texts; a unit of a row stands behind its first words.
-
-    units : that are chosen, by dimension; those that suit the sizes otherwise.
-    """
-    shown = _displays(table, units or {})
-    rows = tuple(tuple(_row(table, row, shown)) for row in table.rows)
+def grid(table: Table) -> Grid:
+    """A table as texts; a unit of a row stands behind its first words."""
+    sizes = _sizes(table)
+    shown = _displays(table, sizes)
+    rows = tuple(tuple(_row(table, row, shown, sizes)) for row in table.rows)
     if not rows:
         return Grid(table.title, tuple(Head(column.label) for column in table.columns), ())
     columns = zip(table.columns, zip(*table.rows, strict=True), strict=True)
     return Grid(table.title, tuple(_head(*pair, shown) for pair in columns), rows)
 
 
-def _row(table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Iterator[Text]:
+def _row(
+    table: Table, row: tuple[Cell, ...], shown: Mapping[Kind, Display], sizes: Sizes
+) -> Iterator[Text]:
     unit = _unit_of_row(table, row, shown)
     for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
-        text = _text(cell, column, shown)
+        least = {kind: size for (at, kind), size in sizes.items() if at == place}
+        text = _text(cell, column, shown, least)
         if place == 0 and unit:
             text = replace(text, text=say(", ").join(filter(None, (text.text, unit))))
         yield text
@@ -125,30 +116,33 @@ def _kind(value: Value, column: Column) -> Kind:
     return column.dimension, column.unit
 
 
-def _displays(table: Table, units: Units) -> dict[Kind, Display]:
-    """The unit of each kind of number: the same in the whole table, so that they compare."""
-    sizes: dict[Kind, list[float]] = {}
-    places: set[Kind] = set()
+def _sizes(table: Table) -> dict[tuple[int, Kind], float]:
+    """The largest number of each kind in each column, but for what is rounding by its own scale."""
+    sizes: dict[tuple[int, Kind], float] = {}
     for row in table.rows:
-        for column, cell in zip(table.columns, row, strict=True):
+        for place, (column, cell) in enumerate(zip(table.columns, row, strict=True)):
             for value in _values(cell):
-                rounding = abs(value.value) <= 1e-10 * abs(value.scale)
-                sizes.setdefault(_kind(value, column), []).append(0.0 if rounding else value.value)
-            places.add(column.at)
-    heads = {(column.dimension, column.unit) for column in table.columns}
-    for kind in (heads | places) - sizes.keys():
-        sizes[kind] = []
-    return {kind: _display(*kind, values, units) for kind, values in sizes.items()}
+                size = abs(value.value) if isfinite(value.value) else 0.0
+                size = 0.0 if size <= ROUNDING * abs(value.scale) else size
+                key = place, _kind(value, column)
+                sizes[key] = max(sizes.get(key, 0.0), size)
+    return sizes
 
 
-def _display(
-    dimension: Dimension | None, unit: str | None, values: list[float], units: Units
-) -> Display:
+def _displays(table: Table, sizes: Sizes) -> dict[Kind, Display]:
+    """The unit of each kind of number: the same in the whole table, so that they compare."""
+    kinds: dict[Kind, list[float]] = {}
+    for column in table.columns:
+        kinds |= {(column.dimension, column.unit): [], column.at: []}
+    for (_, kind), size in sizes.items():
+        kinds.setdefault(kind, []).append(size)
+    return {kind: _display(*kind, values) for kind, values in kinds.items()}
+
+
+def _display(dimension: Dimension | None, unit: str | None, values: Iterable[float]) -> Display:
     if dimension is None:
         return Display(unit or "", 1.0)
-    if dimension in units:
-        return in_unit(units[dimension])
-    return in_unit(unit) if unit is not None else display(dimension, values)
+    return display(dimension, [*values], unit)
 
 
 def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]) -> Head:
@@ -160,26 +154,29 @@ def _head(column: Column, cells: tuple[Cell, ...], shown: Mapping[Kind, Display]
 # -- cells -----------------------------------------------------------------------------------------
 
 
-def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
+def _text(
+    cell: Cell, column: Column, shown: Mapping[Kind, Display], sizes: Mapping[Kind, float]
+) -> Text:
     if cell is None or isinstance(cell, str):
         return Text(cell or "")
     if isinstance(cell, Change):
         share = change(cell.before, cell.after)
         return Text(say("same") if share == UNCHANGED else share, "", True, cell.worse)
     if isinstance(cell, Many):
-        told = [_text(value, column, shown) for value in cell.values]
+        told = [_text(value, column, shown, sizes) for value in cell.values]
         more = [say("and {count} more", count=cell.more)] if cell.more else []
         words = say(", ").join([*(one.told for one in told), *more])
         return Text(words, strong=any(one.strong for one in told))
     if isinstance(cell, Span):
-        unit = shown[column.dimension, column.unit]
+        kind = column.dimension, column.unit
+        unit, size = shown[kind], sizes[kind]
         scale = max(abs(cell.low), abs(cell.high), cell.scale)
         ends = [Value(end, scale, None, cell.digits, cell.after) for end in (cell.low, cell.high)]
-        low, high = (_number(end, unit, column.dimension) for end in ends)
-        equal = cell.high - cell.low <= 1e-10 * scale
+        low, high = (_number(end, unit, column.dimension, size) for end in ends)
+        equal = cell.high - cell.low <= ROUNDING * scale
         return Text(high if equal else say("{low} to {high}", low=low, high=high), number=True)
-    dimension = cell.dimension if cell.dimension is not None else column.dimension
-    text = _number(cell, shown[_kind(cell, column)], dimension)
+    kind = _kind(cell, column)
+    text = _number(cell, shown[kind], kind[0], sizes[kind] * column.alike)
     at = ""
     if cell.at is not None:
         place = Value(cell.at, after=1 if column.at[0] == "angle" else None)
@@ -187,15 +184,14 @@ def _text(cell: Cell, column: Column, shown: Mapping[Kind, Display]) -> Text:
     return Text(text, at, number=True, strong=cell.broken or cell.worse)
 
 
-def _number(cell: Value, unit: Display, dimension: Dimension | None) -> str:
+def _number(cell: Value, unit: Display, dimension: Dimension | None, size: float = 0.0) -> str:
+    """A value as text.  size : of the largest beside it; plain numbers have none in common."""
     if isnan(cell.value):
         return say("none")
     if cell.after is None:
-        return number(unit.factor * cell.value, unit.factor * cell.scale, cell.digits)
-    after = cell.after
-    if dimension == "angle":
-        after += MORE_DIGITS.get(unit.unit, 0)
-    return f"{round(unit.factor * cell.value, after) + 0.0:.{after}f}"
+        scale = abs(cell.scale) if dimension is None else max(abs(cell.scale), size)
+        return unit.text(cell.value, scale, cell.digits)
+    return fixed(unit, cell.value, cell.after)
 
 
 # -- print -----------------------------------------------------------------------------------------
@@ -241,38 +237,3 @@ _PLAIN = str.maketrans(
 def plain(text: str) -> str:
     """A text in signs that any terminal has."""
     return text.translate(_PLAIN)
-
-
-PRINTED: tuple[Dimension, ...] = (
-    "length",
-    "angle",
-    "speed",
-    "acceleration",
-    "time",
-    "frequency",
-    "angular speed",
-    "force",
-    "torque",
-)
-"""Dimensions whose units can be chosen."""
-
-
-def read_units(text: str) -> dict[Dimension, str]:
-    """Chosen units by dimension, from a list such as ``"mm, km/h"``.
-
-    Raises
-    ------
-    UsageError : there is no such unit, or there are two of a dimension.
-    """
-    kinds = {unit: kind for kind in reversed(PRINTED) for unit in KINDS[kind].units}
-    given: dict[Dimension, str] = {}
-    for unit in filter(None, map(str.strip, text.split(","))):
-        if unit not in kinds:
-            known = ", ".join(unit for kind in PRINTED for unit in KINDS[kind].units)
-            raise UsageError(f"--units: got {unit!r}; choose among {known}")
-        kind = kinds[unit]
-        if given.setdefault(kind, unit) != unit:
-            raise UsageError(
-                f"--units: got {given[kind]!r} and {unit!r}, both units of {kind}; give one"
-            )
-    return given

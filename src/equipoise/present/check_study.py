@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from equipoise.codegen.backends import engine, processors
 from equipoise.codegen.figures import COMPUTED, REASONS
+from equipoise.errors import lacking
+from equipoise.quantities.numbers import rate_told, time_told
 from equipoise.results.blocks import Block, Cell, Listing, Notes, Table, Text
 from equipoise.signals import Array
 from equipoise.studies.blocks import Units, in_unit, labelled, spread_told
 from equipoise.studies.evaluate import evaluator
-from equipoise.studies.outcomes import Outcome
+from equipoise.studies.outcomes import Outcome, estimated
+from equipoise.studies.run import Route
 
 if TYPE_CHECKING:
     from equipoise.studies.study import Study
 
-FAST, SLOW = "many at once, in compiled loops", "one after the other"
+HOW = {"numba": "many at once, in compiled loops", "numpy": "many at once, by NumPy"}
+"""How designs are computed, by what computes them."""
+SLOW = "one after the other"
 
 
 def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
@@ -35,11 +42,25 @@ def study_blocks(study: Study, units: Units, file: str) -> Iterator[Block]:
         yield Text(f"{one.first} goes with {one.second}, coefficient {one.coefficient:g}")
     heads = ("", "of", "model", "at least", "at most", "make")
     yield Table.of("What is computed", heads, _computed(study, units, outcome))
-    yield Text(f"computed {FAST if getattr(compute, 'compiled', False) else SLOW}")
+    compiled = getattr(compute, "compiled", False)
+    yield Text(f"computed {HOW[engine()] if compiled else SLOW}")
+    yield Text(_time(study))
     if outcome.reason[0] != COMPUTED:
         reason = REASONS[int(outcome.reason[0])]
         yield Notes((f"the model itself has no figures ({reason})",))
     yield Listing("", "\n".join(_ready(study, file)))
+
+
+def _time(study: Study) -> str:
+    """How long all designs take, and what that was taken from."""
+    route = Route.of(study)
+    compute = partial(route.task.function, route.task.study)
+    found = estimated(compute, study.size, route.chunk, processors())
+    total = f"about {time_told(found.seconds)}" if found.seconds >= 1 else "less than 1 s"
+    here = "one processor" if found.workers == 1 else f"{found.workers} processors"
+    one = "1 design" if found.designs == 1 else f"{found.designs} designs"
+    rate = rate_told(found.rate)
+    return f"time for all: {total} on {here}; {one} of a chunk went at {rate} on one"
 
 
 def _varied(study: Study, units: Units, own: Array) -> Iterator[tuple[Cell, ...]]:
@@ -58,10 +79,10 @@ def _computed(study: Study, units: Units, outcome: Outcome) -> Iterator[tuple[Ce
 
 
 def _ready(study: Study, file: str) -> Iterator[str]:
-    """Commands that take it."""
-    yield f"ready for: equipoise sweep {file} -o designs.zarr"
+    """Commands that take it, and what those lack that might."""
+    yield lacking("a sweep") or f"ready for: equipoise sweep {file} -o designs.zarr"
     tolerances = [one.spread.tolerance for one in study.vary]
     if all(tolerances):
         yield f"ready for: equipoise tolerance {file}"
     if not any(tolerances) and study.objectives:
-        yield f"ready for: equipoise search {file}"
+        yield lacking("a search") or f"ready for: equipoise search {file}"

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from math import degrees
 from typing import TYPE_CHECKING
 
 from equipoise.errors import ModelError
@@ -13,16 +12,16 @@ from equipoise.mechanism.dynamics import massless
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.loads import work_in_cycle
 from equipoise.mechanism.support import idle_parts
-from equipoise.quantities import PER_RPM, Dimension, number
+from equipoise.quantities import PER_RPM, SI, Dimension, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Listing, Notes, Table, Text, Value
-from equipoise.results.machine_blocks import bodies_tables
+from equipoise.results.machine_blocks import bodies_tables, place_told
 from equipoise.vibration.body import Body, at_rest
 from equipoise.vibration.linear import Excitation as Shaking
 
 if TYPE_CHECKING:
     from equipoise.handheld.design_plan import DesignPlan
     from equipoise.handheld.model import Both, Excitation, Hand, Operation, Station, Tool
-    from equipoise.handheld.shaft import Shaft
+    from equipoise.handheld.shaft import Section, Shaft
     from equipoise.mechanism.force_elements import Motor
     from equipoise.mechanism.linkage import Linkage
     from equipoise.mechanism.model import Machine
@@ -90,12 +89,12 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
         kind: Dimension = "torque" if load.point is None else "force"
         place = load.link if load.point is None else f"{load.point} of {load.link}"
         what: str = kind
-        ends, beyond = (load.start, load.stop), "0"
+        ends, beyond = (load.start, load.stop), "zero"
         if (table := load.table) is not None:
             what = f"{kind}, {table.file}" if table.file else f"{kind}, table"
-            beyond = "0" if load.start is not None or table.covers else load.outside or ""
             if load.start is None:
                 ends = (table.crank_angle[0], table.crank_angle[-1])
+                beyond = "" if table.covers else load.outside or ""
         shown = [Value(end, after=1) for end in ends if end is not None]
         where: tuple[Cell, ...] = (*shown, beyond) if shown else ("always", None, None)
         yield place, what, *where, Value(work.largest, dimension=kind), Value(work.net, work.both)
@@ -103,26 +102,25 @@ def _loads(machine: Machine) -> Iterator[tuple[Cell, ...]]:
 
 def _springs(machine: Machine) -> Iterator[str]:
     for spring in machine.springs:
-        free = f", free at {number(spring.free_length * 1e3)} mm" if spring.free_length else ""
-        yield (
-            f"spring: from {spring.point} of {spring.link} to {spring.to}, "
-            f"{number(spring.stiffness)} N/m{free}"
-        )
+        free = f", free at {_length(spring.free_length)}" if spring.free_length else ""
+        stiffness = told(spring.stiffness, "stiffness", "N/m")
+        yield f"spring: from {spring.point} of {spring.link} to {spring.to}, {stiffness}{free}"
 
 
 def _drive_train(machine: Machine) -> Iterator[str]:
     drive = machine.drive
     if drive.flywheel:
-        yield f"flywheel: {number(drive.flywheel)} kg m^2"
+        yield f"flywheel: {told(drive.flywheel, 'inertia', 'kg m^2')}"
     if (motor := drive.motor) is not None:
-        rotor = f", rotor {number(motor.inertia)} kg m^2" if motor.inertia else ""
+        rotor = f", rotor {told(motor.inertia, 'inertia', 'kg m^2')}" if motor.inertia else ""
         speed = "is the drive's" if motor.mean_speed == "held" else "follows from it"
         yield f"motor: {_curve(motor)}, ratio {number(motor.ratio)}{rotor}; mean speed {speed}"
     if machine.rows:
-        shown = [number(degrees(row.phase)) for row in machine.rows[:MOST_SHOWN]]
+        unit = display("angle")
+        shown = [unit.text(row.phase) for row in machine.rows[:MOST_SHOWN]]
         more = len(machine.rows) - len(shown)
         phases = f"{', '.join(shown)} and {more} more" if more else _listed(shown)
-        yield f"rows: {len(machine.rows)} on one shaft, ahead by {phases} deg"
+        yield f"rows: {len(machine.rows)} on one shaft, ahead by {unit.with_unit(phases)}"
 
 
 def _curve(motor: Motor) -> str:
@@ -131,8 +129,8 @@ def _curve(motor: Motor) -> str:
         return f"{len(speeds)} rows from {_rpm(speeds[0])} to {_rpm(speeds[-1])} rpm"
     assert motor.no_load_speed is not None
     assert motor.stall_torque is not None
-    torque = number(motor.stall_torque)
-    return f"{_rpm(motor.no_load_speed)} rpm without load, {torque} N m at standstill"
+    torque = told(motor.stall_torque, "torque", "N m")
+    return f"{_rpm(motor.no_load_speed)} rpm without load, {torque} at standstill"
 
 
 def _rpm(speed: float) -> str:
@@ -143,9 +141,9 @@ def _support(machine: Machine) -> Iterator[str]:
     support = machine.support
     if support is None:
         return
-    about = f" about the pivot at {_place(support.pivot)}" if support.pivot is not None else ""
+    about = f" about the pivot at {place_told(support.pivot)}" if support.pivot is not None else ""
     ways = _listed(support.coordinates)
-    yield f"support: {number(support.mass)} kg; it can {ways}{about}"
+    yield f"support: {told(support.mass, 'mass', 'kg')}; it can {ways}{about}"
     for name, mount in support.mounts.items():
         yield f"  mount {name}: {', '.join(_mount(mount))}"
     for name, gauge in support.gauges.items():
@@ -154,21 +152,22 @@ def _support(machine: Machine) -> Iterator[str]:
         yield "  no mounts"
 
 
-MOUNT_RATES = {
-    "stiffness": "N/m",
-    "damping": "N s/m",
-    "torsional_stiffness": "N m/rad",
-    "torsional_damping": "N m s/rad",
+MOUNT_RATES: dict[str, Dimension] = {
+    "stiffness": "stiffness",
+    "damping": "damping",
+    "torsional_stiffness": "torsional stiffness",
+    "torsional_damping": "torsional damping",
 }
 
 
 def _mount(mount: Mount) -> Iterator[str]:
     yield _reading(mount) if mount.point is None else f"pushes {_reading(mount)}"
-    for key, unit in MOUNT_RATES.items():
+    for key, dimension in MOUNT_RATES.items():
         if value := getattr(mount, key):
-            yield f"{number(value)} {unit}"
+            yield told(value, dimension, SI[dimension])
     if mount.preload is not None:
-        yield f"{number(mount.preload)} {'N' if mount.axis is None else 'N m'} as drawn"
+        preload = told(mount.preload, "force" if mount.axis is None else "torque")
+        yield f"{preload} as drawn"
     if mount.one_sided:
         yield "one-sided"
 
@@ -179,12 +178,8 @@ def _reading(item: Mount | Gauge) -> str:
     if isinstance(item.direction, tuple):
         way = f"along ({', '.join(map(number, item.direction))})"
     else:
-        way = f"along {number(degrees(item.direction))} deg"
-    return f"{way} at {_place(item.point)}"
-
-
-def _place(place: Sequence[float]) -> str:
-    return f"({', '.join(number(coordinate * 1e3) for coordinate in place)}) mm"
+        way = f"along {told(item.direction, 'angle')}"
+    return f"{way} at {place_told(item.point)}"
 
 
 def _listed(words: Sequence[str]) -> str:
@@ -194,18 +189,18 @@ def _listed(words: Sequence[str]) -> str:
 
 # -- tools ----------------------------------------------------------------------------------------
 
-RATES = {
-    "inertia": "kg m^2",
-    "stiffness": "N/m",
-    "damping": "N s/m",
-    "rotational_stiffness": "N m/rad",
-    "rotational_damping": "N m s/rad",
+RATES: dict[str, Dimension] = {
+    "inertia": "inertia",
+    "stiffness": "stiffness",
+    "damping": "damping",
+    "rotational_stiffness": "torsional stiffness",
+    "rotational_damping": "torsional damping",
 }
 
 
 def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
     """How the tool is built up."""
-    yield Text(f"{number(tool.mass)} kg without hands")
+    yield Text(f"{_mass(tool.mass)} without hands")
     yield from map(Text, _shaft(tool.shaft))
     for station in tool.stations:
         parts = ", ".join(_station(station)) or "nothing"
@@ -223,29 +218,35 @@ def tool_blocks(tool: Tool, file: str) -> Iterator[Block]:
 
 
 def _length(value: float) -> str:
-    return f"{number(1e3 * value)} mm"
+    return told(value, "length")
+
+
+def _mass(value: float) -> str:
+    return told(value, "mass", "kg")
+
+
+def _bending(section: Section) -> str:
+    return f"EI {told(section.bending_stiffness, 'bending stiffness')}"
 
 
 def _shaft(shaft: Shaft) -> Iterator[str]:
     pieces = shaft.pieces
-    stiffness = f"EI {number(pieces[0][2].bending_stiffness)} N m^2" if len(pieces) == 1 else ""
-    parts = [_length(shaft.length), f"{number(shaft.mass)} kg", stiffness, shaft.theory]
+    stiffness = _bending(pieces[0][2]) if len(pieces) == 1 else ""
+    parts = [_length(shaft.length), _mass(shaft.mass), stiffness, shaft.theory]
     if shaft.loss_factor:
         parts.append(f"loss factor {number(shaft.loss_factor)}")
     yield f"shaft: {', '.join(filter(None, parts))}"
     for start, stop, section in pieces if len(pieces) > 1 else ():
-        yield (
-            f"  from {_length(start)} to {_length(stop)}: EI {number(section.bending_stiffness)} "
-            f"N m^2, {number(section.mass_per_length)} kg/m"
-        )
+        linear = told(section.mass_per_length, "mass per length", "kg/m")
+        yield f"  from {_length(start)} to {_length(stop)}: {_bending(section)}, {linear}"
 
 
 def _station(station: Station) -> Iterator[str]:
     if station.mass:
-        yield f"{number(station.mass)} kg"
+        yield _mass(station.mass)
     yield from _rates(station)
     if station.absorber is not None:
-        parts = ", ".join([f"{number(station.absorber.mass)} kg", *_rates(station.absorber)])
+        parts = ", ".join([_mass(station.absorber.mass), *_rates(station.absorber)])
         yield f"absorber ({parts})"
     if station.hand is not None:
         yield f"{station.hand.hands} hand{'s' * (station.hand.hands - 1)} ({_hand(station.hand)})"
@@ -254,16 +255,17 @@ def _station(station: Station) -> Iterator[str]:
 
 
 def _rates(item: object) -> Iterator[str]:
-    for key, unit in RATES.items():
+    for key, dimension in RATES.items():
         pair: Both = getattr(item, key, (0.0, 0.0))
-        vertical, lateral = map(number, pair)
+        unit = display(dimension, pair, SI[dimension])
+        vertical, lateral = map(unit.text, pair)
         both = f"{vertical} (vertical) and {lateral} (lateral)"
         if any(pair):
-            yield f"{vertical if pair[0] == pair[1] else both} {unit}"
+            yield unit.with_unit(vertical if pair[0] == pair[1] else both)
 
 
 def _hand(hand: Hand) -> str:
-    mass = [f"{number(hand.mass)} kg"] if hand.mass else []
+    mass = [_mass(hand.mass)] if hand.mass else []
     spans = [
         f"impedance from {number(table.frequency[0])} to {number(table.frequency[-1])} Hz"
         for table in hand.impedance
@@ -273,16 +275,16 @@ def _hand(hand: Hand) -> str:
 
 def _excitation(excitation: Excitation) -> Iterator[str]:
     if excitation.force is not None:
-        yield f"{number(excitation.force)} N, {excitation.direction}"
+        yield f"{told(excitation.force, 'force')}, {excitation.direction}"
     elif excitation.unbalance is not None:
-        yield f"unbalance {number(1e6 * excitation.unbalance)} g mm"
+        yield f"unbalance {told(excitation.unbalance, 'unbalance')}"
     elif excitation.linkage is not None:
         yield f"linkage {excitation.linkage.title}"
     yield f"at {excitation.station}"
     if excitation.ratio != 1:
         yield f"{number(excitation.ratio)} times the engine's speed"
     if excitation.phase:
-        yield f"ahead by {number(degrees(excitation.phase))} deg"
+        yield f"ahead by {told(excitation.phase, 'angle')}"
 
 
 def _operation(operation: Operation) -> Iterator[str]:

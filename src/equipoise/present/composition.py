@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import equipoise
 from equipoise.balancing.blocks import outcome_blocks, said
@@ -11,6 +12,7 @@ from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
 from equipoise.i18n import LANGUAGES, say, speaking, to_say
+from equipoise.mechanism.shown_units import units_of
 from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.pages import Document, check_pdf, page, pdf
@@ -18,7 +20,7 @@ from equipoise.present.pictures import drawings
 from equipoise.present.remedies import nothing_told
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import tool_answers, tool_tiles
-from equipoise.quantities import PER_RPM, number
+from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
 from equipoise.results.analysis_blocks import force_blocks, joint_table, motion_blocks
 from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
@@ -61,11 +63,13 @@ def build(
     ------
     UsageError : the analysis does not cover whole turns; errors of it otherwise.
     """
-    with speaking(language):
+    with speaking(language), showing_by_default(units_of(found.owner)):
         if isinstance(found, ToolFindings):
-            return _of_tool(found, language, command)
-        check_whole_cycle(found)
-        return _of_linkage(found, language, command, together)
+            made = _of_tool(found, language, command)
+        else:
+            check_whole_cycle(found)
+            made = _of_linkage(found, language, command, together)
+        return replace(made, units=chosen_units())
 
 
 def _of_linkage(found: Findings, language: str, command: str, together: bool) -> Document:

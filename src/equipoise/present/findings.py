@@ -48,6 +48,12 @@ class _Found:
     failed: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     @property
+    def owner(self) -> Machine | Tool:
+        """What it is of."""
+        owner: Machine | Tool = getattr(self, "machine", None) or getattr(self, "tool")  # noqa: B009
+        return owner
+
+    @property
     def notes(self) -> tuple[str, ...]:
         """A sentence on each part that could not be computed, and why; computes all of them."""
         for part in self.told:

@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from functools import cache
 from html import escape
 from importlib import resources
@@ -21,6 +22,7 @@ from equipoise.errors import EquipoiseError, UsageError
 from equipoise.figures.style import GRID, STUBBLE
 from equipoise.i18n import LANGUAGES, say, speaking, spoken
 from equipoise.present.cells import Grid, Head, Text, grid, noted, printed, sign_of
+from equipoise.quantities import Units, showing
 from equipoise.results.blocks import Block, Section, Table
 from equipoise.results.result import Result
 from equipoise.symbols.looks import DARK, LIGHT
@@ -52,6 +54,7 @@ class Document:
     """A whole report.
 
     language : its code.  subtitle : what runs, how fast.  animation : SVG, empty where none moves.
+    units : that are chosen, by dimension.
     """
 
     language: str
@@ -62,6 +65,13 @@ class Document:
     summary: tuple[Answer, ...]
     animation: str
     sections: tuple[Section, ...]
+    units: Units = field(default_factory=dict)
+
+    @contextmanager
+    def spoken(self) -> Iterator[None]:
+        """Inside, its language is spoken, and values are shown in its units."""
+        with speaking(self.language), showing(self.units):
+            yield
 
 
 NAMES = {color: name for name, color in LIGHT.items()} | {GRID: "grid", STUBBLE: "stubble"}
@@ -115,7 +125,7 @@ def html_of(result: Result) -> str:
 
 def page(document: Document) -> str:
     """A document as HTML."""
-    with speaking(document.language):
+    with document.spoken():
         labels = {
             "contents": say("Contents"),
             "summary": say("Summary"),
@@ -204,7 +214,7 @@ def pdf(document: Document) -> bytes:
     import typst
 
     families = _families(document.language)
-    with speaking(document.language):
+    with document.spoken():
         labels = {
             "summary": say("Summary"),
             "made": say("Made by Equipoise {version}", version=equipoise.__version__),

@@ -9,11 +9,11 @@ from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Objective
 from equipoise.present.findings import Findings
-from equipoise.quantities import brief, change, percent
-from equipoise.results.outputs import objective_named, output_named, scaled, unit_of_measure
+from equipoise.quantities import change, percent, told
+from equipoise.results.outputs import objective_named, output_named, shown_in, unit_of_measure
 
 WORSE, MOST_WORSE = 0.1, 3
-NOTHING = 1e-9
+NOTHING, ROUNDING = 1e-9, 1e-12
 LARGE = 0.5
 """Added mass over that of all links from which it is told."""
 
@@ -31,13 +31,13 @@ def helps_told(found: Findings) -> Iterator[str]:
     yield from _heavy(balanced)
     for one in balanced.plan.objectives:
         before, after = balanced.objectives[one.name]
-        scale, unit = scaled(balanced.units[one.name])
+        unit = shown_in(balanced.units[one.name], [before])
         yield say(
             "{what}: {before} → {after} {unit} ({change}).",
             what=_named(found, one),
-            before=brief(before * scale),
-            after=brief(after * scale, before * scale),
-            unit=unit,
+            before=unit.text(before, digits=3),
+            after=unit.text(after, before, 3),
+            unit=unit.name,
             change=change(before, after) or percent(0),
         )
     if balanced.proved:
@@ -62,12 +62,13 @@ def nothing_told(found: Findings) -> Iterator[str]:
     balanced = found.balanced
     assert balanced is not None
     for one in balanced.plan.objectives:
-        scale, unit = scaled(balanced.units[one.name])
+        value = balanced.objectives[one.name][0]
+        unit = shown_in(balanced.units[one.name], [value])
         yield say(
             "{what}, {value} {unit}, is {already}.",
             what=_named(found, one),
-            value=brief(balanced.objectives[one.name][0] * scale),
-            unit=unit,
+            value=unit.text(value, digits=3),
+            unit=unit.name,
             already=good_already(found),
         )
     if balanced.proved:
@@ -88,23 +89,24 @@ def _heavy(balanced: Balanced) -> Iterator[str]:
     )
     if added > LARGE * links > 0:
         yield say(
-            "That is a large mass for this linkage: all its links together have {links} kg, and "
-            "{added} kg are added.",
-            links=brief(links),
-            added=brief(added),
+            "That is a large mass for this linkage: all its links together have {links}, and "
+            "{added} are added.",
+            links=told(links, "mass", "kg", digits=3),
+            added=told(added, "mass", "kg", digits=3),
         )
 
 
 def _worse(found: Findings, balanced: Balanced) -> list[str]:
     """Peaks of outputs that grow by more than a tenth, the most first, and those from nothing."""
+    least = ROUNDING * max(balanced.before.values(), default=0.0)
     grown = {
         name.removesuffix(".peak"): balanced.after.get(name, 0.0) / old - 1
         for name, old in balanced.before.items()
-        if old > 1e-12 and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
+        if old > least and name.endswith(".peak") and name.startswith(("joints", "drive", "shak"))
     }
     worst = sorted((name for name in grown if grown[name] > WORSE), key=lambda name: -grown[name])
     rows = len(found.machine.rows)
-    told = [
+    worse = [
         say("{what} by {share} %", what=output_named(name, rows), share=percent(grown[name]))
         for name in worst[:MOST_WORSE]
     ]
@@ -113,10 +115,10 @@ def _worse(found: Findings, balanced: Balanced) -> list[str]:
         output = name.removesuffix(".peak")
         of_rows = name.startswith("rows.") and output != name
         if of_rows and balanced.before.get(name, after) < NOTHING * after:
-            unit, what = unit_of_measure(output, "peak"), output_named(output)
-            size = brief(after)
-            told.append(say("{what} from 0 to {size} {unit}", what=what, size=size, unit=unit))
-    return told
+            unit, what = shown_in(unit_of_measure(output, "peak"), [after]), output_named(output)
+            words = {"what": what, "size": unit.text(after, digits=3), "unit": unit.name}
+            worse.append(say("{what} from 0 to {size} {unit}", **words))
+    return worse
 
 
 def capital(text: str) -> str:

@@ -16,9 +16,18 @@ from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
 from equipoise.present.remedies import capital, good_already, helps_told
-from equipoise.quantities import PER_RPM, angle, brief, change, percent
+from equipoise.quantities import (
+    PER_RPM,
+    Dimension,
+    angle,
+    brief,
+    change,
+    display,
+    percent,
+    told,
+)
 from equipoise.results.analysis_blocks import shares
-from equipoise.results.outputs import CAUSES, objective_named, scaled
+from equipoise.results.outputs import CAUSES, objective_named, shown_in
 from equipoise.signals import Array, Figures, figures, harmonics
 from equipoise.vibration.resonance import within
 
@@ -108,7 +117,7 @@ def tiles(found: Findings) -> Iterator[Tile]:
     if analysis.solved is None:
         return
     size = Shaking.of(found).size
-    yield Tile(say("shaking force, peak"), brief(size.peak), "N", _at(size.peak_at))
+    yield _tile(say("shaking force, peak"), size.peak, "force", _at(size.peak_at))
     template = to_say("one row: {what}") if len(found.machine.rows) > 1 else "{what}"
     labels = {
         "shaking_moment": say("shaking moment, peak"),
@@ -116,13 +125,13 @@ def tiles(found: Findings) -> Iterator[Tile]:
     }
     for name, label in labels.items():
         one = analysis.summary[name]
-        value = brief(one.peak, analysis.summary["frame_moment"].peak)
-        note = _at(one.peak_at) if value != "0" else ""
-        yield Tile(say(template, what=label), value, "N m", note)
+        scale = analysis.summary["frame_moment"].peak
+        note = _at(one.peak_at) if brief(one.peak, scale) != "0" else ""
+        yield _tile(say(template, what=label), one.peak, "torque", note, scale)
     name, largest = _largest_joint(found)
     if name:
         label = say("largest joint force")
-        yield Tile(label, brief(largest.peak), "N", say("joint {name}", name=joint_named(name)))
+        yield _tile(label, largest.peak, "force", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
         first = found.balanced.plan.objectives[0]
         told = change(*found.balanced.objectives[first.name]).removesuffix(" %") or percent(0)
@@ -131,8 +140,13 @@ def tiles(found: Findings) -> Iterator[Tile]:
         yield Tile(say("by balancing"), told, "%", note)
 
 
+def _tile(label: str, value: float, dimension: Dimension, note: str, scale: float = 0.0) -> Tile:
+    unit = display(dimension, [value if brief(value, scale) != "0" else 0.0])
+    return Tile(label, unit.text(value, scale, 3), unit.name, note)
+
+
 def _at(crank_angle: float) -> str:
-    return say("at crank angle {angle}°", angle=angle(crank_angle, 0))
+    return say("at crank angle {angle}", angle=angle(crank_angle, 0))
 
 
 def _largest_joint(found: Findings) -> tuple[str, Figures]:
@@ -155,23 +169,23 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
     size, rows = shaking.size, len(found.machine.rows)
     speed = brief(abs(found.analysis.motion.speed) / PER_RPM)
     summary = found.analysis.summary
-    if size.peak <= 1e-9 * max(summary["frame_force"].peak, 1e-9):
+    if size.peak <= 1e-9 * summary["frame_force"].peak:
         yield say("At {speed} rpm the linkage does not shake its frame by any force.", speed=speed)
     else:
         of_rows = to_say(
             "At {speed} rpm the {rows} rows together shake their frame with a force of up to "
-            "{peak} N ({rms} N RMS), largest at a crank angle of {angle}°."
+            "{peak} ({rms} RMS), largest at a crank angle of {angle}."
         )
         of_one = to_say(
-            "At {speed} rpm the linkage shakes its frame with a force of up to {peak} N "
-            "({rms} N RMS), largest at a crank angle of {angle}°."
+            "At {speed} rpm the linkage shakes its frame with a force of up to {peak} "
+            "({rms} RMS), largest at a crank angle of {angle}."
         )
         yield say(
             of_rows if rows > 1 else of_one,
             speed=speed,
             rows=rows,
-            peak=brief(size.peak),
-            rms=brief(size.rms),
+            peak=told(size.peak, "force", digits=3),
+            rms=told(size.rms, "force", digits=3),
             angle=angle(size.peak_at, 0),
         )
         if shaking.over_weight:
@@ -184,11 +198,12 @@ def _shaken(found: Findings, shaking: Shaking) -> Iterator[str]:
         yield say("There is no shaking moment about the drive pivot.")
         return
     of_rows = to_say(
-        "The shaking moment of one row about its drive pivot reaches {peak} N m ({rms} N m RMS)."
+        "The shaking moment of one row about its drive pivot reaches {peak} ({rms} RMS)."
     )
-    of_one = to_say("The shaking moment about the drive pivot reaches {peak} N m ({rms} N m RMS).")
+    of_one = to_say("The shaking moment about the drive pivot reaches {peak} ({rms} RMS).")
     template = of_rows if rows > 1 else of_one
-    yield say(template, peak=brief(moment.peak), rms=brief(moment.rms))
+    peak, rms = (told(size, "torque", digits=3) for size in (moment.peak, moment.rms))
+    yield say(template, peak=peak, rms=rms)
 
 
 def _directed(shaking: Shaking) -> str:
@@ -199,7 +214,7 @@ def _directed(shaking: Shaking) -> str:
         return say("It acts mostly up and down.")
     if share >= STRETCHED and abs(cos(way)) > cos(pi / 6):
         return say("It acts mostly to and fro.")
-    return say("It acts mostly along a direction of {angle}° from the x axis.", angle=angle(way, 0))
+    return say("It acts mostly along a direction of {angle} from the x axis.", angle=angle(way, 0))
 
 
 def _ordered(found: Findings, shaking: Shaking) -> str:
@@ -230,16 +245,17 @@ def _why(found: Findings) -> Iterator[str]:
             for name, part in split.by_cause("drive_torque").items()
         }
         of_rows = to_say(
-            "The drive torque of one row swings between {low} and {high} N m; that comes "
-            "from: {parts}."
+            "The drive torque of one row swings between {low} and {high}; that comes from: {parts}."
         )
         of_one = to_say(
-            "The drive torque swings between {low} and {high} N m; that comes from: {parts}."
+            "The drive torque swings between {low} and {high}; that comes from: {parts}."
         )
+        unit = display("torque", [torque.peak])
+        low, high = (unit.text(end, torque.peak, 3) for end in (torque.min, torque.max))
         yield say(
             of_rows if len(found.machine.rows) > 1 else of_one,
-            low=brief(torque.min, torque.peak),
-            high=brief(torque.max, torque.peak),
+            low=low,
+            high=unit.with_unit(high),
             parts=_parts(shares(by_cause)),
         )
 
@@ -265,12 +281,13 @@ def vibration_told(found: Findings) -> Iterator[str]:
     if response is None:
         return
     for name, gauge in response.gauges.items():
-        scale, unit = scaled("rad" if gauge.rotation else "m")
+        moved = float(gauge.displacement.peak_to_peak)
+        unit = shown_in("rad" if gauge.rotation else "m", [moved])
         yield say(
             "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm.",
             gauge=name,
-            size=brief(float(gauge.displacement.peak_to_peak) * scale),
-            unit=unit,
+            size=unit.text(moved, digits=3),
+            unit=unit.name,
             speed=brief(abs(response.speed) / PER_RPM),
         )
     if found.sweep is None or not found.sweep.resonances:
@@ -294,23 +311,23 @@ def planting_told(found: Findings) -> Iterator[str]:
         return
     get = found.planting.figures.get
 
-    def told(name: str, scale: float = 1.0) -> str:
-        return brief((get(name) or 0.0) * scale)
+    def figure(name: str, dimension: Dimension = "length") -> str:
+        return told(get(name) or 0.0, dimension, digits=3)
 
     yield say(
-        "The tip of the finger goes {depth} mm into the soil; it enters at a crank angle of "
-        "{entry}° and leaves at {exit}°.",
-        depth=told("soil.depth", 1e3),
+        "The tip of the finger goes {depth} into the soil; it enters at a crank angle of "
+        "{entry} and leaves at {exit}.",
+        depth=figure("soil.depth"),
         entry=angle(get("entry.crank_angle") or 0.0, 0),
         exit=angle(get("exit.crank_angle") or 0.0, 0),
     )
     if get("hill_spacing"):
         yield say(
-            "Hills are {spacing} mm apart; the hole at the surface is {hole} mm long.",
-            spacing=told("hill_spacing", 1e3),
-            hole=told("soil.hole_length", 1e3),
+            "Hills are {spacing} apart; the hole at the surface is {hole} long.",
+            spacing=figure("hill_spacing"),
+            hole=figure("soil.hole_length"),
         )
     yield say(
-        "The tip moves at up to {speed} m/s relative to the machine.",
-        speed=told("max_speed.value"),
+        "The tip moves at up to {speed} relative to the machine.",
+        speed=figure("max_speed.value", "speed"),
     )

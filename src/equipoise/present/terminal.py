@@ -13,7 +13,7 @@ from rich.table import Table as RichTable
 from rich.text import Text as RichText
 
 from equipoise.i18n import Note, say
-from equipoise.present.cells import Grid, Head, Text, Units, grid, plain
+from equipoise.present.cells import Grid, Head, Text, grid, plain
 from equipoise.results.blocks import Block, Facts, Listing, Notes, Picture, Section, Table
 from equipoise.results.blocks import Text as Running
 
@@ -32,13 +32,11 @@ def print_blocks(
     title: str | None,
     blocks: Iterable[Block | Section],
     width: int | None = None,
-    units: Units | None = None,
 ) -> None:
     """Print a title and what stands below it; all of it, or nothing where a block has an error.
 
     title : none if empty; None where it goes on below something else.
     width : signs in a line; those of the terminal if None.
-    units : chosen by the reader, by dimension.
     """
     if width is None:
         width = shutil.get_terminal_size().columns
@@ -54,7 +52,7 @@ def print_blocks(
         emoji=False,
         soft_wrap=False,
     )
-    printer = _Printer(console, units or {}, begun=title is None)
+    printer = _Printer(console, begun=title is None)
     if title:
         printer.words(title, "bold")
     printer.blocks(blocks)
@@ -64,8 +62,8 @@ def print_blocks(
 class _Printer:
     """Prints blocks one below the other."""
 
-    def __init__(self, console: Console, units: Units, begun: bool) -> None:
-        self.console, self.units, self.begun = console, units, begun
+    def __init__(self, console: Console, begun: bool) -> None:
+        self.console, self.begun = console, begun
         self.coloured = console.is_terminal and console.color_system is not None
         self.apart = False  # whether running text begins after a space, as after a table
 
@@ -79,7 +77,7 @@ class _Printer:
                 self.words(block.title, "bold underline")
                 self.blocks(block.blocks)
             elif isinstance(block, Table):
-                self.table(grid(block, self.units))
+                self.table(grid(block))
             else:
                 self.other(block)
 

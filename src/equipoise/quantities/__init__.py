@@ -1,20 +1,28 @@
 """Quantities: what can be measured, in which units, how it is read and how it is written.
 
 `units` has the dimensions and their units, `reading` turns strict text into SI floats and back,
-and `numbers` is the one formatter of numbers.
+and `numbers` is the one formatter of numbers, in the units in which they are shown.
 """
 
+from equipoise.quantities.numbers import DEGREE as DEGREE
 from equipoise.quantities.numbers import PER_RPM as PER_RPM
 from equipoise.quantities.numbers import Display as Display
+from equipoise.quantities.numbers import Units as Units
 from equipoise.quantities.numbers import angle as angle
 from equipoise.quantities.numbers import brief as brief
 from equipoise.quantities.numbers import change as change
+from equipoise.quantities.numbers import chosen_unit as chosen_unit
+from equipoise.quantities.numbers import chosen_units as chosen_units
 from equipoise.quantities.numbers import display as display
 from equipoise.quantities.numbers import display_rules as display_rules
+from equipoise.quantities.numbers import fixed as fixed
 from equipoise.quantities.numbers import in_unit as in_unit
 from equipoise.quantities.numbers import number as number
 from equipoise.quantities.numbers import percent as percent
+from equipoise.quantities.numbers import showing as showing
+from equipoise.quantities.numbers import showing_by_default as showing_by_default
 from equipoise.quantities.numbers import span as span
+from equipoise.quantities.numbers import told as told
 from equipoise.quantities.numbers import typeset as typeset
 from equipoise.quantities.reading import NUMBER as NUMBER
 from equipoise.quantities.reading import described as described

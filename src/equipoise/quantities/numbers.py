@@ -1,13 +1,17 @@
-"""Numbers as people read them: few digits, rounding shown as 0, units that suit the size."""
+"""Numbers as people read them: few digits, rounding shown as 0, units that are chosen or suit."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass
-from math import degrees, floor, isfinite, log10, pi
+from decimal import Decimal
+from math import floor, isfinite, log10, pi
+from types import MappingProxyType
 from typing import Any
 
-from equipoise.quantities.units import FACTORS, SI, Dimension
+from equipoise.quantities.units import FACTORS, KINDS, SI, Dimension
 
 PER_RPM = pi / 30
 """Of an angular speed, rad/s in one rpm."""
@@ -40,11 +44,6 @@ def brief(value: float, scale: float = 0.0) -> str:
     return number(value, scale, 3)
 
 
-def angle(radians: float, after: int = 1) -> str:
-    """An angle in degrees with so many digits after the point."""
-    return f"{round(degrees(radians), after) + 0.0:.{after}f}"
-
-
 def percent(share: float, after: int = 0) -> str:
     """A share as per cent without the sign, and without the minus of what rounds to 0."""
     return f"{round(100 * share, after) + 0.0:.{after}f}"
@@ -70,6 +69,24 @@ def span(values: Iterable[float], scale: float = 0.0, to: str = " to ") -> str:
     return f"{number(low, scale)}{to}{number(high, scale)}"
 
 
+def rate_told(rate: float | None) -> str:
+    """Designs a second."""
+    if not rate:
+        return ""
+    return f"{float(f'{rate:.3g}'):.0f} designs/s" if rate >= 100 else f"{rate:.3g} designs/s"
+
+
+def time_told(seconds: float) -> str:
+    """A time as one says it."""
+    if seconds < 60:
+        return f"{seconds:.1f} s"
+    minutes, rest = divmod(round(seconds), 60)
+    if minutes < 60:
+        return f"{minutes} min {rest} s"
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours} h {minutes} min"
+
+
 def typeset(text: str) -> str:
     """A number or unit as print has it: a true minus, ``10⁻⁴`` for ``e-04``, ``m²`` for ``m^2``."""
     digits, power, exponent = text.partition("e")
@@ -78,6 +95,69 @@ def typeset(text: str) -> str:
     for plain, raised in (("^2", "²"), ("^3", "³")):
         text = text.replace(plain, raised)
     return text.replace("-", MINUS)
+
+
+# -- what a reader has chosen ----------------------------------------------------------------------
+
+Units = Mapping[Dimension, str]
+"""Units by dimension."""
+
+_NONE: Units = MappingProxyType({})
+_chosen: ContextVar[Units] = ContextVar("units", default=_NONE)
+
+_FOLLOWS: dict[Dimension, str] = {
+    "speed": "{length}/s",
+    "acceleration": "{length}/s^2",
+    "torque": "{force} {length}",
+    "inertia": "{mass} {length}^2",
+    "unbalance": "{mass} {length}",
+    "stiffness": "{force}/{length}",
+    "damping": "{force} s/{length}",
+    "torsional stiffness": "{force} {length}/rad",
+    "bending stiffness": "{force} {length}^2",
+    "mass per length": "{mass}/{length}",
+    "density": "{mass}/{length}^3",
+}
+"""Unit of a dimension that follows from others, where all of them are chosen."""
+
+
+@contextmanager
+def showing(units: Units) -> Iterator[None]:
+    """Inside, values are shown in these units, and others as before; only in this thread."""
+    token = _chosen.set({**_chosen.get(), **units})
+    try:
+        yield
+    finally:
+        _chosen.reset(token)
+
+
+@contextmanager
+def showing_by_default(units: Units) -> Iterator[None]:
+    """The same with units that hold where none is chosen yet, as those of a model file do."""
+    with showing({**units, **_chosen.get()}):
+        yield
+
+
+def chosen_units() -> Units:
+    """Those that are chosen here, to be shown elsewhere."""
+    return _chosen.get()
+
+
+def chosen_unit(dimension: Dimension) -> str | None:
+    """The unit of a dimension that is chosen, or follows from such; None where none does.
+
+    A unit follows if it is one that files may have, and no metric one: who wants lengths in mm
+    does not want accelerations in mm/s^2.
+    """
+    chosen = _chosen.get()
+    if dimension in chosen or not chosen or dimension not in _FOLLOWS:
+        return chosen.get(dimension)
+    try:
+        unit = _FOLLOWS[dimension].format(**{str(kind): one for kind, one in chosen.items()})
+    except KeyError:
+        return None
+    known = unit in KINDS[dimension].units
+    return unit if known and Decimal(FACTORS[unit]).normalize().as_tuple().digits != (1,) else None
 
 
 # -- units -----------------------------------------------------------------------------------------
@@ -102,39 +182,76 @@ class Display:
         """A value in SI units as a number of this unit; 0 where it is rounding beside `scale`."""
         return number(self.factor * value, self.factor * scale, digits)
 
+    def with_unit(self, text: str) -> str:
+        """A number of this unit with its name behind it."""
+        return f"{text}{'' if self.name in {'', DEGREE} else ' '}{self.name}"
 
-_SIGNS = {"deg": "°", "um": "µm", "um/s": "µm/s", "urad": "µrad", "urad/s": "µrad/s"}
 
-_SHOWN: dict[Dimension, tuple[str, str, str]] = {
-    "length": ("mm", "um", "m"),
-    "speed": ("m/s", "mm/s", "m/s"),
-    "acceleration": ("m/s^2", "mm/s^2", "m/s^2"),
-    "angle": ("deg", "deg", "deg"),
-    "angular speed": ("rad/s", "mrad/s", "rad/s"),
-    "angular acceleration": ("rad/s^2", "mrad/s^2", "rad/s^2"),
-    "mass": ("g", "mg", "kg"),
-    "inertia": ("kg mm^2", "g mm^2", "kg m^2"),
-    "force": ("N", "mN", "kN"),
-    "torque": ("N m", "mN m", "kN m"),
-    "power": ("W", "mW", "kW"),
-    "energy": ("J", "mJ", "kJ"),
-    "unbalance": ("g mm", "g mm", "kg m"),
+DEGREE = "\N{DEGREE SIGN}"
+_SIGNS = {"deg": DEGREE, "um": "µm", "um/s": "µm/s", "urad": "µrad", "urad/s": "µrad/s"}
+_SIGNS |= {"ug": "µg", "uN": "µN", "uN m": "µN m", "uJ": "µJ"}
+
+_SHOWN: dict[Dimension, str] = {
+    "length": "mm",
+    "angle": "deg",
+    "mass": "g",
+    "inertia": "kg mm^2",
+    "unbalance": "g mm",
 }
-"""Unit that is shown usually, of small and of large values; SI of every other dimension."""
+"""Unit that is shown usually; SI of every other dimension."""
+
+_SCALES: tuple[tuple[str, ...], ...] = (
+    ("nm", "um", "mm", "m", "km"),
+    ("um", "cm", "m"),
+    ("um/s", "mm/s", "m/s"),
+    ("mm/s^2", "m/s^2"),
+    ("urad", "mrad", "rad"),
+    ("urad/s", "mrad/s", "rad/s"),
+    ("mrad/s^2", "rad/s^2"),
+    ("ng", "ug", "mg", "g", "kg", "t"),
+    ("g mm^2", "kg mm^2", "kg m^2"),
+    ("g mm", "kg m"),
+    ("nN", "uN", "mN", "N", "kN", "MN"),
+    ("nN m", "uN m", "mN m", "N m", "kN m", "MN m"),
+    ("mW", "W", "kW", "MW"),
+    ("nJ", "uJ", "mJ", "J", "kJ", "MJ"),
+    ("N/m", "kN/m", "MN/m"),
+    ("Hz", "kHz"),
+    ("ms", "s"),
+)
+"""Units of which the next is taken where numbers become too small or too large."""
 
 _MORE = {
+    "nm": 1e9,
     "mrad": 1e3,
     "urad": 1e6,
     "mrad/s": 1e3,
     "urad/s": 1e6,
     "um/s": 1e6,
     "mrad/s^2": 1e3,
+    "ug": 1e9,
+    "ng": 1e12,
+    "nN": 1e9,
+    "uN": 1e6,
+    "MN": 1e-6,
+    "nN m": 1e9,
+    "uN m": 1e6,
+    "nJ": 1e9,
+    "uJ": 1e6,
     "mN m": 1e3,
+    "MN m": 1e-6,
+    "MW": 1e-6,
+    "MJ": 1e-6,
+    "MN/m": 1e-6,
 }
 """Units that are shown but not read: how many are one SI unit."""
 
 SMALL, LARGE = 1e-3, 1e4
-"""Numbers between which the usual unit stays."""
+"""Numbers between which a unit stays that follows the sizes."""
+FEW = 0.1
+"""Least number for which no still smaller unit is taken."""
+LARGE_IN_UNIT = 1e5
+"""Largest number for which the unit of a column stays, whatever suits the sizes."""
 
 
 def in_unit(unit: str) -> Display:
@@ -142,35 +259,77 @@ def in_unit(unit: str) -> Display:
     return Display(unit, _MORE[unit] if unit in _MORE else 1 / float(FACTORS[unit]))
 
 
-def display(
-    dimension: Dimension | None, values: Any = (), usual: tuple[str, str, str] | None = None
-) -> Display:
-    """The unit in which values (SI) of a dimension are best read; no unit of plain numbers.
+def display(dimension: Dimension | None, values: Any = (), unit: str | None = None) -> Display:
+    """The unit in which values (SI) of a dimension are shown; no unit of plain numbers.
 
-    usual : units that are shown usually, of small and of large values, instead of the common ones;
-        a support's displacements are told in mrad where a link's angles are in degrees.
+    That is the one which a reader has chosen; else one in which they are best read.
+
+    unit : in which they are told while their sizes allow it, instead of the usual one.
     """
     if dimension is None:
         return Display("", 1.0)
-    names = usual or _SHOWN.get(dimension, (SI[dimension],) * 3)
-    first, small, large = map(in_unit, names)
+    chosen = chosen_unit(dimension)
+    if chosen is not None:
+        return in_unit(chosen)
+    first = in_unit(unit or _SHOWN.get(dimension, SI[dimension]))
     import numpy as np  # here: who reads a quantity or asks for help does not wait for it
 
     sizes = np.abs(np.asarray(values, float))
-    largest = first.factor * float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
-    if 0 < largest < SMALL:
-        return small
-    return large if largest > LARGE else first
+    largest = float(np.max(sizes[np.isfinite(sizes)], initial=0.0))
+    return _fitting(first, largest, LARGE if unit is None else LARGE_IN_UNIT)
+
+
+def _fitting(first: Display, largest: float, most: float) -> Display:
+    """The unit, or of its scale the next smaller or larger one that suits the largest value."""
+    size = first.factor * largest
+    if not 0 < size < SMALL and not size > most:
+        return first
+    scale = next((scale for scale in _SCALES if first.unit in scale), (first.unit,))
+    place, found = scale.index(first.unit), first
+    for found in map(in_unit, scale[place + 1 :] if size > most else scale[:place][::-1]):
+        number_of_it = found.factor * largest
+        if number_of_it <= LARGE if size > most else number_of_it >= FEW:
+            break
+    return found
+
+
+def told(
+    value: float,
+    dimension: Dimension,
+    unit: str | None = None,
+    scale: float = 0.0,
+    digits: int = 4,
+) -> str:
+    """A value (SI) as a sentence has it, with its unit; further arguments as of `display`.
+
+    scale : beside which a smaller value is rounding, and is told as 0.
+    """
+    shown = display(dimension, [value], unit)
+    return shown.with_unit(shown.text(value, scale, digits))
+
+
+def angle(radians: float, after: int = 1) -> str:
+    """An angle with its unit: degrees with so many digits behind the point, or as is chosen."""
+    shown = in_unit(chosen_unit("angle") or "deg")
+    return shown.with_unit(fixed(shown, radians, after))
+
+
+MORE_DIGITS = {"rad": 2, "turn": 3}
+"""Of angles, beyond those behind the point in degrees."""
+
+
+def fixed(shown: Display, value: float, after: int) -> str:
+    """A value (SI) with so many digits behind the point, and without the minus of what is 0."""
+    value = shown.factor * value
+    after += MORE_DIGITS.get(shown.unit, 0)
+    return f"{round(value, after) + 0.0:.{after}f}" if isfinite(value) else f"{value}"
 
 
 def display_rules() -> Mapping[str, Any]:
     """What the live page needs to write numbers as they are written here.
 
     least, most : sizes between which there is no power of ten.
-    length : unit of a drawing, and how many of it are one SI unit.
     units : what may follow a number in a sentence, and stays in its line; longer ones first.
     """
     units = sorted({*FACTORS, *_MORE, "%"}, key=lambda unit: (-len(unit), unit))
-    length = display("length")
-    drawing = {"unit": length.name, "factor": length.factor}
-    return {"least": LEAST, "most": MOST, "length": drawing, "units": units}
+    return {"least": LEAST, "most": MOST, "units": units}

@@ -13,6 +13,7 @@ from functools import cache
 from math import isfinite
 
 from equipoise.errors import UsageError
+from equipoise.quantities.numbers import chosen_unit
 from equipoise.quantities.units import FACTORS, HUGE, KINDS, TINY, Dimension, Kind
 
 # -- grammar ---------------------------------------------------------------------------------------
@@ -187,14 +188,21 @@ def _unit_complaint(unit: str, number: str, dimension: Dimension) -> str:
         return 'Hz does not tell turns from radians; give "50 turn/s" or "3000 rpm"'
     if plain in kind.units:
         return f'write "{number} {plain}"'
-    name, bare = _NAMES.get(unit.strip().lower()), _bare(unit)
-    alike = [known for known in kind.units if bare and _bare(known) == bare]
-    if meant := [name] if name in kind.units else alike:
-        return f'did you mean "{number} {meant[0]}"?'
+    if meant := unit_meant(unit, dimension):
+        return f'did you mean "{number} {meant}"?'
     other = _known(plain)
     if other is not None:
         return f"{plain} is the unit of {other.noun}; {wanted}"
     return f"there is no unit {_quoted(unit)} here; {wanted}"
+
+
+def unit_meant(unit: str, dimension: Dimension) -> str:
+    """The unit of a dimension that another spelling of it means; nothing where none does."""
+    units = KINDS[dimension].units
+    name, bare = _NAMES.get(unit.strip().lower(), ""), _bare(unit)
+    if name in units:
+        return name
+    return next((known for known in units if bare and _bare(known) == bare), "")
 
 
 def _known(unit: str) -> Kind | None:
@@ -256,14 +264,22 @@ def format_exact(value: float, dimension: Dimension) -> str:
     -------
     str
         ``"33.5 mm"`` for 0.0335 m; where no usual unit gives a short number, the SI unit with as
-        many digits as the float needs.
+        many digits as the float needs.  A unit that is chosen goes before the usual ones.
     """
     value = float(value)
     kind = KINDS[dimension]
+    chosen = chosen_unit(dimension)
+    units = [*kind.printed] if chosen is None else [*dict.fromkeys((chosen, *kind.printed))]
     if value == 0:
-        return f"0 {kind.printed[0]}"
-    short = [text for unit in kind.printed if (text := _short(value, unit))]
-    return min(short, key=lambda text: len(text.split()[0]), default=f"{value!r} {kind.si}")
+        return f"0 {units[0]}"
+    short = [text for unit in units if (text := _short(value, unit))]
+    return min(short, key=_clumsiness, default=f"{value!r} {kind.si}")
+
+
+def _clumsiness(text: str) -> tuple[bool, int]:
+    """Powers of ten go last, and then long numbers."""
+    number, _, _ = text.partition(" ")
+    return "e" in number, len(number)
 
 
 def rounded(value: float, unit: str, digits: int) -> str:

@@ -147,7 +147,13 @@ KINDS: dict[Dimension, Kind] = {
     ),
     "acceleration": Kind(
         "an acceleration",
-        {"m/s^2": "1", "mm/s^2": "0.001", "ft/s^2": "0.3048", "gn": "9.80665"},
+        {
+            "m/s^2": "1",
+            "mm/s^2": "0.001",
+            "in/s^2": "0.0254",
+            "ft/s^2": "0.3048",
+            "gn": "9.80665",
+        },
         example="-9.80665 m/s^2",
     ),
     "force": Kind(
@@ -184,6 +190,7 @@ KINDS: dict[Dimension, Kind] = {
             "mm/s": "0.001",
             "cm/s": "0.01",
             "km/h": "0.2777777777777777777777777778",
+            "in/s": "0.0254",
             "ft/s": "0.3048",
         },
         example="0.3 m/s",
@@ -211,7 +218,13 @@ KINDS: dict[Dimension, Kind] = {
     ),
     "damping": Kind(
         "a damping coefficient",
-        {"N s/m": "1", "N s/mm": "1000", "kN s/m": "1000", "kgf s/m": "9.80665"},
+        {
+            "N s/m": "1",
+            "N s/mm": "1000",
+            "kN s/m": "1000",
+            "kgf s/m": "9.80665",
+            "lbf s/in": "175.1268352464763779527559055",
+        },
         example="300 N s/m",
     ),
     "damping per length": Kind(
@@ -226,6 +239,7 @@ KINDS: dict[Dimension, Kind] = {
             "kN m/rad": "1000",
             "N m/deg": "57.29577951308232087679815481",
             "kgf m/rad": "9.80665",
+            "lbf in/rad": "0.1129848290276167",
         },
         example="500 N m/rad",
     ),
@@ -288,6 +302,7 @@ KINDS: dict[Dimension, Kind] = {
             "g cm": "0.00001",
             "g mm": "0.000001",
             "oz in": "0.000720077887375",
+            "lb in": "0.011521246198",
         },
         example="300 g mm",
         usual=("g mm", "kg m"),

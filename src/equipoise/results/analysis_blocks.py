@@ -21,12 +21,12 @@ from equipoise.results.machine_blocks import (
     four_bar_facts,
     four_bar_table,
     largest,
-    place,
+    place_told,
     points_table,
     smallest,
     span,
 )
-from equipoise.results.outputs import CAUSES
+from equipoise.results.outputs import CAUSES, tops_of
 from equipoise.signals import Array, Periodic, figures
 
 if TYPE_CHECKING:
@@ -150,8 +150,8 @@ def force_blocks(analysis: Analysis) -> Iterator[Block]:
         rows.append((one.label(), mean, rms, *ends, swing))
     about = analysis.forces.about
     title = say(
-        "On frame and drive; extremes with their crank angle, moments about ({place}) mm",
-        place=place((about.real, about.imag)),
+        "On frame and drive; extremes with their crank angle, moments about {place}",
+        place=place_told((about.real, about.imag)),
     )
     labels = (say("mean"), say("RMS"), say("largest"), say("smallest"), say("peak to peak"))
     yield Table.of(title, ("", *labels), rows)
@@ -208,10 +208,7 @@ def orders_table(analysis: Analysis) -> Table:
     signals = [analysis.by_order[one.name] for one in ones]
     count = max(len(signal.amplitudes) for signal in signals)
     sizes = [np.pad(signal.sizes, (0, count - len(signal.sizes))) for signal in signals]
-    tops: dict[Dimension | None, float] = {}
-    for one, size in zip(ones, sizes, strict=True):
-        top = float(np.max(size[1:], initial=0.0))
-        tops[one.dimension] = max(tops.get(one.dimension, 0.0), top)
+    tops = tops_of(zip(ones, (size[1:] for size in sizes), strict=True))
     scales = [1e3 * tops[one.dimension] for one in ones]
     turns = analysis.motion.turns
     per_order = abs(analysis.motion.speed) / (2 * np.pi)
@@ -266,25 +263,27 @@ def harmonic_blocks(analysis: Analysis, orders: int, zero: float) -> Iterator[Bl
     zero : rad, direction from which crank angles count.
     """
     yield Text("y = sum A_n cos(n theta) + B_n sin(n theta) = sum R_n sin(n theta + phase_n)")
-    yield Text(say("theta: crank angle from {angle}°", angle=angle(zero)))
+    yield Text(say("theta: crank angle from {angle}", angle=angle(zero)))
     signals = analysis.by_order
+    tops = tops_of((one, signals[one.name].sizes) for one in analysis.outputs.ordered)
     # the motion before the forces, as in that table
     for one in sorted(analysis.outputs.ordered, key=lambda one: one.dimension != "acceleration"):
         kind = one.dimension
         columns = [say("order"), *(Column(label, kind) for label in ("A", "B", "R"))]
         columns += [Column(say("phase"), "angle"), Column(say("RMS"), kind)]
-        rows = _harmonics(signals[one.name].shifted(zero), orders)
+        rows = _harmonics(signals[one.name].shifted(zero), orders, 10 * tops[kind])
         yield Table.of(one.declared.title(one.item), columns, rows)
 
 
-def _harmonics(signal: Periodic, orders: int) -> Iterator[tuple[Cell, ...]]:
-    scale = 10 * float(np.max(signal.sizes))
+def _harmonics(signal: Periodic, orders: int, scale: float) -> Iterator[tuple[Cell, ...]]:
     for k in range(signal.count_to(orders)):
         value = complex(signal.amplitudes[k])
-        size = abs(value)
-        silent = size <= 1e-10 * scale or k == 0
-        phase = None if silent else Value(float(np.angle(1j * value)), after=1)
-        parts = (Value(part, scale) for part in (value.real, -value.imag, size))
+        phase = (
+            None
+            if abs(value) <= 1e-10 * scale or k == 0
+            else Value(float(np.angle(1j * value)), after=1)
+        )
+        parts = (Value(part, scale) for part in (value.real, -value.imag, abs(value)))
         rms = Value(float(signal.rms_by_order[k]), scale)
         yield f"{float(signal.orders[k]):.4g}", *parts, phase, rms
 

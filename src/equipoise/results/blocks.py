@@ -83,12 +83,14 @@ class Column:
     unit : in which they are shown; the one that suits their sizes where not given.  A unit without
         a dimension, such as ``%``, is that of the numbers as they are.
     at : dimension and unit of where its values hold.
+    alike : whether its numbers are of one kind, so that what is rounding beside the largest is 0.
     """
 
     label: str
     dimension: Dimension | None = None
     unit: str | None = None
     at: tuple[Dimension, str] = ("angle", "deg")
+    alike: bool = True
 
 
 # -- blocks ----------------------------------------------------------------------------------------

@@ -50,13 +50,13 @@ class Axis:
         label: str,
         dimension: Dimension | None,
         values: Any = (),
-        usual: tuple[str, str, str] | None = None,
+        unit: str | None = None,
         **rest: Any,
     ) -> Axis:
         """An axis in the unit in which some values (SI, complex ones by their parts) read best."""
         parts = np.ravel(np.asarray(values))
         parts = np.concatenate([parts.real, parts.imag]) if np.iscomplexobj(parts) else parts
-        return cls(label, display(dimension, parts, usual), **rest)
+        return cls(label, display(dimension, parts, unit), **rest)
 
     @property
     def unit_name(self) -> str:
@@ -304,6 +304,11 @@ class Chart:
     def named(self, name: str) -> Chart:
         """The same by another name."""
         return replace(self, name=name)
+
+
+def quantity(value: float, dimension: Dimension, unit: str | None = None) -> str:
+    """A value in SI units as a text of a picture, with its unit; `unit` as of `display`."""
+    return Axis("", display(dimension, [value], unit)).quantity(value)
 
 
 def shown(value: float) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.bodies import inertia_of, together
 from equipoise.mechanism.outputs import body_named
-from equipoise.quantities import PER_RPM, Dimension, angle, number
+from equipoise.quantities import PER_RPM, Dimension, Display, angle, display, number, told
 from equipoise.results.blocks import Block, Cell, Column, Facts, Span, Table, Value
 from equipoise.signals import Array, Figures, figures
 
@@ -78,10 +78,16 @@ def span(values: Array, scale: float = 0.0) -> Span:
     return Span(float(np.min(values)), float(np.max(values)), scale)
 
 
-def place(xy: tuple[float, ...]) -> str:
-    """A place in mm."""
-    scale = 1e3 * max(map(abs, xy))
-    return ", ".join(number(1e3 * part, scale) for part in xy)
+def place(xy: tuple[float, ...], unit: Display) -> str:
+    """A place without its unit."""
+    scale = max(map(abs, xy))
+    return ", ".join(unit.text(part, scale) for part in xy)
+
+
+def place_told(xy: tuple[float, ...]) -> str:
+    """A place as a sentence has it: ``(12.00, 0) mm``."""
+    unit = display("length", xy)
+    return unit.with_unit(f"({place(xy, unit)})")
 
 
 # -- model -----------------------------------------------------------------------------------------
@@ -91,20 +97,21 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
     """Everything that a model says in numbers."""
     mass, inertia = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
     rows: list[tuple[Cell, ...]] = []
+    unit = display("length", [part for xy in every_place(machine) for part in xy])
     for name, link in machine.links.items():
-        center = None if link.center_of_mass is None else place(link.center_of_mass)
+        center = None if link.center_of_mass is None else place(link.center_of_mass, unit)
         amounts = (None if value is None else Value(value) for value in (link.mass, link.inertia))
         rows.append((name, next(amounts), center, next(amounts)))
     title = say("Links; places in the axes of each link")
-    yield Table.of(title, ("", mass, f"{say('centre of mass')}, mm", inertia), rows)
+    yield Table.of(title, ("", mass, f"{say('centre of mass')}, {unit.name}", inertia), rows)
     yield from bodies_tables(machine)
     bodies = {say("frame"): machine.frame}
     bodies |= {name: link.points for name, link in machine.links.items()}
     yield Table.of(
         say("Points; places in the axes of each body"),
-        (say("body"), f"{say('points')} (x, y), mm"),
+        (say("body"), f"{say('points')} (x, y), {unit.name}"),
         (
-            (body, "; ".join(f"{point} ({place(at)})" for point, at in points.items()))
+            (body, "; ".join(f"{point} ({place(at, unit)})" for point, at in points.items()))
             for body, points in bodies.items()
         ),
     )
@@ -116,20 +123,27 @@ def model_blocks(machine: Machine) -> Iterator[Block]:
         yield Facts(say("Support"), tuple(_support(machine)))
 
 
+def every_place(machine: Machine) -> Iterator[tuple[float, float]]:
+    """Points and centres of mass in the axes of their bodies, m."""
+    yield from (at for points in machine.bodies.values() for at in points.values())
+    yield from (one.center_of_mass for one in machine.links.values() if one.center_of_mass)
+
+
 def bodies_tables(machine: Machine) -> Iterator[Table]:
     """What links are made of, where they are given by bodies, and what each is with all of them."""
     rows: list[tuple[Cell, ...]] = []
+    unit = display("length", [part for xy in every_place(machine) for part in xy])
     for name, link in machine.links.items():
         parts = [inertia_of(body, link.points) for body in link.bodies]
         named = [*zip(map(_named, link.bodies), parts, strict=True)]
         if len(parts) > 1:
             named.append((say("together"), together(parts)))
         for part, (mass, center, inertia) in named:
-            where = place((center.real, center.imag))
+            where = place((center.real, center.imag), unit)
             rows.append((name, part, Value(mass), where, Value(inertia)))
     if rows:
         heads = Column(say("mass"), "mass", "g"), Column(say("inertia"), "inertia", "kg mm^2")
-        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, mm", heads[1])
+        columns = ("", say("body"), heads[0], f"{say('centre of mass')}, {unit.name}", heads[1])
         yield Table.of(say("What links are made of; places in the axes of each"), columns, rows)
 
 
@@ -166,7 +180,7 @@ def rows_table(machine: Machine) -> Table:
 def _parts(machine: Machine) -> Iterator[str]:
     for slider in machine.sliders:
         yield say(
-            "Slider: {point} of {link} on a line of {on} through {through} at {angle}°",
+            "Slider: {point} of {link} on a line of {on} through {through} at {angle}",
             point=slider.point,
             link=slider.link,
             on=body_named(slider.on),
@@ -183,8 +197,8 @@ def _parts(machine: Machine) -> Iterator[str]:
         )
     for spring in machine.springs:
         yield say(
-            "Spring: {stiffness} N/m from {point} of {link} to {to}",
-            stiffness=number(spring.stiffness),
+            "Spring: {stiffness} from {point} of {link} to {to}",
+            stiffness=told(spring.stiffness, "stiffness", "N/m"),
             point=spring.point,
             link=spring.link,
             to=spring.to,
@@ -200,7 +214,7 @@ def _support(machine: Machine) -> Iterator[str]:
     support = machine.support
     assert support is not None
     if support.mass is not None:
-        yield say("Mass: {mass} kg", mass=number(support.mass))
+        yield say("Mass: {mass}", mass=told(support.mass, "mass", "kg"))
     yield say("Mounts: {names}", names=say(", ").join(support.mounts))
     yield say("Gauges: {names}", names=say(", ").join(support.gauges))
 
@@ -278,13 +292,13 @@ def four_bar_facts(found: FourBar) -> Iterator[str]:
     """What else there is to say of it."""
     if found.transmission_min is not None and found.transmission_max is not None:
         yield say(
-            "Transmission angle from {low}° to {high}°",
+            "Transmission angle from {low} to {high}",
             low=angle(found.transmission_min),
             high=angle(found.transmission_max),
         )
     if found.swing is not None and found.time_ratio is not None:
         yield say(
-            "The rocker swings by {swing}°, time ratio {ratio}",
+            "The rocker swings by {swing}, time ratio {ratio}",
             swing=angle(found.swing),
             ratio=f"{found.time_ratio:.3f}",
         )

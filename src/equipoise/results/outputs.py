@@ -16,7 +16,7 @@ from equipoise.i18n import say, to_say
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.outputs import DECLARED, GROUPS, Declared, declared
 from equipoise.mechanism.strokes import DeadPosition, Stroke, declared_figures
-from equipoise.quantities import SI, Dimension
+from equipoise.quantities import SI, Dimension, Display, display
 from equipoise.signals import Array, Figures, Periodic, figures
 
 if TYPE_CHECKING:
@@ -236,8 +236,8 @@ CAUSES = {
     "load": to_say("loads"),
     "spring": to_say("springs"),
 }
-SCALES = {"m": (1e3, "mm"), "rad": (1e3, "mrad"), "kg": (1e3, "g")}
-"""SI unit -> factor and unit that is shown."""
+DIMENSIONS = {unit: dimension for dimension, unit in SI.items()}
+"""SI unit -> what it is of."""
 
 
 def output_named(name: str, rows: int = 1) -> str:
@@ -272,6 +272,17 @@ def unit_of_measure(output: str, measure: str) -> str:
     return "J" if measure == "area" else unit_of(output)
 
 
-def scaled(unit: str) -> tuple[float, str]:
-    """Factor and shown unit of an SI unit."""
-    return SCALES.get(unit, (1.0, unit))
+def shown_in(unit: str, values: Any = ()) -> Display:
+    """In which unit figures (in an SI unit) are shown; small angles, as of a support, in mrad."""
+    dimension = DIMENSIONS.get(unit)
+    if dimension is None:
+        return Display(unit, 1.0)
+    return display(dimension, values, "mrad" if dimension == "angle" else None)
+
+
+def tops_of(found: Iterable[tuple[Output, Array]]) -> dict[Dimension | None, float]:
+    """The largest amplitude of any output of each dimension, beside which others are rounding."""
+    tops: dict[Dimension | None, float] = {}
+    for one, sizes in found:
+        tops[one.dimension] = max(tops.get(one.dimension, 0.0), float(np.max(sizes, initial=0.0)))
+    return tops

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import fields
 from importlib import import_module
 from numbers import Number
@@ -10,6 +11,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 
+from equipoise.mechanism.shown_units import units_of
+from equipoise.quantities import showing_by_default
 from equipoise.signals import Array
 
 if TYPE_CHECKING:
@@ -39,10 +42,19 @@ class Result:
     """
 
     @property
+    def owner(self) -> Any:
+        """The machine, tool or study that it tells of; None where it is of neither."""
+        owners = (getattr(self, name, None) for name in ("machine", "original", "tool", "study"))
+        return next((one for one in owners if one is not None), None)
+
+    @property
     def title(self) -> str:
         """Of the machine, tool or study that it tells of."""
-        owners = (getattr(self, name, None) for name in ("machine", "original", "tool", "study"))
-        return next((str(one.title) for one in owners if one is not None), "")
+        return "" if self.owner is None else str(self.owner.title)
+
+    def in_own_units(self) -> AbstractContextManager[None]:
+        """Inside, values are shown in the units of the file, where no others are chosen."""
+        return showing_by_default(units_of(self.owner))
 
     def to_dict(self) -> Values:
         """The machine-readable output, in SI units: dicts, numbers and arrays.
@@ -68,7 +80,8 @@ class Result:
     def blocks(self, **options: Any) -> Sequence[Block]:
         """What it shows, in the language that is spoken."""
         module = self.shown_in or f"{type(self).__module__.split('.')[1]}.blocks"
-        return tuple(_room(module).SHOWS[type(self).__name__](self, **options))
+        with self.in_own_units():
+            return tuple(_room(module).SHOWS[type(self).__name__](self, **options))
 
     @property
     def summary(self) -> Mapping[str, Any]:
@@ -127,7 +140,8 @@ class Result:
 
     def plot(self, *names: str) -> Any:
         """Its pictures by name, all if none is named, as `matplotlib.figure.Figure`s."""
-        return _room("figures").plot(self, *names)
+        with self.in_own_units():
+            return _room("figures").plot(self, *names)
 
     def __repr__(self) -> str:
         title = f" {self.title!r}" if self.title else ""
@@ -135,7 +149,8 @@ class Result:
 
     def _repr_html_(self) -> str:
         """What a notebook shows."""
-        return str(_room("present").html_of(self))
+        with self.in_own_units():
+            return str(_room("present").html_of(self))
 
 
 def _room(name: str) -> Any:

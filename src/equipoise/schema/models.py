@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from equipoise.errors import EquipoiseError, ModelError, UsageError
 from equipoise.keys import Frozen
 from equipoise.mechanism.model import Machine
-from equipoise.quantities import format_exact, parse
+from equipoise.mechanism.shown_units import units_of
+from equipoise.quantities import format_exact, parse, showing_by_default
 from equipoise.schema.files import printable, write
 from equipoise.schema.numbers import format_share, parse_share
 from equipoise.schema.opening import (
@@ -172,7 +173,8 @@ def text_of(model: Machine | Tool, names: Mapping[str, str]) -> str:
         from equipoise.mechanism.balance import Limit
 
         makers[Limit] = partial(_limit_table, model)
-    content = Writer(names, makers).content(type(model), model)
+    with showing_by_default(units_of(model)):
+        content = Writer(names, makers).content(type(model), model)
     return toml_text(type(model), content)
 
 

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.codegen.figures import COMPUTED, REASONS
 from equipoise.errors import UsageError
-from equipoise.quantities.units import FACTORS, KINDS
+from equipoise.quantities import KINDS, chosen_unit
+from equipoise.quantities.units import FACTORS
 from equipoise.schema.files import printable
 from equipoise.schema.finding import SHARE, handy, unit_of
 from equipoise.schema.studies import restore
@@ -104,8 +105,8 @@ def unit_named(name: str) -> Unit:
 def units_of(study: Study) -> dict[str, Unit]:
     """Unit of each number and output, by its name.
 
-    Numbers are told in the unit in which the model file gives them, figures in the one in which the
-    study limits them, and else in one that is usual.
+    Units that are chosen go first.  Else numbers are told in the unit in which the model file gives
+    them, figures in the one in which the study limits them, and else in one that is usual.
     """
     given = _given(study.file)
     numbers = {one.path: unit_named(_of_number(study, one)) for one in study.vary}
@@ -116,16 +117,25 @@ def units_of(study: Study) -> dict[str, Unit]:
     return numbers | figures
 
 
+def owner_of(store: Store) -> Study | None:
+    """The study whose designs are in a store; None where it cannot be read any more."""
+    try:
+        return study_of(store)
+    except UsageError:
+        return None
+
+
 def units_in(store: Store) -> dict[str, Unit]:
     """The same of a store; SI units where its study cannot be read any more."""
-    try:
-        return units_of(study_of(store))
-    except UsageError:
-        names = (*store.numbers, *store.outputs)
-        return {name: Unit(store.units.get(name, "")) for name in names}
+    study = owner_of(store)
+    if study is not None:
+        return units_of(study)
+    return {name: Unit(store.units.get(name, "")) for name in (*store.numbers, *store.outputs)}
 
 
 def _of_number(study: Study, one: Vary) -> str:
+    if one.dimension in KINDS and (chosen := chosen_unit(one.dimension)):
+        return chosen
     if isinstance(study.model, Template):
         return study.model.unit(one.path)
     return handy(one.dimension) if one.dimension in KINDS else ""
@@ -135,6 +145,8 @@ def _of_output(output: Output, given: Mapping[str, Any]) -> str:
     dimension = output.dimension
     if dimension not in KINDS:
         return ""
+    if chosen := chosen_unit(dimension):
+        return chosen
     for key in LIMITS:
         if isinstance(given.get(key), str):
             return unit_of(given[key])

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from time import monotonic
+from time import monotonic, perf_counter
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -284,3 +284,50 @@ class Tally:
             failures=dict(sorted(failures(self.reasons).items(), key=lambda one: -one[1])),
             best=dict(self.best),
         )
+
+
+# -- how long a run takes --------------------------------------------------------------------------
+
+MORE, LONGEST = 8, 4.0
+"""So many times as many designs are computed next, unless that would take longer than this, s."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """How long designs take.
+
+    designs : of one chunk that were computed.  rate : designs a second on one processor.
+    workers : processors that have a chunk to compute.  seconds : for all designs on these.
+    """
+
+    designs: int
+    rate: float
+    workers: int
+    seconds: float
+
+
+def estimated(
+    compute: Callable[[range], object], size: int, chunk: int, processors: int
+) -> Estimate:
+    """How long a number of designs take, from the chunk in their middle, or what is quick of it.
+
+    compute : computes designs by their numbers, on one processor.
+    """
+    chunks = -(-size // chunk)
+    begin = chunks // 2 * chunk
+
+    def timed(count: int) -> float:
+        start = perf_counter()
+        compute(range(begin, begin + count))
+        return max(perf_counter() - start, 1e-9)
+
+    most, count = min(chunk, size - begin), 1
+    timed(1)  # what is loaded and compiled at first is no part of a rate
+    while True:
+        seconds = timed(count)
+        following = min(MORE * count, most)
+        if following == count or following / count * seconds > LONGEST:
+            break
+        count = following
+    workers = min(processors, chunks)
+    return Estimate(count, count / seconds, workers, size * seconds / (count * workers))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from equipoise.codegen.figures import COMPUTED, NO_ASSEMBLY, NO_FULL_TURN, NO_MACHINE
-from equipoise.errors import ModelError, UsageError, needed
+from equipoise.errors import ModelError, UsageError, lacking
 from equipoise.results.result import Result
 from equipoise.studies.design_space import Choices, Make, Range
 from equipoise.studies.evaluate import evaluator
@@ -208,8 +208,8 @@ def _evolution(seen: _Archive, population: int, seed: int) -> Any:
     With several objectives designs that were computed before are not bred again, so that lists are
     searched to their ends.
     """
-    for library in ("pymoo", "moocore"):
-        needed(library, "a search")
+    if missing := lacking("a search"):
+        raise UsageError(missing)
     from pymoo.algorithms.moo.nsga2 import NSGA2
     from pymoo.algorithms.moo.nsga3 import NSGA3
     from pymoo.algorithms.soo.nonconvex.de import DE

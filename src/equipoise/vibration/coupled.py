@@ -25,6 +25,7 @@ import numpy as np
 from equipoise.errors import ResponseError
 from equipoise.mechanism.linkage import assemble
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.steps import size_of_bodies
 from equipoise.signals import Array
 from equipoise.vibration.body import IN_PLANE, PITCH, Body, Contact, Rest, contacts_of
 from equipoise.vibration.collocation import Rates
@@ -188,6 +189,7 @@ KNOTS = 1440
 MOST_EVALUATIONS, TO_SETTLE = 600_000, 60_000
 """Of the equations, in all; and for a guess."""
 RELATIVE, ABSOLUTE = 1e-9, 1e-12
+"""Tolerances over the states, and over the size of the machine."""
 SETTLING_TURNS = 40
 
 
@@ -249,7 +251,8 @@ def follow(
         return np.array([*y[d : 2 * d], *found[:d], spin_up, y[2 * d]])
 
     span = float(time[0]), float(time[-1])
-    limits = {"rtol": RELATIVE, "atol": ABSOLUTE, "max_step": 2 * pi / abs(system.speed) / 24}
+    least = ABSOLUTE * float(size_of_bodies(system.machine))
+    limits = {"rtol": RELATIVE, "atol": least, "max_step": 2 * pi / abs(system.speed) / 24}
     done = solve_ivp(rates, span, begin, "DOP853", t_eval=time, **limits)
     if not done.success or not np.all(np.isfinite(done.y)):
         raise ResponseError(f"the motion cannot be followed beyond {done.t[-1]:g} s: it grows away")

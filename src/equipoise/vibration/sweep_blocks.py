@@ -127,24 +127,31 @@ def _met(free: FreeVibration) -> Block:
     return Table.of(say("Crank speeds that meet a mode"), (say("mode"), *columns), rows)
 
 
+NOTHING, ROUNDING = 1e-6, 1e-12
+"""Over the largest value of a part in any mode, and of all parts: a value that is none."""
+
+
 def _shapes(title: str, parts: Mapping[str, Array]) -> Table:
     """Parts (modes,) of each mode's shape; its largest coordinate is 1."""
-    rows = (
-        (str(count), *map(_part, map(complex, shape)))
-        for count, shape in enumerate(zip(*parts.values(), strict=True), 1)
-    )
+    largest = max((float(np.max(np.abs(part), initial=0.0)) for part in parts.values()), default=0)
+    columns = [list(_part(part, ROUNDING * largest)) for part in parts.values()]
+    rows = ((str(count), *row) for count, row in enumerate(zip(*columns, strict=True), 1))
     return Table.of(title, (say("mode"), *parts), rows)
 
 
-def _part(value: complex) -> Value:
-    size, phase = abs(value), float(np.angle(value))
-    if size < 1e-6:
-        return Value(0.0)
-    if abs(phase) < np.radians(0.05):
-        return Value(size)
-    if abs(abs(phase) - pi) <= np.radians(0.05):
-        return Value(-size)
-    return Value(size, at=phase)
+def _part(values: Array, least: float) -> Iterator[Value]:
+    """A part of each mode, which may be small beside others of another unit."""
+    least = max(least, NOTHING * float(np.max(np.abs(values), initial=0.0)))
+    for value in map(complex, values):
+        size, phase = abs(value), float(np.angle(value))
+        if size < least:
+            yield Value(0.0)
+        elif abs(phase) < np.radians(0.05):
+            yield Value(size)
+        elif abs(abs(phase) - pi) <= np.radians(0.05):
+            yield Value(-size)
+        else:
+            yield Value(size, at=phase)
 
 
 def _rest(free: FreeVibration) -> Table:

@@ -18,12 +18,12 @@ from equipoise.balancing.workshop import sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
-from equipoise.quantities import number
+from equipoise.quantities import display, told
 from equipoise.results.outputs import (
     MEASURES,
     objective_named,
     output_named,
-    scaled,
+    shown_in,
     unit_of_measure,
 )
 from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
@@ -33,7 +33,7 @@ from equipoise.web.figures import compared, figures_of, signals_of
 Values = dict[str, Any]
 MAIN = ("rms", "peak")
 """Measures that come first."""
-ROUNDED = 1e-9
+ROUNDED = 1e-7
 GAIN = 1e-3
 """Share of the aim below which less of it is nothing that anybody would build."""
 
@@ -119,7 +119,9 @@ def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
         known = link in base.own.links  # and no shaft that is new
         if known and shapes == ["point"] and values["at"] == pin_of(base.own, link):
             weights[link] = Counterweight(
-                clean(values["mass"]), clean(values["radius"]), clean(values["direction"], "angle")
+                clean(values["mass"], "mass"),
+                clean(values["radius"], "length"),
+                clean(values["direction"], "angle"),
             )
     return weights
 
@@ -168,7 +170,7 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
 
 
 def _taken_off(link: str, weight: Counterweight) -> str:
-    return f"{link}: take off the counterweight of {number(1e3 * weight.mass)} g"
+    return f"{link}: take off the counterweight of {told(weight.mass, 'mass')}"
 
 
 def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
@@ -183,21 +185,21 @@ def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
 
 def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, float]]) -> Values:
     """What was to become small."""
-    factor, unit = scaled(found.units[one.name])
     rows = len(found.machine.rows)
     pair = found.objectives[one.name]
     if not (one.about or one.orders or one.speeds):
         name = f"{one.output}.{one.measure}"
         pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
-    before, after = (factor * value for value in pair)
-    return {"label": objective_named(one, rows), "unit": unit, **compared(before, after)}
+    unit = shown_in(found.units[one.name], pair)
+    before, after = (unit.factor * value for value in pair)
+    return {"label": objective_named(one, rows), "unit": unit.name, **compared(before, after)}
 
 
 def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
     """A figure before and after; `main` where it is of a whole signal on the frame, or the mass."""
     main = True
     if name == "mass":
-        label, factor, unit = "mass of the links", 1e3, "g"
+        label, unit = "mass of the links", display("mass", [before, after])
     else:
         output, _, measure = name.rpartition(".")
         one, _ = declared(output) or (None, "")
@@ -205,11 +207,12 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         main = whole and measure in MAIN
         label = f"{output_named(output, len(found.machine.rows))}, {MEASURES[measure]}"
         if output.startswith("gauges"):
-            factor, unit = scaled(si_unit(Objective(output), found.original))
+            si = si_unit(Objective(output), found.original)
         else:
-            factor, unit = scaled(unit_of_measure(output, measure))
-    values = compared(factor * before, factor * after)
-    return {"label": label, "unit": unit, "main": main, **values}
+            si = unit_of_measure(output, measure)
+        unit = shown_in(si, [before, after])
+    values = compared(unit.factor * before, unit.factor * after)
+    return {"label": label, "unit": unit.name, "main": main, **values}
 
 
 def _proof(found: Balanced, replaced: bool) -> str:

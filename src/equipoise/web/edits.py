@@ -18,14 +18,14 @@ from equipoise.mechanism.model import Machine, Position, Vector
 from equipoise.mechanism.motion import Motion
 from equipoise.quantities import parse
 from equipoise.results.analysis import LEAST_ANGLES, Analysis, analyze
-from equipoise.web.design import Design, clean, clean_place
+from equipoise.web.design import DRAGGED, Design, clean, clean_place
 from equipoise.web.fields import fields_of
 from equipoise.web.messages import Change, Drag, Setting
 
 ANGLES, MOST_SAMPLES = 720, 2880
 """Crank angles in a turn, and in a cycle of several turns, which has fewer in each."""
 OTHER_SIDE = {"left": "right", "right": "left", "forward": "backward", "backward": "forward"}
-THERE = 1e-6
+THERE = 1e-5
 """Of the size of the machine: how near a dragged point has to come to where it was put."""
 
 Goals = dict[str, tuple[int, complex]]
@@ -108,7 +108,7 @@ def _moved(base: Solved, design: Design, change: Drag) -> Design:
     _check_sample(motion, change)
     frame, links = dict(machine.frame), dict(machine.links)
     if change.name in frame:
-        frame[change.name] = clean_place(to)
+        frame[change.name] = clean_place(to, extent_of(machine), DRAGGED)
     for name, link in links.items():
         if change.name in link.points and len(link.points) > 1:
             place = _local(motion, name, change.at, to)
@@ -126,7 +126,8 @@ def _mass_moved(base: Solved, design: Design, change: Drag) -> Design:
     _check_sample(base.motion, change)
     place = complex(*_local(base.motion, change.name, change.at, change.to))
     center = design.own_center(change.name, place)
-    moved = machine.with_link(change.name, center_of_mass=clean_place(center))
+    there = clean_place(center, extent_of(machine), DRAGGED)
+    moved = machine.with_link(change.name, center_of_mass=there)
     return design.with_machine(moved)
 
 
@@ -143,7 +144,8 @@ def _local(motion: Motion, link: str, at: int, place: complex) -> Vector:
     origin = motion.points[anchor].place[at]
     turned = (place - origin) * np.exp(-1j * motion.links[link].angle[at])
     x, y = machine.links[link].points[anchor]
-    return clean_place(complex(x, y) + complex(turned), abs(origin))
+    size = max(extent_of(machine), abs(origin))
+    return clean_place(complex(x, y) + complex(turned), size, DRAGGED)
 
 
 def _position(motion: Motion, change: Drag | None = None) -> Position:

@@ -12,7 +12,7 @@ from equipoise.keys import Frozen, Quantity, quantities_of
 from equipoise.mechanism.links import MASS_FIELDS
 from equipoise.mechanism.model import Link, Machine, Vector, size_of
 from equipoise.mechanism.mounts import OF_AXIS, OF_POINT
-from equipoise.quantities import Display, format_exact, in_unit, rounded, typeset
+from equipoise.quantities import Display, chosen_unit, format_exact, in_unit, rounded, typeset
 from equipoise.quantities.units import KINDS, Dimension
 from equipoise.web.design import Design, pin_of
 
@@ -75,7 +75,8 @@ class Scale:
     def told(self, field: Field) -> dict[str, Any]:
         """A number as the page is sent it."""
         low, high = self.ends(field)
-        unit = in_unit(_unit(self.values.get(field.path, field.value), field.dimension))
+        start = self.values.get(field.path, field.value)
+        unit = in_unit(chosen_unit(field.dimension) or _unit(start, field.dimension))
         return {
             "path": field.path,
             "group": field.group,
@@ -106,8 +107,7 @@ def _text(value: float, unit: str) -> str:
 
 
 def _shown(value: float, unit: Display) -> str:
-    digits = typeset(f"{unit.factor * value:.{SHOWN}g}")
-    return digits + (unit.name if unit.name == "°" else f" {unit.name}")
+    return unit.with_unit(typeset(f"{unit.factor * value:.{SHOWN}g}"))
 
 
 def fields_of(design: Design) -> dict[str, Field]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import DECLARED, Declared
-from equipoise.quantities import change, display, in_unit, number, typeset
+from equipoise.quantities import Display, change, display, number, typeset
 from equipoise.quantities.numbers import SAME
 from equipoise.results.analysis import Analysis
 from equipoise.web.edits import extent_of
@@ -88,18 +88,19 @@ def _figures(signals: Signals, old: Signals | None, size: float) -> Iterator[Val
         label = one.say("", several)
         for measure, (shown, of) in MEASURES.items():
             value = _plain(of(values), least)
+            unit = display(one.dimension)
             entry = {
                 "name": f"{name}.{measure}",
                 "signal": label,
                 "measure": measure,
                 "label": f"{label}, {shown}",
-                "unit": one.unit,
+                "unit": unit.name,
                 "value": value,
-                "text": text_of(value),
+                "text": text_of(_in(unit, value)),
             }
             if was is not None:
                 before = _plain(of(was), least)
-                entry |= {"before": before, "was": _was(before, value)}
+                entry |= {"before": before, "was": _was(_in(unit, before), _in(unit, value))}
             yield entry
 
 
@@ -159,6 +160,10 @@ def _was(before: float | None, value: float | None) -> str:
     told = compared(before, value)
     was, _, by = told["texts"]
     return "" if told["way"] == "same" else " · ".join(filter(None, (was, by)))
+
+
+def _in(unit: Display, value: float | None) -> float | None:
+    return None if value is None else unit.factor * value
 
 
 def _plain(value: float, least: float) -> float | None:
@@ -255,7 +260,7 @@ def _by_order(analysis: Analysis, signals: Signals) -> Iterator[Values]:
 
 def gauge_choice(name: str, label: str, rotation: bool, array: str) -> Values:
     """What a gauge reads as one that can be chosen, in the unit in which supports move."""
-    shown = in_unit("mrad" if rotation else "mm")
+    shown = display("angle", (), "mrad") if rotation else display("length")
     return {
         "name": name,
         "label": capital(label),

@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from functools import cache
 from threading import Lock
@@ -17,7 +18,8 @@ from equipoise import __version__
 from equipoise.errors import EquipoiseError, ModelError, UsageError, to_paste
 from equipoise.i18n import LANGUAGES
 from equipoise.mechanism.checks import unknown
-from equipoise.quantities import display_rules
+from equipoise.mechanism.shown_units import units_of
+from equipoise.quantities import display_rules, showing_by_default
 from equipoise.schema.documents import dumps
 from equipoise.schema.files import LARGEST, printable, to_csv
 from equipoise.schema.models import load_linkage, loads_linkage
@@ -91,7 +93,7 @@ class Session:
 
     def _edit(self, message: Message) -> Iterator[Reply]:
         commit, problem = message.flag("commit", True), None
-        with self.lock:
+        with self.lock, self._in_units():
             base, found = self._current(), None
             try:
                 found = edited(base, message.changes())
@@ -140,7 +142,8 @@ class Session:
             yield from self._shown(message.seq, nothing)
             return
         after = solved(balanced_design(base.design, found))
-        told = balanced_told(base, after, found)
+        with self._in_units():
+            told = balanced_told(base, after, found)
         with self.lock:
             if self.found is not base:
                 raise UsageError("the machine was changed while it was balanced; balance it again")
@@ -151,7 +154,8 @@ class Session:
 
     def _download(self, message: Message) -> Iterator[Reply]:
         language = message.text("language", "en")
-        content, data = downloaded(self._current(), message.text("kind"), language)
+        with self._in_units():
+            content, data = downloaded(self._current(), message.text("kind"), language)
         yield Reply({"type": "file", "seq": message.seq, **content}, data)
 
     # -- its state ---------------------------------------------------------------------------------
@@ -188,8 +192,18 @@ class Session:
     def tell_more(self) -> Iterator[Reply]:
         """What takes too long to be told at every move of a drag; ends when the design changes."""
         found = self.more_told = self.shown
-        for content, data in more(found, lambda: self.shown is not found):
+        told = more(found, lambda: self.shown is not found)
+        while True:
+            with self._in_units():  # left where this waits: whoever goes on may be another thread
+                one = next(told, None)
+            if one is None:
+                return
+            content, data = one
             yield Reply({"seq": None, **content}, data)
+
+    def _in_units(self) -> AbstractContextManager[None]:
+        """Inside, values are shown in the units of the file that is open."""
+        return showing_by_default(units_of(self.shown.design.own))
 
     @property
     def shown(self) -> Solved:
@@ -216,10 +230,12 @@ class Session:
 
     def _shown(self, seq: int | None, *notes: str) -> Iterator[Reply]:
         """The design that is shown, and how its support is shaken; notes come before its own."""
-        state = self._state(seq)
+        with self._in_units():
+            state = self._state(seq)
         state.content["notes"] = [*notes, *state.content["notes"]]
         yield state
-        shaken = response_of(self.shown.design.machine)
+        with self._in_units():
+            shaken = response_of(self.shown.design.machine)
         if shaken is not None:
             content, data = shaken
             yield Reply({"type": "response", "seq": seq, **content}, data)

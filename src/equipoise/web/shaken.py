@@ -15,7 +15,7 @@ from equipoise.mechanism.strokes import declared_figures, dimension_of
 from equipoise.planting.blocks import cell
 from equipoise.planting.names import FIGURES
 from equipoise.planting.summary import plant
-from equipoise.quantities import Dimension, display, in_unit
+from equipoise.quantities import Dimension, display
 from equipoise.results.analysis import Analysis
 from equipoise.vibration.forced import respond
 from equipoise.vibration.resonance import around
@@ -72,7 +72,7 @@ def swept(machine: Machine, progress: Callable[[int, int], None]) -> tuple[Value
         block.add(array, curve.peak_to_peak)
         label = f"{_spoken(name)} against speed, peak to peak"
         choices.append(gauge_choice(name, label, curve.rotation, array))
-    rpm = in_unit("rpm")
+    rpm = display("angular speed", (), "rpm")
     over = {"array": "sweep.speed", "unit": rpm.name, "factor": rpm.factor, "at": found.speed}
     content["charts"].append(chart("sweep", choices, x=over))
     content["arrays"] = block.told
@@ -130,7 +130,7 @@ def more(found: Solved, outdated: Callable[[], bool]) -> Iterator[tuple[Values, 
 
 def _shown(value: float, dimension: Dimension | None, unit: str | None = None) -> Values:
     """A figure in the unit in which it is told; None where it is not finite."""
-    shown = display(dimension, [value]) if unit is None else in_unit(unit)
+    shown = display(dimension, [value], unit)
     there = shown.factor * value if isfinite(value) else None
     return {"unit": shown.name, "value": there, "text": text_of(there)}
 

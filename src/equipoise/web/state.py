@@ -18,7 +18,7 @@ from equipoise.symbols.looks import LOOKS
 from equipoise.symbols.pieces import Piece, pieces
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape
-from equipoise.web.edits import Solved, movable
+from equipoise.web.edits import Solved, extent_of, movable
 from equipoise.web.figures import charts_of, figures_of, least_of, signals_of
 
 Array = np.ndarray[Any, Any]
@@ -85,6 +85,7 @@ def state_of(
         old = signals_of(before.analysis)
         _add_signals(block, old, before.analysis, "before.")
         _add_outputs(block, before.analysis, wanted, "before.")
+    length = display("length", [extent_of(machine)])
     content: Values = {
         "name": found.design.name,
         "title": machine.title,
@@ -92,6 +93,7 @@ def state_of(
         "angles": len(scene.crank_angle),
         "turns": motion.turns,
         "speed": motion.speed,
+        "length": {"unit": length.name, "factor": length.factor},
         "has_forces": analysis.solved is not None,
         "missing": [name for name, link in machine.links.items() if not link.has_mass],
         "scene": stage_of(scene, movable(machine)),

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
+from equipoise.balancing.box_bounds import largest_reading
 from equipoise.balancing.multi_row import Combine, Cost, Rows, RowSignals, Term
-from equipoise.balancing.phase_bound import CLOSE, largest_reading, prove
-from equipoise.balancing.phase_search import PhaseSearch, choose_phases
+from equipoise.balancing.phase_bound import CLOSE, Improve, prove
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import choose_phases
 from equipoise.mechanism.balance import MEASURES, Objective, Phases
 from support.rows_in_time import side_by_side
-from unit.vibration.build import Array
 
 TYPE_II = eq.load("yamashita-2")
 FORCE = Objective("shaking_force")
@@ -26,8 +27,9 @@ def of_amplitudes(*rows: tuple[float, ...]) -> Cost:
     return Cost((Term(FORCE, RowSignals(amplitudes)),))
 
 
-def kept(phases: Array) -> Array:
-    return phases
+def improved(cost: Cost) -> Improve:
+    """Nothing but the middles of boxes themselves."""
+    return lambda phases, _: (phases, float(cost.values(phases)))
 
 
 @pytest.mark.parametrize(
@@ -45,7 +47,7 @@ def kept(phases: Array) -> Array:
 def test_closed_forms(rows: tuple[tuple[float, ...], ...], best: float) -> None:
     """Polygons of phasors, order by order; begun at phases that are not the best."""
     cost = of_amplitudes(*rows)
-    proof = prove(cost, 0.3 * np.arange(len(rows)), kept)
+    proof = prove(cost, 0.3 * np.arange(len(rows)), improved(cost))
     least = best / np.sqrt(2)
     assert proof.bound <= least + 1e-12
     assert proof.bound >= least - CLOSE * cost.whole
@@ -97,7 +99,8 @@ def test_a_reading_is_the_measure_and_nowhere_more(output: str, measure: str) ->
     wish = Objective(output, measure)  # type: ignore[arg-type]
     term = Term(wish, Rows(side_by_side(TYPE_II, [0.0] * 3)).signals(wish))
     phases = np.random.default_rng(4).uniform(0, 2 * pi, (40, 3))
-    values, readings = largest_reading(term, phases)
+    values, read, _ = largest_reading(term, term.signals.total(phases))
+    readings = np.einsum("bcn,kcn->bkn", read, term.signals.amplitudes[0])
     assert values == pytest.approx(term.values(phases), rel=3e-4)
     turning = np.exp(1j * phases[..., None] * term.signals.orders)
     each = np.einsum("bkn,pkn->bp", readings, turning).real
@@ -109,6 +112,6 @@ def test_a_start_that_is_not_the_best_is_mended() -> None:
     """Bounding finds better phases where the search has missed them."""
     search = PhaseSearch(side_by_side(TYPE_II, [0.0] * 4), (FORCE,), Phases(), "sum")
     best = choose_phases(search.machine, [FORCE])
-    proof = prove(search.cost, np.array([0.0, 0.1, 0.2, 0.3]), search.polished)
+    proof = prove(search.cost, np.array([0.0, 0.1, 0.2, 0.3]), search.improved)
     assert float(search.cost.values(proof.phases)) == pytest.approx(best.combined[1], rel=1e-9)
     assert proof.bound == pytest.approx(best.bound, abs=CLOSE)

@@ -22,7 +22,8 @@ from equipoise.balancing.patterns import (
 )
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_grid import Grid, alike, coarsened, distinct, sorted_choices
-from equipoise.balancing.phase_search import PhaseSearch, choose_phases
+from equipoise.balancing.phase_search import PhaseSearch
+from equipoise.balancing.phasing import choose_phases
 from equipoise.errors import EquipoiseError, UsageError
 from equipoise.mechanism.balance import Objective, Phases
 from equipoise.mechanism.model import Machine

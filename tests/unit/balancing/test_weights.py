@@ -322,7 +322,7 @@ def test_spread_of_two_points() -> None:
 def test_a_spread_of_rounding_is_one_point() -> None:
     (piece,) = pieces_of(Weight("any", 0.06), 0.4, 0.4 * 0.02, 0.4 * 0.02**2 * (1 + 1e-9), 0.1j)
     assert piece["place"] == pytest.approx((0.02, 0.1))
-    assert pieces_of(Weight("any", 0.06), 1e-10, 0j, 0.0, 0j) == []
+    assert pieces_of(Weight("any", 0.06), 0.0, 0j, 0.0, 0j) == []
 
 
 def test_spread_mass_about_the_centre_itself() -> None:

@@ -9,7 +9,7 @@ from math import pi
 import equipoise as eq
 from equipoise.balancing.balanced import Balanced
 from equipoise.balancing.pareto import Front, trade_off
-from equipoise.balancing.phase_search import Phasing, choose_phases
+from equipoise.balancing.phasing import Phasing, choose_phases
 from equipoise.figures.pictures import balance_pictures
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.support import Row

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.errors import MassError, UsageError
+from equipoise.errors import MassError, ModelError, UsageError
 from equipoise.mechanism.assessment import remarks
 from equipoise.mechanism.loads import load_at, work_in_cycle
 from equipoise.mechanism.model import FRAME
@@ -179,6 +179,18 @@ def test_tables_in_a_window() -> None:
     table = eq.mechanism.LoadTable((0.0,), ((4.0,),))
     load = eq.Load("crank", table=table, outside="hold", start=1.0, stop=2.0)
     np.testing.assert_allclose(torque_of(load), np.where((CIRCLE >= 1) & (CIRCLE < 2), 4.0, 0.0))
+
+
+@pytest.mark.parametrize(("start", "stop", "told"), [(5, 175, True), (-350, -300, True),
+                                                    (5, 181, False), (0, 20, False)])  # fmt: skip
+def test_a_window_within_the_rows_of_a_table_tells_all(start: int, stop: int, told: bool) -> None:
+    rows = eq.mechanism.LoadTable(tuple(np.radians((5.0, 90.0, 180.0))), ((4.0, 7.0, 4.0),))
+    load = eq.Load("coupler", table=rows, start=radians(start), stop=radians(stop))
+    if told:
+        assert replace(crank_rocker(), loads=(load,)).loads == (load,)
+    else:
+        with pytest.raises(ModelError, match=r"loads\[1\].outside: missing; the table goes from 5"):
+            replace(crank_rocker(), loads=(load,))
 
 
 def test_loads_go_on_in_every_turn() -> None:

@@ -27,6 +27,7 @@ from equipoise.planting.summary import plant
 from equipoise.present import html_of, terminal
 from equipoise.present.cells import grid, printed
 from equipoise.present.pages import Document, pdf, printed_grid
+from equipoise.quantities import showing
 from equipoise.results.analysis import Analysis
 from equipoise.results.blocks import Change, Column, Section, Span, Table, Value
 from equipoise.schema.models import load_tool
@@ -199,7 +200,8 @@ def test_units_and_digits() -> None:
     told = grid(table_of(Value(0.0123), Span(-0.001, 1.0), Value(1e-15, 1.0), None, "none"))
     assert [row[1].text for row in told.rows] == ["12.30", "-1.000 to 1000", "0", "", "none"]
     assert told.heads[1].heading == "value, mm"
-    chosen = grid(table_of(Value(0.0123)), {"length": "cm"})
+    with showing({"length": "cm"}):
+        chosen = grid(table_of(Value(0.0123)))
     assert (chosen.rows[0][1].text, chosen.heads[1].unit) == ("1.230", "cm")
     mixed = table_of(
         Value(2.0, dimension="force"), Value(3e-3, dimension="torque"), column=Column("")

@@ -24,6 +24,7 @@ from equipoise.mechanism import (
     mounts,
     objectives,
     parts,
+    shown_units,
     support,
     weights,
 )
@@ -44,8 +45,8 @@ PAGE = Path(__file__).parents[3] / "docs" / "model-file.md"
 DOCUMENTED: dict[str, type[Frozen]] = {
     of.__name__: of
     for of in (
-        Machine, parts.Drive, force_elements.Motor, Frame, links.Link, bodies.Body,
-        bodies.Hole, parts.Slider, parts.Gear,
+        Machine, shown_units.ShownUnits, parts.Drive, force_elements.Motor, Frame, links.Link,
+        bodies.Body, bodies.Hole, parts.Slider, parts.Gear,
         force_elements.Load, Spring, Position, field.Planting, field.Soil, support.Support,
         mounts.Mount, support.Row, balance.Balance, weights.CenterMove,
         weights.AddedMass, weights.Weight, counterweights.GearedWeight,

@@ -1,0 +1,320 @@
+"""How small the cost of rows can be over boxes of phases, and of numbers that masses depend on.
+
+Every measure is the largest of linear readings of a signal: of a mean square the reading along any
+signal of length 1 (Cauchy and Schwarz), of a peak that at any crank angle, and so on.  So is the
+cost that objectives make together, and any one reading bounds it from below.  A reading of a sum of
+rows is a sum of functions of one phase each, linear in the numbers x_j of masses (x_0 = 1),
+
+    cost >= sum_k R_k(phi_k, x),   R_k(phi, x) = sum_j x_j Re sum_n z_jkn exp(i n phi)
+
+At given numbers its least over a box is found row by row.  About them, the slope by each number is
+that of the middle, which what is allowed bounds, and a rest that is the less the smaller the box.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from equipoise.balancing.multi_row import AREA_SAMPLES, Cost, Term, by_orders
+from equipoise.signals import Array
+
+HALVINGS = 48
+"""Of a side, below which phases are told apart no more."""
+POINTS = 7
+"""At which a row's function is taken over its interval."""
+PEAK_SAMPLES = 720
+"""In a turn, at which a peak is read."""
+MOST_CUTS, STIFF, STEPS, SMALL = 60, 1e3, 10, 1e-6
+"""Directions in which numbers are bounded; how hard they are pushed back, and in how many steps;
+share of an objective from which it counts as that much where it vanishes."""
+TINY = 1e-300
+
+
+@dataclass(frozen=True, eq=False)
+class Numbers:
+    """K numbers in which signals are linear, and which may be chosen with the phases.
+
+    columns : of each term, what a unit of each number adds to its amplitudes, (K, V, m, C, N).
+    low, high, start : (K,) ends of each, and the best known.
+    least : of a direction (K,), the least of direction @ numbers over all that is allowed.
+    cuts : directions (K,) with their least.
+    """
+
+    columns: tuple[Array, ...]
+    low: Array
+    high: Array
+    start: Array
+    least: Callable[[Array], float]
+    cuts: list[tuple[Array, float]] = field(default_factory=list)
+
+    @classmethod
+    def none(cls, cost: Cost) -> Numbers:
+        """Where phases alone are free."""
+        nothing = np.zeros(0)
+        columns = tuple(term.signals.amplitudes[None][:0] for term in cost.measured)
+        return cls(columns, nothing, nothing, nothing, lambda _: 0.0)
+
+    def cut(self, slope: Array) -> None:
+        """Learn how far the numbers can go against a slope (K,)."""
+        size = float(np.max(np.abs(slope) * (self.high - self.low), initial=0.0))
+        if size > 0 and len(self.cuts) < MOST_CUTS:
+            self.cuts.append((slope / size, self.least(slope / size)))
+
+    @property
+    def directions(self) -> tuple[Array, Array]:
+        """The cuts' directions (I, K), and their least (I,)."""
+        found = np.array([one for one, _ in self.cuts]).reshape(len(self.cuts), len(self.low))
+        return found, np.array([least for _, least in self.cuts])
+
+
+@dataclass(frozen=True, eq=False)
+class Boxes:
+    """Boxes of phases and numbers.
+
+    middles : of the phases (B, m), rad.  halvings : how often each of their sides was halved.
+    low, high : of the numbers (B, K).  numbers : (B, K) about which the bound was taken.
+    bounds : (B,).  widest : (B,) the row whose side is to be cut; beyond the rows, the number.
+    """
+
+    middles: Array
+    halvings: Array
+    low: Array
+    high: Array
+    numbers: Array
+    bounds: Array
+    widest: Array
+
+    def of(self, places: Array) -> Boxes:
+        """Some of them."""
+        return Boxes(*(each[places] for each in vars(self).values()))
+
+    def with_more(self, other: Boxes) -> Boxes:
+        pairs = zip(vars(self).values(), vars(other).values(), strict=True)
+        return Boxes(*(np.concatenate(pair) for pair in pairs))
+
+
+@dataclass(frozen=True, eq=False)
+class Bounder:
+    """Bounds the cost over boxes.
+
+    cost : where all numbers are 0.
+    """
+
+    cost: Cost
+    numbers: Numbers
+
+    @property
+    def half(self) -> float:
+        """Half a period, rad."""
+        return self.cost.period / 2
+
+    def bounded(self, boxes: Boxes) -> tuple[Boxes, Array, Array]:
+        """Boxes with their bounds and numbers; there the cost (B,) in their middles, as it is read,
+        and its slopes (B, K) by the numbers.
+
+        A box in which some limit cannot be kept is bounded by infinity.
+        """
+        turning = np.exp(1j * boxes.middles[..., None] * self._orders)
+        totals = [
+            np.einsum("jvkcn,bkn->bjvcn", each, turning[..., : each.shape[-1]], optimize=True)
+            for each in self._amplitudes
+        ]
+        for _ in range(2):
+            boxes, pushed = self._near_best(boxes, totals)
+        readings = [self._reading(*each, boxes) for each in self._each(totals)]
+        count = len(self.cost.terms)
+        values, reading = self._combined(readings[:count])
+        found, bends, slopes = self._over(boxes, reading * turning[:, None], pushed)
+        bounds = np.maximum(values - found, boxes.bounds)
+        for term, (value, one) in zip(self.cost.limits, readings[count:], strict=True):
+            lost, _, _ = self._over(boxes, one * turning[:, None], 0 * pushed)
+            bounds = np.where(value - lost > term.scale * (1 + SMALL), np.inf, bounds)
+        widest = np.where(np.max(bends, axis=1) > 0, np.argmax(bends, axis=1), 1)
+        return replace(boxes, bounds=bounds, widest=widest), values, slopes
+
+    def _each(self, totals: list[Array]) -> list[tuple[Term, Array, Array]]:
+        return list(zip(self.cost.measured, totals, self._amplitudes, strict=True))
+
+    def _over(self, boxes: Boxes, turned: Array, pushed: Array) -> tuple[Array, Array, Array]:
+        """How far a reading, turned to the middles (B, 1 + K, m, N), falls over boxes (B,); the
+        share of each row and number in it (B, m + K); its slopes (B, K) by the numbers.
+
+        pushed : (B, I) multipliers of the cuts.
+        """
+        along = np.swapaxes((np.swapaxes(turned, 1, 2) @ self._points[boxes.halvings]).real, 1, 2)
+        middle = along[..., POINTS // 2]
+        # Between points a function falls below their chord by no more than its bend allows.
+        spacing = 2 * self.half / 2.0**boxes.halvings / (POINTS - 1)
+        whole = _with_one(boxes.numbers)
+        here = np.einsum("bj,bjkp->bkp", whole, along)
+        bend = np.abs(np.einsum("bj,bjkn->bkn", whole, turned)) @ self._orders**2
+        drops = here[..., POINTS // 2] - np.min(here, axis=2) + bend * spacing**2 / 8
+        drops[:, 0] = 0.0
+        more = np.abs(turned[:, 1:]) @ self._orders**2 * spacing[:, None] ** 2 / 8
+        rise, fall = (
+            np.sum((end(along[:, 1:], axis=3) - middle[:, 1:] + sign * more)[:, :, 1:], axis=2)
+            for end, sign in ((np.max, 1.0), (np.min, -1.0))
+        )
+        slopes = np.sum(middle[:, 1:], axis=2)
+        low, high = boxes.low - boxes.numbers, boxes.high - boxes.numbers
+        rest = -np.min([rise * low, rise * high, fall * low, fall * high], axis=0, initial=0.0)
+        by_number, gained = self._by_cuts(boxes, slopes, pushed, low, high)
+        bends = np.concatenate([drops, rest + by_number], axis=1)
+        return np.sum(bends, axis=1) - gained, bends, slopes
+
+    def _by_cuts(
+        self, boxes: Boxes, slopes: Array, pushed: Array, low: Array, high: Array
+    ) -> tuple[Array, Array]:
+        """How far slopes lead down over the numbers: (B, K), less what the cuts keep (B,)."""
+        plain = -np.minimum(slopes * low, slopes * high)
+        directions, least = self.numbers.directions
+        left = slopes - pushed @ directions
+        kept = -np.minimum(left * low, left * high)
+        gained = np.sum(pushed * (least - boxes.numbers @ directions.T), axis=1)
+        better = np.sum(kept, axis=1) - gained < np.sum(plain, axis=1)
+        return np.where(better[:, None], kept, plain), np.where(better, gained, 0.0)
+
+    # -- readings ----------------------------------------------------------------------------------
+
+    @cached_property
+    def _amplitudes(self) -> list[Array]:
+        """Of each term as it is, and by each number, (1 + K, V, m, C, N)."""
+        pairs = zip(self.cost.measured, self.numbers.columns, strict=True)
+        return [np.concatenate([one.signals.amplitudes[None], more]) for one, more in pairs]
+
+    @cached_property
+    def _orders(self) -> Array:
+        return max((term.signals.orders for term in self.cost.measured), key=len)
+
+    @cached_property
+    def _points(self) -> Array:
+        """exp(i n d) (levels, N, POINTS) at points d of an interval halved so many times."""
+        places = np.linspace(-1.0, 1.0, POINTS)
+        halves = self.half / 2.0 ** np.arange(HALVINGS + 2)
+        return np.exp(1j * self._orders[:, None] * halves[:, None, None] * places)
+
+    def _reading(
+        self, term: Term, total: Array, amplitudes: Array, boxes: Boxes
+    ) -> tuple[Array, Array]:
+        """Value (B,) of a term in the middles of boxes, and its reading (B, 1 + K, m, N)."""
+        whole = np.einsum("bj,bjvcn->bvcn", _with_one(boxes.numbers), total)
+        values, readings, loudest = largest_reading(term, whole)
+        if amplitudes.shape[1] == 1:
+            found = np.einsum("bcn,jkcn->bjkn", readings, amplitudes[:, 0], optimize=True)
+        else:
+            found = np.einsum("bcn,jbkcn->bjkn", readings, amplitudes[:, loudest])
+        missing = len(self._orders) - found.shape[-1]
+        return values, np.pad(found, ((0, 0),) * 3 + ((0, missing),))
+
+    def _combined(self, readings: list[tuple[Array, Array]]) -> tuple[Array, Array]:
+        """The cost (B,), and the reading (B, 1 + K, m, N) of it."""
+        parts = self.cost.factors[:, None] * [value for value, _ in readings]
+        shares = self._shares(parts)
+        factors = shares * self.cost.factors[:, None]
+        pairs = zip(factors, readings, strict=True)
+        reading = sum(factor[:, None, None, None] * one for factor, (_, one) in pairs)
+        return np.sum(shares * parts, axis=0), np.asarray(reading)
+
+    def _shares(self, parts: Array) -> Array:
+        """Slopes (T, B) of the cost by its parts (T, B)."""
+        if self.cost.combine == "sum":
+            return np.ones(parts.shape)
+        return np.asarray(parts / np.maximum(np.linalg.norm(parts, axis=0), TINY))
+
+    # -- numbers -----------------------------------------------------------------------------------
+
+    def _near_best(self, boxes: Boxes, totals: list[Array]) -> tuple[Boxes, Array]:
+        """Boxes with the numbers that make the cost least in their middles, as mean squares tell;
+        and multipliers (B, I) of the cuts, by which they are held back.
+
+        One step of reweighted least squares: Newton's method within each box's ends.
+        """
+        x, (directions, least) = boxes.numbers, self.numbers.directions
+        if not len(self.numbers.low):
+            return boxes, np.zeros((len(x), 0))
+        gram = self._gram(x, totals)
+        second, first, each = gram[:, 1:, 1:], gram[:, 1:, 0], np.arange(x.shape[1])
+        widths = self.numbers.high - self.numbers.low
+        stiff = STIFF * np.max(second[:, each, each] * widths**2, axis=1)[:, None]
+        second = second + 1e-9 * np.eye(len(each)) * stiff[..., None] / np.max(widths**2)
+        for _ in range(STEPS):
+            pushed = stiff * np.maximum(least - x @ directions.T, 0.0)
+            slope = first + np.einsum("bij,bj->bi", second, x) - pushed @ directions
+            stopped = ((x <= boxes.low) & (slope > 0)) | ((x >= boxes.high) & (slope < 0))
+            firm = stiff * (pushed > 0)
+            bend = second + np.einsum("bi,ij,ik->bjk", firm, directions, directions, optimize=True)
+            bend = np.where(stopped[:, :, None] | stopped[:, None], 0.0, bend)
+            bend[:, each, each] += stopped
+            step = np.linalg.solve(bend, np.where(stopped, 0.0, slope)[..., None])[..., 0]
+            x = np.clip(x - step, boxes.low, boxes.high)
+        return replace(boxes, numbers=x), stiff * np.maximum(least - x @ directions.T, 0.0)
+
+    def _gram(self, x: Array, totals: list[Array]) -> Array:
+        """The cost's square (B, 1 + K, 1 + K) over itself at numbers (B, K): its slope is that of
+        the cost.
+        """
+        sizes, grams = [], []
+        for term, total, _ in self._each(totals)[: len(self.cost.terms)]:
+            here = np.einsum("bj,bjvcn->bvcn", _with_one(x), total)
+            size = np.sqrt(np.sum(np.abs(here) ** 2 * term.shares, axis=(2, 3)))
+            places, loudest = np.arange(len(x)), np.argmax(size, axis=1)
+            one = (total[places, :, loudest] * np.sqrt(term.shares)).reshape(*total.shape[:2], -1)
+            grams.append((one.conj() @ np.swapaxes(one, 1, 2)).real)
+            sizes.append(np.maximum(size[places, loudest], SMALL * term.scale))
+        parts = self.cost.factors[:, None] * sizes
+        factors = self._shares(parts) * self.cost.factors[:, None] / sizes
+        return np.asarray(np.einsum("tb,tbij->bij", factors, np.array(grams)))
+
+
+def _with_one(numbers: Array) -> Array:
+    """Numbers (B, 1 + K) with the 1 of what is there anyway."""
+    return np.concatenate([np.ones((len(numbers), 1)), numbers], axis=1)
+
+
+def largest_reading(term: Term, total: Array) -> tuple[Array, Array, Array]:
+    """Value (B,) of a term of signals (B, V, C, N), and amplitudes (B, C, N) of the reading that is
+    the term's there, and nowhere more than it; and which speed (B,) is read, the loudest.
+    """
+    if by_orders(term.measure):
+        sizes = term.each(total)
+        readings = total.conj() * term.shares / np.maximum(sizes, TINY)[..., None, None]
+    else:
+        sizes, readings = _read_in_time(term, total)
+    places, loudest = np.arange(len(total)), np.argmax(sizes, axis=1)
+    return sizes[places, loudest], readings[places, loudest], loudest
+
+
+def _read_in_time(term: Term, total: Array) -> tuple[Array, Array]:
+    """Values (B, V) of signals (B, V, C, K + 1) as they are read at crank angles, and the readings
+    (B, V, C, K + 1).
+    """
+    turns, area = term.signals.turns, term.measure == "area"
+    count = (AREA_SAMPLES if area else PEAK_SAMPLES) * turns
+    theta = np.arange(count) * (2 * np.pi / (count // turns))
+    waves = np.exp(1j * np.outer(term.signals.orders, theta))
+    values = (total @ waves).real
+    if area:
+        signs = np.sign(values[..., :1, :])
+        readings = (2 * np.pi / count) * (signs @ waves.T)
+        return 2 * np.pi * np.mean(np.abs(values[..., 0, :]), axis=-1), readings
+
+    def at(places: Array) -> tuple[Array, Array]:
+        """Values (B, V, C) at crank angles (B, V), and their waves (B, V, 1, K + 1)."""
+        found = np.take_along_axis(values, places[..., None, None], axis=-1)[..., 0]
+        return found, waves.T[places][..., None, :]
+
+    if values.shape[2] > 1:
+        found, wave = at(np.argmax(np.sum(values**2, axis=2), axis=-1))
+        sizes = np.linalg.norm(found, axis=-1)
+        return sizes, (found / np.maximum(sizes, TINY)[..., None])[..., None] * wave
+    (high, rising), (low, falling) = (
+        at(pick(values[..., 0, :], axis=-1)) for pick in (np.argmax, np.argmin)
+    )
+    if term.measure == "peak_to_peak":
+        return (high - low)[..., 0], rising - falling
+    upper = high >= -low
+    return np.maximum(high, -low)[..., 0], np.where(upper[..., None], rising, -falling)

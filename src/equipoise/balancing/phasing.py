@@ -1,0 +1,174 @@
+"""Phases found for the rows of a machine, what they bring, and how near to the best they are."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from equipoise.balancing.multi_row import Combine, Term
+from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.phase_bound import Proof, prove
+from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.balance import Limit, Objective, Phases
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import OF_ROWS
+from equipoise.results.result import Result
+from equipoise.signals import Array
+
+KEPT = 1e-6
+"""Share of a limit by which it may be passed."""
+SURVIVES = 1e-9
+"""Share of the largest amplitude of all rows in phase, above which an order is left."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Phasing(Result):
+    """Phases found for the rows of a machine.
+
+    machine : with the rows in these phases.  phases : rad, of each row; row 1 has kept its own.
+    before, after : objective -> its value, in SI units.
+    combined : all objectives together, before and after; each counts over its value before.
+    remaining : orders of the shaking force of all rows together that are left.
+    lateral : ``roll_moment`` and ``yaw_moment`` -> RMS before and after, N m.
+    combinations : arrangements that the first grid has, of `step`, rad; 0 without a grid.
+    bound : proved, of all objectives together in any phases.  looked_at : boxes that it took.
+    """
+
+    machine: Machine
+    phases: tuple[float, ...]
+    before: Mapping[str, float]
+    after: Mapping[str, float]
+    combined: tuple[float, float]
+    remaining: tuple[float, ...]
+    lateral: Mapping[str, tuple[float, float]]
+    combinations: int
+    step: float
+    bound: float
+    looked_at: int
+    notes: tuple[Note, ...] = ()
+
+    def to_dict(self) -> dict[str, Any]:
+        """The machine-readable output, in SI units and rad."""
+        return {
+            "title": self.machine.title,
+            "phases": list(self.phases),
+            "objectives": [
+                {"name": name, "before": self.before[name], "after": self.after[name]}
+                for name in self.before
+            ],
+            "combined": {"before": self.combined[0], "after": self.combined[1]},
+            "remaining_orders": list(self.remaining),
+            "lateral": {
+                name: {"before": before, "after": after}
+                for name, (before, after) in self.lateral.items()
+            },
+            "bound": self.bound,
+            "looked_at": self.looked_at,
+            "combinations": self.combinations,
+            "step": self.step,
+            "notes": list(map(str, self.notes)),
+        }
+
+
+def choose_phases(
+    machine: Machine,
+    objectives: Sequence[Objective],
+    phases: Phases | None = None,
+    combine: Combine = "sum",
+    progress: Progress | None = None,
+    limits: Sequence[Limit] = (),
+) -> Phasing:
+    """Find the phases of a machine's rows that make objectives smallest; row 1 keeps its own.
+
+    Where several are as good, those with the least roll and yaw moment.  None is below `bound`.
+
+    Parameters
+    ----------
+    objectives : outputs with their measures; see `multi_row.Rows.signals`.
+    phases : how finely to look; every 5 deg if None.
+    combine : several objectives by their weighted sum, or by the root of the sum of squares.
+    progress : is told how many arrangements of the grid have been looked at.
+    limits : what must be kept.
+
+    Raises
+    ------
+    ModelError : there are fewer than two rows, or an objective cannot be measured.
+    UsageError : no phase changes an objective, there is none, or no phases keep the limits.
+    MassError, MotionError, ResponseError : the machine cannot be computed.
+    """
+    search = PhaseSearch(machine, tuple(objectives), phases or Phases(), combine, tuple(limits))
+    pool = search.pool(progress or (lambda done, total: None))
+    found = search.best(pool)
+    proof = prove(search.cost, found, search.improved)
+    if proof.phases is not found:
+        found = search.best(np.vstack([pool, proof.phases]))
+    for term in search.cost.limits:
+        if term.value_at(found) > term.scale * (1 + KEPT):
+            least = f"{term.value_at(found):.4g} {unit_of(term.objective, machine)}"
+            raise UsageError(
+                f"no phases keep the {term.objective.name} within its limit; the best found leave "
+                f"{least}"
+            )
+    return phasing_of(search, found, proof)
+
+
+def phasing_of(search: PhaseSearch, found: Array, proof: Proof) -> Phasing:
+    """What phases (m,) relative to row 1 bring."""
+    present, cost, grid, force = search.present, search.cost, search.grid, search.force
+    moved = not np.all(found == search.present)
+    placed = with_phases(search.machine, found, search.cost.period) if moved else search.machine
+    varying = (Objective(output, "ripple") for output in OF_ROWS)
+    lateral = [Term(wish, search.rows.signals(wish)) for wish in varying]
+    before, after = (
+        {one.objective.name: one.value_at(at) for one in cost.terms} for at in (present, found)
+    )
+    left = np.max(np.abs(force.total(found)[0]), axis=0)[1:]
+    loudest = float(np.max(np.abs(force.amplitudes), initial=0.0)) * len(found)
+    return Phasing(
+        machine=placed,
+        phases=tuple(row.phase for row in placed.rows),
+        before=before,
+        after=after,
+        combined=(float(cost.of([*before.values()])), float(cost.of([*after.values()]))),
+        remaining=tuple(force.orders[1:][left > SURVIVES * loudest].tolist()),
+        lateral={
+            one.objective.output: (one.value_at(present), one.value_at(found)) for one in lateral
+        },
+        combinations=0 if grid is None else grid.count,
+        step=search.step if grid is None else grid.step,
+        bound=proof.bound,
+        looked_at=proof.boxes,
+        notes=tuple(_notes(search, found, proof.complete)),
+    )
+
+
+def _notes(search: PhaseSearch, found: Array, complete: bool) -> Iterator[Note]:
+    if np.all(found == search.present):
+        yield Note("no phases were found that are better than the present ones")
+    grid = search.grid
+    if grid is None:
+        yield Note("there are too many rows for a grid: random arrangements were polished instead")
+    elif grid.levels < search.levels:
+        yield Note(
+            "a grid of {step} deg has too many arrangements: one of {coarse} deg "
+            "was looked at as a whole, and the fine one about its best "
+            "arrangements",
+            step=f"{np.degrees(search.step):.4g}",
+            coarse=f"{np.degrees(grid.step):.4g}",
+        )
+    for term in search.cost.terms:
+        if search.vanishes(term):
+            yield Note(
+                "{name} is 0 before, so it counts over the sum of what each row does alone",
+                name=term.objective.name,
+            )
+    if not complete:
+        yield Note(
+            "the search ended before it had proved that nothing better exists; "
+            "the gap tells how far it came"
+        )

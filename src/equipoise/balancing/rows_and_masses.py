@@ -1,0 +1,312 @@
+"""Phases of rows and masses of links at once.
+
+For given phases the best masses are those of a cone program, and for given masses the best phases
+are searched: one after the other from several beginnings, until neither gains any more.  Branch and
+bound over boxes of phases and of those numbers of the masses that matter (`phase_bound`) then tells
+how much better anything could be, and begins anew where it sees something better.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import inf, pi
+
+import numpy as np
+
+from equipoise.balancing.balanced import proved_of
+from equipoise.balancing.box_bounds import Numbers
+from equipoise.balancing.branch_and_bound import finite
+from equipoise.balancing.effects import Effects
+from equipoise.balancing.multi_row import Cost, RowSignals, Term
+from equipoise.balancing.objectives import Near, of_rows_alone, read, reading_of
+from equipoise.balancing.phase_bound import Proof, prove
+from equipoise.balancing.phase_grid import distinct
+from equipoise.balancing.phase_polish import polished
+from equipoise.balancing.phase_search import PhaseSearch, Progress, with_phases
+from equipoise.balancing.phasing import Phasing, phasing_of
+from equipoise.balancing.problem import WITHOUT_EFFECT, Problem
+from equipoise.balancing.program import NoSolutionError, Program
+from equipoise.balancing.solution import Solution, solve_problem
+from equipoise.errors import UsageError
+from equipoise.i18n import Note
+from equipoise.mechanism.balance import Objective
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.objectives import GAUGES, JOINTS
+from equipoise.signals import Array, Periodic
+
+CLOSE = 1e-3
+"""Between cost and bound, over the cost before, at which the search ends."""
+BEGINNINGS, FEW, GUESSES, FIRST_ROUNDS, ROUNDS, TRIES = 6, 3, 24, 3, 12, 12
+"""Phases from which masses and phases are balanced in turn; where that takes long; at random, where
+limits can be kept from none of these; turns of each, and of the best; how often they are again,
+where a box looks better."""
+GAIN, NO_GAIN, ROUNDING = 1e-4, 1e-8, 1e-9
+"""Share of the cost before by which a turn must gain, and one of the best; of what a program's
+bound may miss."""
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """cost, with phases (m,) relative to row 1, rad, and with the masses of a solution."""
+
+    cost: float
+    phases: Array
+    solution: Solution
+
+
+class Together:
+    """Masses and phases of one problem.
+
+    problem : of masses, with the rows as they are.  search : of phases, for the same machine.
+    """
+
+    def __init__(self, problem: Problem, search: PhaseSearch) -> None:
+        self.problem, self.search = _counting_alike(problem, search), search
+        self.best: Found | None = None
+        self.tries, self.turns = TRIES, problem.effects.motion.turns
+        self.period = 2 * pi * self.turns
+
+    def run(self, first: Solution | None, progress: Progress) -> tuple[Solution | None, Phasing]:
+        """The best masses, in a machine with the best phases, and these with what is proved.
+
+        No masses where phases alone are as good.
+
+        first : the best masses with the rows as they are; None where there are none.
+
+        Raises
+        ------
+        UsageError : with none of the phases that are tried the masses can keep the limits.
+        """
+        alone = pool = self.search.pool(progress)
+        if first is not None:
+            after = replace(self.search, machine=first.machine)
+            more = after.pool(progress)
+            best = more[np.argmin(after.cost.values(more))]
+            self._offer(best, replace(first, problem=self.problem))
+            pool = np.vstack([best, more[:1], pool, more])
+        order = np.argsort(self.search.cost.values(pool[2:]), kind="stable") + 2
+        pool = np.vstack([pool[:2], pool[order]])
+        count = FEW if self._bent else BEGINNINGS
+        error = self._from_any(distinct(pool, self.period, [0.1], count), first)
+        if self.best is None:  # limits that few phases keep
+            shape = (GUESSES, len(pool[0]))
+            self._from_any(np.random.default_rng(1).uniform(0.0, self.period, shape), first)
+        if self.best is None:
+            raise error or UsageError("no phases were found with which masses keep the limits")
+        self._in_turn(self.best.phases, self.best.solution, ROUNDS, NO_GAIN)
+        proof, cost = self._proof(), self.search.cost
+        needed = len(self._measured) < len(self.problem.asked)  # for limits in joints
+        if needed or np.min(cost.values(alone)) > self.best.cost + NO_GAIN * cost.whole:
+            return self._laid_out(proof)
+        return None, phasing_of(self.search, self.search.best(alone), proof)
+
+    @property
+    def scope(self) -> tuple[Note, ...]:
+        """Of what the proof holds, where that is not all that is allowed."""
+        assert self.best is not None
+        gears = (Note("for the gears taken"),) if self.problem.plan.geared else ()
+        return (*proved_of(self.best.solution), *gears)
+
+    def _from_any(self, beginnings: Array, solution: Solution | None) -> UsageError | None:
+        """Masses and phases in turn, from each beginning; the last error, if there was one."""
+        error: UsageError | None = None
+        for phases in beginnings:
+            try:
+                self._in_turn(phases - phases[0], solution)
+            except UsageError as refused:
+                error = refused
+        return error
+
+    def _proof(self) -> Proof:
+        assert self.best is not None
+        known = self.best
+        try:
+            numbers = self._numbers
+        except NoSolutionError:
+            return Proof(known.phases, 0.0, 0, False)
+        start = self._cost(known.solution, 0.0)
+        return prove(start, known.phases, self._improved, numbers, known.cost, CLOSE)
+
+    def _laid_out(self, proof: Proof) -> tuple[Solution, Phasing]:
+        """The best, with equal rows swapped against twist."""
+        assert self.best is not None
+        solution = self.best.solution
+        rows = self.problem.machine.rows
+        after = replace(self.search, machine=solution.machine.with_rows(rows))
+        after.__dict__.update(cost=self._cost(solution))  # which counts as before all changes
+        found = after.best(np.vstack([after.present, self.best.phases]))
+        phasing = phasing_of(after, found, proof)
+        return replace(solution, machine=phasing.machine), phasing
+
+    def _improved(self, phases: Array, cost: float) -> tuple[Array, float]:
+        """Masses and phases in turn, begun where a box looks better."""
+        assert self.best is not None
+        if self.tries and cost < self.best.cost - CLOSE / 2 * self.problem.whole:
+            self.tries -= 1
+            before = self.best
+            self._from_any(phases[None], self.best.solution)
+            if self.best is not before:
+                return self.best.phases, self.best.cost
+        return phases, inf
+
+    def _in_turn(
+        self,
+        phases: Array,
+        solution: Solution | None,
+        rounds: int = FIRST_ROUNDS,
+        gain: float = GAIN,
+    ) -> None:
+        """Masses for phases, phases for masses, and so on.
+
+        solution : the masses where phases are such that no masses have an effect.
+        """
+        last = inf
+        for _ in range(rounds):
+            try:
+                solution = solve_problem(self._turned(phases))
+            except UsageError:
+                if solution is None:
+                    raise
+            cost = self._offer(phases, solution)
+            if not cost < last - gain * self.problem.whole:
+                break
+            last = cost
+            phases = polished(self._cost(solution), phases, self.search.step)
+            phases = phases - phases[0]
+
+    def _turned(self, phases: Array) -> Problem:
+        """The problem with rows in phases (m,) relative to row 1; what was before stays."""
+        start, like = (
+            with_phases(one, phases, self.period)
+            for one in (self.problem.start, self.problem.machine)
+        )
+        there = replace(self.problem, start=start, close=Near(like))
+        there.__dict__.update(before=self.problem.before)
+        return there
+
+    def _offer(self, phases: Array, solution: Solution) -> float:
+        """Cost of masses with phases, infinite where a limit is passed; kept if it is the best."""
+        cost = self._cost(solution)
+        value = float(cost.values(phases))
+        if self.best is None or value < self.best.cost:
+            if any(term.value_at(phases) > term.scale * (1 + 1e-6) for term in cost.limits):
+                return inf
+            self.best = Found(value, phases % self.period, solution)
+        return value
+
+    # -- as functions of phases and numbers --------------------------------------------------------
+
+    @cached_property
+    def _measured(self) -> list[Objective]:
+        """Objectives, and limits of what phases change."""
+        limits = [one.objective for one in self.problem.plan.limits]
+        return [
+            *self.problem.plan.objectives,
+            *(o for o in limits if not o.output.startswith(JOINTS)),
+        ]
+
+    def _amplitudes(self, near: Machine) -> list[Array]:
+        """Of each: of rows in phase 0 as they are, and by each number, (1 + K, V, m, C, N).
+
+        near : whose mass the support has to carry.
+        """
+        if not self._bent:
+            return self._of_any
+        return [of_each_row(self.problem.effects, one, Near(near)) for one in self._measured]
+
+    @property
+    def _bent(self) -> bool:
+        """Whether the support has to carry more with other masses."""
+        return self.problem.reads_gauges and self.problem.supports_more
+
+    @cached_property
+    def _of_any(self) -> list[Array]:
+        """The same where the support carries the same."""
+        problem = self.problem
+        return [of_each_row(problem.effects, one, problem.close) for one in self._measured]
+
+    @cached_property
+    def _scales(self) -> list[float]:
+        """Value of each objective that counts as one, and each limit."""
+        problem = self.problem
+        most = [
+            (one.ratio or 0.0) * problem.before[one.name] if one.at_most is None else one.at_most
+            for one in problem.plan.limits
+            if one.objective in self._measured[len(problem.plan.objectives) :]
+        ]
+        return [*map(problem.scale, problem.plan.objectives), *most]
+
+    def _cost(self, solution: Solution, share: float = 1.0) -> Cost:
+        """The cost as a function of phases, for a share of the numbers of a solution."""
+        terms, numbers = [], share * np.concatenate(solution.numbers)
+        near = self._amplitudes(solution.machine)
+        for one, scale, each in zip(self._measured, self._scales, near, strict=True):
+            whole = each[0] + np.tensordot(numbers, each[1:], 1)
+            terms.append(Term(one, RowSignals(whole, self.turns), scale))
+        count = len(self.problem.plan.objectives)
+        return Cost(tuple(terms[:count]), self.problem.plan.combine, tuple(terms[count:]))
+
+    @property
+    def _numbers(self) -> Numbers:
+        """The numbers that matter, and how far they can go.
+
+        Raises
+        ------
+        NoSolutionError : there is no end to one of them, or none that is allowed.
+        """
+        assert self.best is not None
+        amplitudes = self._amplitudes(self.best.solution.machine)
+        sizes = [
+            np.max(np.abs(each[1:]), axis=(1, 2, 3, 4), initial=0.0) / scale
+            for each, scale in zip(amplitudes, self._scales, strict=True)
+        ]
+        used = np.flatnonzero(np.max(sizes, axis=0) > WITHOUT_EFFECT)
+        program = Program()
+        places = [program.numbers(part.count) for part in self.problem.parts]
+        for part, at in self.problem.with_numbers(places):
+            for square in part.constrain(program, at):
+                square.keep_between(program, *finite(square))
+        self.problem.keep_added_mass(program, places)
+        wanted = np.concatenate(places)[used].tolist()
+
+        def least(direction: Array) -> float:
+            asked = program.copy()
+            asked.cost = dict(zip(wanted, direction.tolist(), strict=True))
+            found = asked.solve()
+            return found.bound - ROUNDING * (1 + abs(found.bound))
+
+        ends = np.eye(len(used))
+        low, high = np.array([least(e) for e in ends]), -np.array([least(-e) for e in ends])
+        start = np.clip(np.concatenate(self.best.solution.numbers)[used], low, high)
+        columns = tuple(each[1:][used] for each in amplitudes)
+        return Numbers(columns, low, high, start, least)
+
+
+def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:
+    """The problem, with every value before as it counts where phases are searched."""
+    terms = {one.objective.name: one.scale for one in search.cost.terms}
+    limits = {one.objective.name: one.value_at(search.present) for one in search.cost.limits}
+    found = replace(problem)
+    found.__dict__.update(before=problem.before | limits | terms)
+    return found
+
+
+def of_each_row(effects: Effects, objective: Objective, near: Near) -> Array:
+    """Amplitudes (1 + K, V, m, C, N) of what an objective reads: of every row as it is, and by a
+    unit of each number, in phase 0.
+
+    near : whose mass the support has to carry.
+    """
+    if objective.output.startswith(GAUGES):
+        linear, row = reading_of(objective, near)
+        rows = [replace(one, phase=0.0) for one in near.machine.rows]
+        speeds = objective.speeds or (effects.machine.drive.speed,)
+        each = [[read(effects, linear, row, v, None, [one]) for one in rows] for v in speeds]
+    else:
+        each = [of_rows_alone(effects, objective.output, objective.about)]
+    found = [[one.kept(objective.orders) for one in rows] for rows in each]
+    samples = np.array([[np.vstack([one.start, one.columns]) for one in rows] for rows in found])
+    parts = [samples.real, samples.imag] if np.iscomplexobj(samples) else [samples]
+    whole = np.moveaxis(np.stack(parts, axis=2), 3, 0)
+    return Periodic.of(whole, found[0][0].turns).amplitudes

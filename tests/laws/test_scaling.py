@@ -1,0 +1,171 @@
+"""A machine in other units of length, mass and time does the same, however small it is.
+
+All that a file may say is scaled by its declared dimension, and so is all that is told: a machine
+of micrometres and picograms balances, shakes and looks like one of decimetres and kilograms.  The
+factors are powers of 2, so that scaling rounds nothing, and the same choice is made wherever one
+is; a tolerance that is not one of the machine's own size comes to light.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.balancing.optimisation import default_plan
+from equipoise.figures.animation import laid_out
+from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Objective, Weight
+from equipoise.mechanism.objectives import balanced_names
+from equipoise.quantities import SI
+from equipoise.results.blocks import Column, Many, Span, Table, Value
+from equipoise.symbols.scene import Scene
+from laws.subjects import machine_of, names
+from laws.transforms import Units, in_units
+
+MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
+"""Of a crank of 33.5 mm one of 4 um, of 200 g some 1e-12 kg, and 64 turns where there was one."""
+
+
+# -- what is told ----------------------------------------------------------------------------------
+
+NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
+
+
+def words(text: Any) -> str:
+    """A sentence without its numbers."""
+    return NUMBER.sub("#", str(text))
+
+
+def same_blocks(found: Any, want: Any, tolerance: float) -> None:
+    """Compare what two results show: the same words, and numbers by their dimension."""
+    left, right = list(found.blocks()), list(want.blocks())
+    assert [type(one) for one in left] == [type(one) for one in right]
+    for one, other in zip(left, right, strict=True):
+        if not isinstance(one, Table):
+            assert words(one) == words(other)
+            continue
+        assert words(one.title) == words(other.title)
+        for cells, others in zip(one.rows, other.rows, strict=True):
+            for column, cell, wanted in zip(one.columns, cells, others, strict=True):
+                same_cell(cell, wanted, column, tolerance)
+
+
+def same_cell(cell: Any, want: Any, column: Column, tolerance: float) -> None:
+    assert type(cell) is type(want)
+    if isinstance(cell, Many):
+        for one, other in zip(cell.values, want.values, strict=True):
+            same_cell(one, other, column, tolerance)
+    elif isinstance(cell, Value):
+        dimension = cell.dimension or column.dimension
+        unit = SI[dimension] if dimension else column.label  # which may be one
+        grown = MICRO.of(unit) if unit in (*SI.values(), "1/min") else 1.0
+        off = abs(cell.value - grown * want.value)
+        rounding = 1e-10 * grown * abs(want.scale)  # which is shown as 0
+        assert off <= tolerance * grown * abs(want.value) + rounding, (column.label, cell, want)
+    elif isinstance(cell, Span):
+        same_cell(Value(cell.low, cell.scale), Value(want.low, want.scale), column, tolerance)
+        same_cell(Value(cell.high, cell.scale), Value(want.high, want.scale), column, tolerance)
+    elif isinstance(cell, str):
+        assert words(cell) == words(want)
+
+
+# -- the laws --------------------------------------------------------------------------------------
+
+EXAMPLES = [name for name in names() if ":" not in name and " " not in name]
+FAST = [name for name in names() if not name.startswith("balance-geared")]
+RIGS = ("yamashita-rig", "riding-transplanter", "walking-transplanter", "exudyn-slider-crank")
+
+
+def both(machine: eq.Machine, compute: Callable[[eq.Machine], Any]) -> tuple[Any, Any]:
+    """What is computed of the small machine, and of the machine as it is."""
+    return compute(in_units(machine, MICRO)), compute(machine)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_analysis(name: str) -> None:
+    same_blocks(*both(machine_of(name), eq.analyze), 1e-9)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_balancing_by_the_usual_plan(name: str) -> None:
+    """With a plan of its own where it has one; the same change is told."""
+    kept = eq.load(name) if name in EXAMPLES else machine_of(name)
+    small, large = both(kept, lambda one: eq.balance(one, default_plan(one)))
+    same_blocks(small, large, 1e-7)
+    for link, body in in_units(large.machine, MICRO).links.items():
+        assert small.machine.links[link].mass == pytest.approx(body.mass, rel=1e-9)
+    assert any("mass" in dict(one.values) for one in small.changes) == any(
+        "mass" in dict(one.values) for one in large.changes
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "measure"),
+    [("yamashita-1", "peak"), ("slider-crank-engine", "rms"), ("geared-counterweight", "rms")],
+)
+def test_every_objective(name: str, measure: Any) -> None:
+    """Of a counterweight of the crank, and of centres of mass that are moved."""
+    machine = machine_of(name)
+    crank = machine.drive.link
+    counterweight = AddedMass(crank, next(iter(machine.links[crank].points)), Weight(radius=0.05))
+    moves = tuple(CenterMove(link) for link in machine.links)
+    for output in balanced_names(machine):
+        if output.startswith("gauges") or (machine.gears and "moment" not in output):
+            continue
+        wish = (Objective(output, measure),)
+        for plan in (Balance(masses=(counterweight,), objectives=wish),
+                     Balance(moves=moves, objectives=wish)):  # fmt: skip
+            told = []
+            small = in_units(machine, MICRO)
+            for one, own in ((machine, plan), (small, in_units(plan, MICRO, machine))):
+                try:
+                    told.append(eq.balance(one, own).cost)
+                except eq.EquipoiseError as error:
+                    told.append(words(error))
+            assert told[0] == (pytest.approx(told[1]) if isinstance(told[1], float) else told[1])
+
+
+@pytest.mark.parametrize(
+    ("name", "model"),
+    [*((name, model) for name in RIGS for model in ("linear", "moment")), (RIGS[0], "exact")],
+)
+def test_vibration(name: str, model: Any) -> None:
+    machine = eq.load(name)
+    same_blocks(*both(machine, lambda one: eq.respond(one, model=model)), 1e-6)
+    small, large = both(machine, eq.modes)
+    for one, other in zip(small.modes, large.modes, strict=True):
+        assert one.eigenvalue * MICRO.time == pytest.approx(other.eigenvalue, rel=1e-8)
+    shapes, wanted = map(shapes_of, (small, large))
+    assert np.count_nonzero(shapes) == np.count_nonzero(wanted) > 0
+
+
+def shapes_of(found: Any) -> list[float]:
+    """What is shown of the shapes of modes."""
+    tables = [one for one in found.blocks() if isinstance(one, Table) and "hapes" in one.title]
+    return [cell.value for one in tables for row in one.rows for cell in row[1:]]
+
+
+def test_vibration_in_time() -> None:
+    machine = eq.load("yamashita-rig")
+    small = eq.simulate(in_units(machine, MICRO), 1.0 * MICRO.time)
+    large = eq.simulate(machine, 1.0)
+    for name, gauge in large.gauges.items():
+        grown = MICRO.length * gauge
+        np.testing.assert_allclose(
+            small.gauges[name], grown, atol=1e-10 * float(np.max(np.abs(grown)))
+        )
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_drawing(name: str) -> None:
+    """Every line on the same place of the paper; the ruler alone tells the size."""
+    small, large = both(machine_of(name), lambda one: laid_out(Scene.of(eq.move(one, 24))))
+    for one, other in zip(small.parts, large.parts, strict=True):
+        for stroke, wanted in zip(one.strokes, other.strokes, strict=True):
+            assert stroke.role == wanted.role
+            if stroke.role != "scale":
+                np.testing.assert_allclose(stroke.points, wanted.points, atol=1e-6)
