@@ -14,6 +14,7 @@ import inspect
 import os
 import tempfile
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from statistics import median
 
@@ -164,7 +165,26 @@ def other_machines(table: Table) -> None:
     show(f"bare loop, a turn of {ANGLES} crank angles", times)
     for name in LIKE_FOUR_BAR:
         table.ratio(f"{name} / four-bar", times[name], times["four-bar"], Limit(2.2))
+    by_loops(table)
     table.ratio(f"{with_joints} / without", times[with_joints], times["four-bar"])
+
+
+def by_loops(table: Table) -> None:
+    """A linkage without an order of dyads beside one with: the loop, and a first analysis."""
+    names = ("class-three", "stephenson-six-bar")
+    tasks, first = {}, {}
+    for name in names:
+        machine = eq.load(name)
+        batch = batch_of(machine, ("drive.speed",), WANTED)
+        speeds = machine.drive.speed * np.linspace(1.0, 1.2, 2048)[:, None]
+        agree(name, batch(speeds[:1])[0], analyzed(machine), CLOSE)
+        tasks[name] = (lambda batch=batch, speeds=speeds: batch(speeds), len(speeds))
+        first[name] = (lambda machine=machine: eq.analyze(replace(machine), ANGLES), 1)
+    for what, each in {"a study": tasks, "a first analysis": first}.items():
+        times = timed(each, 15)
+        show(f"{what}, {ANGLES} crank angles", times)
+        limit = Limit(5) if each is tasks else None
+        table.ratio(f"{what}: {' / '.join(names)}", *(times[name] for name in names), limit)
 
 
 def analyzed(machine: Machine) -> list[float]:

@@ -220,6 +220,8 @@ export interface Balanced {
   /** What was to become small. */
   aims: Change[];
   figures: Change[];
+  /** What got worse, a sentence for each kind of figure. */
+  worse: string[];
   proof: string;
   notes: string[];
 }

@@ -146,6 +146,7 @@ export class BalancePanel {
       ...(others.length
         ? [h("details", {}, h("summary", {}, "All other figures"), comparison(others))]
         : []),
+      ...found.worse.map((text) => h("p", { class: "worse" }, unbroken(text))),
       ...[found.proof, ...found.notes].map((text) => h("p", { class: "quiet" }, unbroken(text))),
     );
     this.root.hidden = false;

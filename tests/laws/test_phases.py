@@ -20,6 +20,7 @@ from equipoise.balancing.multi_row import Combine
 from equipoise.balancing.phase_bound import CLOSE
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.phasing import Phasing, choose_phases
+from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Objective, Phases
 from support.machines import make
 from support.rows_in_time import anyhow, in_time, measured, side_by_side, value_of
@@ -222,16 +223,22 @@ def test_no_phases_on_a_grid_of_5_degrees_are_better(kind: str, seed: int) -> No
     rng = np.random.default_rng([seed, 11])
     machine = replace(make(kind, seed).machine, loads=())
     machine = anyhow(machine, seed, count=int(rng.integers(2, 4)))
-    output = rng.choice(["shaking_force", "shaking_force.y", "shaking_moment", "roll_moment"])
+    outputs = ["shaking_force", "shaking_force.y", "roll_moment", "frame_moment"]
+    output = rng.choice(outputs)
     wish = Objective(str(output), "peak" if rng.random() < 0.25 else "rms")
-    found = choose_phases(machine, [wish])
+    try:
+        found = choose_phases(machine, [wish])
+    except UsageError:  # a slider without any force across it
+        wish = Objective("shaking_force")
+        found = choose_phases(machine, [wish])
     least = least_on_grid(machine, wish)
     ((before, after),) = zip(found.before.values(), found.after.values(), strict=True)
-    # samples miss a peak by 1e-5 of it and more, which flatters the grid; a mean square by nothing
-    short = 1e-9 if wish.measure == "rms" else 1e-4
+    # samples miss a peak of order n by (n pi / 720)^2 / 2, which flatters the grid
+    short = 1e-9 if wish.measure == "rms" else (10 * pi / 720) ** 2 / 2
     assert after <= least * (1 + short)
     assert found.bound * before <= least * (1 + 1e-9)
-    assert after - found.bound * before <= 1.01 * CLOSE * before
+    # peaks are read at samples in the proof too, 720 in a turn
+    assert after - found.bound * before <= (1.01 * CLOSE + short) * before
 
 
 @pytest.mark.parametrize("name", ["four-row-transplanter", "riding-transplanter"])

@@ -80,6 +80,7 @@ def machine_of(base: Machine, plain: Plain) -> Machine:
         frame={name: tuple(place) for name, place in plain["frame"].items()},
         links=links,
         assembly=dict(base.assembly),
+        position=base.position,
         loads=base.loads,
         gravity=tuple(plain["gravity"]),
         **listed,

@@ -46,7 +46,10 @@ def test_tables_of_the_papers_counterweight() -> None:
     )
     assert "(40882 g mm)" in text
     assert "point mass of 1145 g at (-34.64, -8.649) mm" in text
-    assert "Proof, by closed form: nothing that is allowed is better by more than" in text
+    assert (
+        "Proof, by closed form: with a point mass of 1145 g on crank about A, no choice makes "
+        "shaking force y, RMS about the mean at 193 rpm smaller than here by more than"
+    ) in text
     assert cells(text, "mass of the links, g")[:2] == ["1145", "2290"]
     assert cells(text, "force in joint C, peak, N")[-1] == "same"
     assert cells(text, "shaking force, RMS, N") == ["14.98", "5.855", "-60.9 %"]
@@ -198,7 +201,7 @@ def test_a_geared_counterweight_of_one_ratio() -> None:
     text = run(*words, "-o", "geared.toml")
     assert cells(text, "shaking moment, area in a turn, J")[:2] == ["14.31", "9.928"]
     assert "counterweight: a shaft at (186.5, 0) mm of the frame, geared to rocker" in text
-    assert ": nothing that is allowed" in text
+    assert "geared to rocker, no choice makes " in text
     assert cells(text, "force in joint counterweight-axis, peak, N")[-1] == "new"
     machine = eq.load("geared.toml")
     moment = eq.forces(eq.move(machine, 720)).shaking_moment
@@ -221,21 +224,21 @@ def test_a_range_of_ratios_is_proved_one_by_one() -> None:
         ('ratio = [0.2, 3]\npitch_radius = "50 mm"', 'teeth = [39, 41]\nmodule = "2.5 mm"'),
     )
     text = run(teeth)
-    assert "for each of 9 choices of gears: nothing that is allowed" in text
+    assert "for each of 9 choices of gears: with " in text
     assert "teeth of module 2.500 mm" in text and "with the ratio" in text
 
 
 def test_phases_of_rows() -> None:
     text = run("four-row-transplanter", "-o", "rows.toml")
     assert "  Rows: set the phases to 0, 180, 270, 90 deg" in text.splitlines()
-    assert "Found among 64824 arrangements" in text
-    assert "is not proved of phases" in text
+    assert "Proof, by branch and bound over all phases of the rows: with other phases" in text
+    assert "no choice makes all rows: shaking force, RMS at 200 rpm smaller than here" in text
     speeds = text.partition("Speed at which it shakes as before")[2]
     assert cells(speeds, "all rows: shaking force, RMS") == ["501.4"]
     phases = [math.degrees(row.phase) for row in eq.load("rows.toml").rows]
     assert phases == pytest.approx([0, 180, 270, 90])
     content = told("four-row-transplanter")
-    assert (content["bound"], content["gap"]) == (None, None)
+    assert 0 <= content["gap"] < 1e-3
     assert content["rows"]["remaining_orders"][:2] == [4, 8]
     assert [math.degrees(phase) for phase in content["rows"]["phases"]] == pytest.approx(phases)
 

@@ -1,3 +1,4 @@
+from .advice import advise as advise
 from .balanced import Balanced as Balanced
 from .least_norm import least_moments as least_moments
 from .linear_conditions import Conditions as Conditions

@@ -11,28 +11,24 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.compared import WORSE, Pair, Worse, figures_of, merged, worse_of
 from equipoise.balancing.design_variables import Bound
 from equipoise.balancing.effects import ANGLES
 from equipoise.balancing.geared import geared_range
-from equipoise.balancing.multi_row import Rows, Term
-from equipoise.balancing.objectives import measured, unit_of
+from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.phasing import Phasing
 from equipoise.balancing.problem import ADDED
 from equipoise.balancing.solution import Solution
 from equipoise.balancing.workshop import Change
-from equipoise.errors import EquipoiseError
 from equipoise.i18n import Note
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.dynamics import forces
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.motion import move
-from equipoise.mechanism.outputs import DECLARED
-from equipoise.planting.summary import plant
 from equipoise.results.analysis import Analysis
 from equipoise.results.outputs import Outputs
 from equipoise.results.result import Result
 from equipoise.signals import Array
-from equipoise.vibration.forced import respond, usual_step
 
 GONE, ROUNDING = 1e-9, 1e-7
 """Share of a figure before below which it is rounding; share of all for a price."""
@@ -73,6 +69,7 @@ class Balanced(Result):
     looked_at : number of programs that were solved, or of arrangements of rows.
     phasing : of rows, where their phases were free.
     scope : of what the bound is proved, where that is not all that the plan allows.
+    tried : where nobody said what may be changed, every remedy that was tried, this one among them.
     """
 
     machine: Machine
@@ -88,6 +85,7 @@ class Balanced(Result):
     notes: tuple[Note | str, ...] = ()
     phasing: Phasing | None = None
     scope: tuple[Note, ...] = ()
+    tried: tuple[Balanced, ...] = ()
 
     @property
     def gap(self) -> float:
@@ -119,6 +117,39 @@ class Balanced(Result):
     def after(self) -> dict[str, float]:
         """The same of the balanced machine."""
         return figures_of(self.machine)
+
+    @cached_property
+    def aims(self) -> dict[Objective, Pair]:
+        """What was made small, before and after; of an output at several speeds the loudest."""
+        return merged(self.plan, self.objectives)
+
+    @cached_property
+    def worse(self) -> tuple[Worse, ...]:
+        """Every figure that got larger by more than 1 %, the important ones first."""
+        each = {one: self.objectives[one.name] for one in self.plan.objectives}
+        own = (one for one in each if one.speeds or one.about or one.orders)
+        return worse_of(self.before, self.after, {one: each[one] for one in own})
+
+    @property
+    def gain(self) -> float:
+        """Share of what was made small that is gone, every part of it over its value before."""
+        pairs = self.objectives.values()
+        shares = [new / old if old > 0 else float(new > 0) for old, new in pairs]
+        return 1 - self.plan.combined(shares) / self.whole
+
+    @property
+    def helps(self) -> bool:
+        """Whether it brings anything that is worth a change."""
+        if self.tried:
+            return self.gain > WORSE
+        pairs = self.objectives.values()
+        moved = (abs(after - before) > WORSE * before for before, after in pairs)
+        return bool(self.plan.limits) or any(moved)
+
+    @property
+    def harms(self) -> bool:
+        """Whether a gauge gets worse."""
+        return any(one.group == "gauges" for one in self.worse)
 
     @property
     def sensitivities(self) -> dict[str, Any]:
@@ -203,12 +234,22 @@ class Balanced(Result):
             "added_mass": self.added_mass,
             "before": self.before,
             "after": self.after,
+            "worse": [
+                {"figure": one.objective.name, "before": one.before, "after": one.after}
+                for one in self.worse
+            ],
             "equivalent_speeds": self.equivalent_speeds,
             "planting_kept": self.planting_kept,
             **({"sensitivities": self.sensitivities} if asked else {}),
             **({} if self.phasing is None else {"rows": self.phasing.to_dict()}),
+            **({"tried": [_tried(one) for one in self.tried]} if self.tried else {}),
             "notes": list(map(str, self.notes)),
         }
+
+
+def _tried(one: Balanced) -> dict[str, Any]:
+    """A remedy that was tried, in short."""
+    return {"gain": one.gain, "changes": [change.to_dict() for change in one.changes]}
 
 
 def result_of(machine: Machine, plan: Balance, found: Solution) -> Balanced:
@@ -302,49 +343,3 @@ def _notes(found: Solution) -> Iterator[Note]:
             "the search ended before it had proved that nothing better exists; "
             "the gap tells how far it came"
         )
-
-
-# -- figures before and after ----------------------------------------------------------------------
-
-
-def figures_of(machine: Machine) -> dict[str, float]:
-    """Figures by name, such as ``shaking_force.rms``; SI units.
-
-    Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
-    """
-    motion = move(machine, ANGLES, acceleration=0.0)
-    figures = {"mass": machine.mass}
-    for one in Outputs(Analysis(motion, forces(motion))):
-        for measure in one.declared.compared if one.declared.needs == "masses" else ():
-            figures[f"{one.name}.{measure}"] = measured(one.component, measure)
-    return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
-
-
-def _of_rows(machine: Machine) -> dict[str, float]:
-    """Figures of all rows together, where there are several."""
-    rows, phases, figures = Rows(machine), np.array([row.phase for row in machine.rows]), {}
-    for one in DECLARED.values() if len(phases) > 1 else ():
-        for measure in one.compared if one.needs == "rows" else ():
-            objective = Objective(one.name.removeprefix("rows."), measure)
-            value = Term(objective, rows.signals(objective)).value_at(phases)
-            figures[f"{one.name}.{measure}"] = value
-    return figures
-
-
-def _of_support(machine: Machine) -> dict[str, float]:
-    figures: dict[str, float] = {}
-    if machine.support is not None:
-        for name, gauge in respond(machine, model=usual_step(machine)).gauges.items():
-            figures[f"gauges.{name}.peak_to_peak"] = float(gauge.displacement.peak_to_peak)
-            figures[f"gauges.{name}.ripple"] = float(gauge.displacement.vibration_rms)
-    return figures
-
-
-def _of_planting(machine: Machine) -> dict[str, float]:
-    """Figures of the tip's path, which balancing must not change."""
-    if machine.planting is None:
-        return {}
-    try:
-        return {f"planting.{name}": value for name, value in plant(machine).figures.items()}
-    except EquipoiseError:  # a tip that never reaches the soil has no figures, and still shakes
-        return {}

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any
 
+from equipoise.balancing.compared import WORSE
 from equipoise.balancing.objectives import unit_of as si_unit
+from equipoise.balancing.told import (
+    figure_named,
+    figure_unit,
+    nothing_told,
+    proof_told,
+    tried_blocks,
+    worse_told,
+)
 from equipoise.balancing.workshop import sentences
-from equipoise.i18n import Note, say, to_say
-from equipoise.mechanism.balance import Objective
+from equipoise.i18n import say, to_say
 from equipoise.quantities import SI, Dimension, in_unit, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven, rows_table
-from equipoise.results.outputs import MEASURES, objective_named, output_named, unit_of_measure
+from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
     from equipoise.balancing.phasing import Phasing
 
-EXACT, SMALL = 1e-12, 1.01e-4
-"""Gap below which nothing more is told of it; above which it is told in percent."""
-WORSE, MOST_WORSE = 0.1, 4
-"""Growth that is told by itself; of how many figures at the most."""
 MOST_ORDERS = 8
 """That are named one by one."""
 USUAL: dict[Dimension, str] = {"length": "mm", "angle": "mrad", "mass": "g", "inertia": "kg mm^2"}
@@ -50,15 +53,18 @@ def balanced_blocks(found: Balanced) -> Iterator[Block]:
 
 def outcome_blocks(found: Balanced) -> Iterator[Block]:
     """The same without what machine it is."""
+    yield from tried_blocks(found)
+    if found.tried and not found.helps:
+        yield from map(Text, nothing_told(found))
+        return
     if found.plan.objectives:
         yield objectives_table(found)
     lines = tuple(line for change in found.changes for line in sentences(change))
     yield Facts(say("Changes; places and directions in the axes of each link"), lines)
-    if worse := say(", ").join(_worse(found)):
-        yield Text(say("Worse by it: {figures}", figures=worse), strong=True)
+    yield from (Text(line, strong=True) for line in worse_told(found))
     if found.phasing is not None:
         yield from phasing_blocks(found.phasing)
-    yield Text(_proof(found))
+    yield Text(proof_told(found))
     yield before_after(found)
     if found.prices:
         yield _prices(found)
@@ -80,9 +86,8 @@ BEFORE_AFTER = (to_say("before"), to_say("after"), to_say("change"))
 def objectives_table(found: Balanced) -> Table:
     """What was made small, before and after."""
     rows: list[tuple[Cell, ...]] = []
-    for one in found.plan.objectives:
-        before, after = found.objectives[one.name]
-        unit = found.units[one.name]
+    for one, (before, after) in found.aims.items():
+        unit = si_unit(one, found.original)
         name = objective_named(one, len(found.original.rows))
         pair = (quantity(before, unit), quantity(after, unit, before))
         rows.append((name, *pair, Change(before, after, after > (1 + WORSE) * before)))
@@ -91,66 +96,6 @@ def objectives_table(found: Balanced) -> Table:
         rows.append((f"{say('together')}, %", Value(100.0), Value(100 * share), Change(1.0, share)))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("What was made small"), columns, tuple(rows))
-
-
-def _worse(found: Balanced) -> Iterator[str]:
-    """What has become larger by more than a tenth, the worst first."""
-    least = EXACT * max(found.before.values(), default=0.0)
-    grown = {
-        name: found.after.get(name, 0.0) / old - 1
-        for name, old in found.before.items()
-        if old > least and name.endswith((".rms", ".peak")) and not name.startswith("planting.")
-    }
-    for name in sorted(grown, key=grown.__getitem__, reverse=True)[:MOST_WORSE]:
-        if grown[name] > WORSE:
-            yield f"{figure_named(found, name)} {100 * grown[name]:+.0f} %"
-
-
-def figure_named(found: Balanced, name: str) -> str:
-    """A figure that is told before and after, in words."""
-    if name == "mass":
-        return say("mass of the links")
-    output, _, measure = name.rpartition(".")
-    return say(", ").join((output_named(output, len(found.original.rows)), say(MEASURES[measure])))
-
-
-def figure_unit(found: Balanced, name: str) -> str:
-    """SI unit of such a figure."""
-    if name == "mass":
-        return "kg"
-    output, _, measure = name.rpartition(".")
-    if output.startswith("gauges"):
-        return si_unit(Objective(output), found.original)
-    return unit_of_measure(output, measure)
-
-
-def said(text: Note | str) -> str:
-    """A sentence or a part of one, in the language that is spoken."""
-    return text.said() if isinstance(text, Note) else text
-
-
-def scope_of(found: Balanced) -> str:
-    """Of what the proof holds, where that is not all that the plan allows."""
-    parts = say(" and ").join(map(said, found.scope))
-    return f" {parts}" if parts else ""
-
-
-def gap_told(gap: float) -> str:
-    """A gap as it is printed, never smaller than it is where that could be seen."""
-    if gap <= SMALL:
-        return f"{max(gap, EXACT):.0e}"
-    digit = 10.0 ** floor(log10(gap) - 1)
-    return f"{100 * digit * ceil(gap / digit):.4g} %"
-
-
-def _proof(found: Balanced) -> str:
-    return say(
-        "Proof, by {method}: nothing that is allowed is better by more than {gap} of the value "
-        "before{scope}.",
-        method=said(found.method),
-        gap=gap_told(found.gap),
-        scope=scope_of(found),
-    )
 
 
 def before_after(found: Balanced) -> Table:
@@ -174,7 +119,7 @@ def before_after(found: Balanced) -> Table:
         if old is not None:
             worse = new > (1 + WORSE) * old and name != "mass"
             changed = None if old <= 1e-10 * least else Change(old, new, worse)
-        rows.append((figure_named(found, name), *cells, changed))
+        rows.append((figure_named(name, len(found.original.rows)), *cells, changed))
     columns = (Column(""), *(Column(say(label)) for label in BEFORE_AFTER))
     return Table(say("Before and after"), columns, tuple(rows))
 
@@ -221,7 +166,7 @@ def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:
     several = any(name.startswith("rows.") for name in speeds)
     for name, speed in speeds.items():
         if name.startswith("rows.shaking_") if several else name.count(".") == 1:
-            yield figure_named(found, name), Value(speed)
+            yield figure_named(name, len(found.original.rows)), Value(speed)
 
 
 # -- phases of rows --------------------------------------------------------------------------------

@@ -102,10 +102,13 @@ class Bounder:
     """Bounds the cost over boxes.
 
     cost : where all numbers are 0.
+    prices : what the cost falls by for as much more of each limit as it is; any bound what is
+        allowed, as long as none is negative, and the right ones do it best.
     """
 
     cost: Cost
     numbers: Numbers
+    prices: tuple[float, ...]
 
     @property
     def half(self) -> float:
@@ -128,11 +131,19 @@ class Bounder:
         readings = [self._reading(*each, boxes) for each in self._each(totals)]
         count = len(self.cost.terms)
         values, reading = self._combined(readings[:count])
-        found, bends, slopes = self._over(boxes, reading * turning[:, None], pushed)
-        bounds = np.maximum(values - found, boxes.bounds)
-        for term, (value, one) in zip(self.cost.limits, readings[count:], strict=True):
+        worth, priced, impossible = values, reading, np.zeros(len(values), bool)
+        limits = zip(self.cost.limits, self.prices, readings[count:], strict=True)
+        for term, price, (value, one) in limits:
             lost, _, _ = self._over(boxes, one * turning[:, None], 0 * pushed)
-            bounds = np.where(value - lost > term.scale * (1 + SMALL), np.inf, bounds)
+            impossible |= value - lost > term.scale * (1 + SMALL)
+            worth = worth + price * (value / term.scale - 1)
+            priced = priced + price / term.scale * one
+        lost, bends, slopes = self._over(boxes, priced * turning[:, None], pushed)
+        bounds = np.maximum(worth - lost, boxes.bounds)
+        if any(self.prices):
+            lost, _, _ = self._over(boxes, reading * turning[:, None], 0 * pushed)
+            bounds = np.maximum(values - lost, bounds)
+        bounds = np.where(impossible, np.inf, bounds)
         widest = np.where(np.max(bends, axis=1) > 0, np.argmax(bends, axis=1), 1)
         return replace(boxes, bounds=bounds, widest=widest), values, slopes
 
@@ -258,16 +269,19 @@ class Bounder:
         the cost.
         """
         sizes, grams = [], []
-        for term, total, _ in self._each(totals)[: len(self.cost.terms)]:
+        for term, total, _ in self._each(totals):
             here = np.einsum("bj,bjvcn->bvcn", _with_one(x), total)
             size = np.sqrt(np.sum(np.abs(here) ** 2 * term.shares, axis=(2, 3)))
             places, loudest = np.arange(len(x)), np.argmax(size, axis=1)
             one = (total[places, :, loudest] * np.sqrt(term.shares)).reshape(*total.shape[:2], -1)
             grams.append((one.conj() @ np.swapaxes(one, 1, 2)).real)
             sizes.append(np.maximum(size[places, loudest], SMALL * term.scale))
-        parts = self.cost.factors[:, None] * sizes
-        factors = self._shares(parts) * self.cost.factors[:, None] / sizes
-        return np.asarray(np.einsum("tb,tbij->bij", factors, np.array(grams)))
+        parts = self.cost.factors[:, None] * sizes[: len(self.cost.terms)]
+        factors = self._shares(parts) * self.cost.factors[:, None]
+        pairs = zip(self.prices, self.cost.limits, strict=True)
+        prices = np.array([price / term.scale for price, term in pairs]).reshape(-1, 1)
+        whole = np.vstack([factors, np.repeat(prices, len(x), axis=1)]) / sizes
+        return np.asarray(np.einsum("tb,tbij->bij", whole, np.array(grams)))
 
 
 def _with_one(numbers: Array) -> Array:

@@ -12,10 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.blocks import OF_UNIT, gap_told, scope_of, shown_unit
+from equipoise.balancing.blocks import OF_UNIT, shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
+from equipoise.balancing.told import gap_told, scope_of
 from equipoise.errors import UsageError
 from equipoise.i18n import say
 from equipoise.mechanism.balance import Balance, Limit, Objective

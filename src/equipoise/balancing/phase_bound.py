@@ -55,6 +55,7 @@ def prove(
     numbers: Numbers | None = None,
     least: float | None = None,
     close: float = CLOSE,
+    prices: tuple[float, ...] = (),
 ) -> Proof:
     """Bound the cost from below over all phases, and over all numbers; row 1 is at 0.
 
@@ -62,9 +63,12 @@ def prove(
     ----------
     cost : where all numbers are 0.
     phases : (m,) the best known, rad.  least : cost there, with the best numbers known.
+    prices : of each limit, where they are known; see `Bounder`.
     """
-    found = _Search(cost, Bounder(cost, numbers or Numbers.none(cost)), improve, close)
-    return found.run(phases, float(cost.values(phases)) if least is None else least)
+    prices = prices or (0.0,) * len(cost.limits)
+    bounder = Bounder(cost, numbers or Numbers.none(cost), prices)
+    known = float(cost.values(phases)) if least is None else least
+    return _Search(cost, bounder, improve, close).run(phases, known)
 
 
 @dataclass(frozen=True, eq=False)

@@ -162,6 +162,10 @@ class Problem:
         unique = {one.name: one for one in self.asked}
         return {name: signals_of(self.effects, one, self.close) for name, one in unique.items()}
 
+    def moves(self, one: Objective) -> bool:
+        """Whether an objective is something, and something that is free has an effect on it."""
+        return not self._is_nothing(one) and self._effect(one) >= WITHOUT_EFFECT * self.scale(one)
+
     def check_influence(self) -> None:
         """Refuse an objective that is 0 already, or that nothing free can change."""
         turns = self.effects.motion.turns

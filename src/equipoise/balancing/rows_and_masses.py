@@ -126,7 +126,18 @@ class Together:
         except NoSolutionError:
             return Proof(known.phases, 0.0, 0, False)
         start = self._cost(known.solution, 0.0)
-        return prove(start, known.phases, self._improved, numbers, known.cost, CLOSE)
+        paid, scales = known.solution.best.prices, map(self.problem.scale, self._measured)
+        most = zip(self._measured, scales, self._scales, strict=True)
+        prices = tuple(max(paid.get(one.name, 0.0), 0.0) * at / scale for one, scale, at in most)
+        count = len(start.terms)
+        prices = prices[count:]
+        found = prove(start, known.phases, self._improved, numbers, known.cost, CLOSE, prices)
+        if found.complete or not start.limits:
+            return found
+        # Without limits more rows may be alike, which leaves fewer boxes.
+        free, numbers = replace(start, limits=()), replace(numbers, columns=numbers.columns[:count])
+        other = prove(free, found.phases, _no_better, numbers, self.best.cost, CLOSE)
+        return other if other.bound > found.bound else found
 
     def _laid_out(self, proof: Proof) -> tuple[Solution, Phasing]:
         """The best, with equal rows swapped against twist."""
@@ -281,6 +292,11 @@ class Together:
         start = np.clip(np.concatenate(self.best.solution.numbers)[used], low, high)
         columns = tuple(each[1:][used] for each in amplitudes)
         return Numbers(columns, low, high, start, least)
+
+
+def _no_better(phases: Array, _: float) -> tuple[Array, float]:
+    """That nothing better is looked for."""
+    return phases, inf
 
 
 def _counting_alike(problem: Problem, search: PhaseSearch) -> Problem:

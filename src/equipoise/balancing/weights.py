@@ -299,6 +299,7 @@ class AddedWeight(DesignVariables):
             "moment": moment,
             "direction": float(np.arctan2(sy, sx)) if moment else 0.0,
             "radius": moment / mass if mass > 0 else 0.0,
+            "inertia": inertia,
             "pieces": pieces,
         }
         return [Change("added mass", self.link, values)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import nullcontext
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import App, Parameter
@@ -22,6 +23,7 @@ from equipoise.cli.options import (
 from equipoise.cli.outputs import Outputs, Printed, check_new, sources_of, write_model
 from equipoise.cli.plan import Freed, plan_of, read_objective
 from equipoise.cli.progress import counted
+from equipoise.errors import UsageError
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced
@@ -48,7 +50,8 @@ def balance(
     ----------
     file
         Path of a model file, or the name of a bundled example.  Its table [balance] says what may
-        change and what is to become small; the options below take the place of it.
+        change and what is to become small; the options below take the place of it.  Without either,
+        remedies that can be built are tried.
     objective
         What is to become small: "shaking_force.y", "peak shaking_moment about D".  May be repeated.
     limit
@@ -57,7 +60,7 @@ def balance(
     out
         Write the balanced machine as a new model file.
     """
-    from equipoise.balancing import optimisation as balancing
+    from equipoise.balancing import advice, optimisation
 
     machine = linkage_of(file, speed)
     outputs.check(sources_of(machine, file), [out])
@@ -66,12 +69,25 @@ def balance(
     with naming(file):
         plan = plan_of(machine, freed, objective, limit)
         with counted("program") as progress:
-            found = balancing.balance(machine, plan, progress)
+            solve = partial(optimisation.balance, progress=progress)
+            asked = freed.any or objective or limit
+            found = solve(machine, plan) if asked else advice.advise(machine, solve)
+        if out is not None and not found.helps:
+            _refuse(found)
         outputs.write(found.columns)
         outputs.draw_result(found)
         if out is not None:  # after tables and pictures, which may fail
             _save(found, out)
         outputs.show(found)
+
+
+def _refuse(found: Balanced) -> None:
+    """Write no machine that is not better."""
+    from equipoise.balancing.told import nothing_told
+
+    if found.tried:
+        told = next(nothing_told(found)).removesuffix(".")
+        raise UsageError(f"--out: nothing is written: {told[:1].lower()}{told[1:]}")
 
 
 def _save(found: Balanced, out: str) -> None:

@@ -134,7 +134,7 @@ class Freed:
 
     def plan(self, machine: Machine) -> Balance:
         """The file's plan, with what is free in the place of what the file says."""
-        from equipoise.balancing.optimisation import pin_of
+        from equipoise.balancing.advice import pin_of
         from equipoise.mechanism.balance import AddedMass, Balance, CenterMove, Phases
         from equipoise.mechanism.checks import unknown
 
@@ -166,7 +166,7 @@ class Freed:
 
     def weight(self, machine: Machine, link: str) -> Weight:
         """A weight of the given shape; in a room as large as the link where nothing else holds."""
-        from equipoise.balancing.optimisation import reach_of
+        from equipoise.balancing.advice import reach_of
         from equipoise.mechanism.balance import MATERIALS, Weight
         from equipoise.mechanism.checks import unknown
 

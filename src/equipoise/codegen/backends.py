@@ -82,7 +82,7 @@ def _loop_of(text: str) -> tuple[Loop | None, ModuleType]:
     if engine() == "numpy":
         vars(module).update(_kernels_of(kernels), **NUMPY_FUNCTIONS)
         return None, module
-    vars(module).update(_compiled_kernels(), **compiled_functions())
+    vars(module).update(_compiled_kernels(), **compiled_functions(), empty=np.empty)
     return _compile(module), module
 
 
@@ -269,6 +269,10 @@ def run_numpy(
     out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array
 ) -> None:
     """Fill what a loop would gather, some designs at a time."""
+    if source.carried:
+        with np.errstate(all="ignore"):
+            march_numpy(out, source, state, table, grid)
+        return
     step = max(1, AT_A_TIME // grid.shape[1])
     with np.errstate(all="ignore"):
         for begin in range(0, len(table), step):
@@ -282,3 +286,29 @@ def run_numpy(
             shape = (parts.shape[1], grid.shape[1])
             for k, (signal, kind) in enumerate(source.gathered.columns):
                 out[some, k] = KINDS[kind].of(np.broadcast_to(values[signal], shape))
+
+
+def march_numpy(
+    out: Array, source: Source, state: Callable[..., Any], table: Array, grid: Array
+) -> None:
+    """The same where crank angles follow from each other: all designs go round together."""
+    columns = table.T
+    own = [
+        columns[one.column] + 1j * columns[one.column + 1] if one.vector else columns[one.column]
+        for one in source.slots
+    ]
+    carried = [np.full(len(table), one.start) for one in source.carried]
+    last = {one.next for one in source.carried}
+    signals = [one for one in source.gathered.signals if one not in last]
+    found: dict[int, list[Array]] = {}
+    for place, *rows in grid.T:
+        values = state(*rows, *own, *carried)
+        carried = values[len(signals) :]
+        if place >= 0:
+            found[int(place)] = [np.broadcast_to(v, len(table)) for v in values[: len(signals)]]
+    in_order = [found[k] for k in sorted(found)]
+    stacks = [np.stack(values, axis=1) for values in zip(*in_order, strict=True)]
+    values = dict(zip(signals, stacks, strict=True))
+    ends = {one.next: value for one, value in zip(source.carried, carried, strict=True)}
+    for k, (signal, kind) in enumerate(source.gathered.columns):
+        out[:, k] = KINDS[kind].of(values[signal]) if signal in values else ends[signal]

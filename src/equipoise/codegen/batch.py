@@ -29,6 +29,7 @@ from equipoise.codegen.figures import (
     Figure,
     Gathered,
 )
+from equipoise.codegen.loops import STEPS, March
 from equipoise.codegen.source import Source
 from equipoise.errors import UsageError
 from equipoise.mechanism import cycle
@@ -155,7 +156,6 @@ class Batch:
         if angles is not None and angles < 1:
             raise UsageError(f"got {angles} crank angles; give at least 1")
         self.base = assemble(machine)
-        self.turns = self.base.cycle.turns if machine.gears else cycle.turns_of_loads(machine)
         self.paths, self.wanted = tuple(paths), tuple(wanted)
         self.angles, self.tolerance = angles, tolerance
         self.threads = threads or processors()
@@ -164,7 +164,10 @@ class Batch:
         self.least = STEP / tolerance if has_steps else FIRST
         self.source = emit(self.base, Gathered.of(self.wanted))
         self.gathered = self.source.gathered
-        windings = self.base.cycle.windings if machine.gears else {}
+        self.march = March.of(self.source, self.base)
+        rounds = machine.gears or self.march
+        self.turns = self.base.cycle.turns if rounds else cycle.turns_of_loads(machine)
+        windings = self.base.cycle.windings if rounds else {}
         fastest = max((abs(turns) for turns in windings.values()), default=1) / self.turns
         self.slope = SLOPE * max(1.0, fastest)
 
@@ -208,11 +211,19 @@ class Batch:
 
     def _at(self, table: Array, theta: Array) -> Array:
         """What is gathered (P, R) at crank angles (N,); places are angles, not numbers."""
-        found = self._run(table, grid_of(self.source, theta))
+        found = self._run(table, self._grid(theta))
+        if self.march:
+            for step in STEPS[1:]:
+                loose = self.march.unsettled(found)
+                if loose.size:
+                    found[loose] = self._run(table[loose], self.march.grid(theta, step))
         for k, (_, kind) in enumerate(self.gathered.columns):
             if kind.endswith("_at"):
                 found[:, k] = theta[found[:, k].astype(int)]
         return found
+
+    def _grid(self, theta: Array) -> Array:
+        return self.march.grid(theta) if self.march else grid_of(self.source, theta)
 
     def _run(self, table: Array, grid: Array) -> Array:
         """Run the loop, on several threads where that is worth it; it lets them run beside."""
@@ -257,8 +268,14 @@ class Batch:
         weakest = found[:, self.source.weakest].copy()
         strongest = found[:, self.source.strongest].copy()
         self._look_closer(table, weakest, strongest, count)
-        own = slice(None, len(set(self.source.watched)))
-        for low, high in zip(weakest.T[own][::-1], strongest.T[own][::-1], strict=True):
+        dyads = [*zip(weakest.T, strongest.T, strict=True)][: len(set(self.source.watched))]
+        groups = [group.margin for group in self.base.groups]
+        for margin in reversed(groups):
+            if margin is None:
+                if self.march:
+                    self.march.reasons(reason, found)
+                continue
+            low, high = dyads.pop()
             reason[low < cycle.CHANGE_POINT] = CHANGE_POINT
             reason[low < -cycle.CHANGE_POINT] = NO_FULL_TURN
             reason[high <= 0] = NO_ASSEMBLY
@@ -274,7 +291,7 @@ class Batch:
             count *= DENSER
             if not some.size or count > MOST_LOOKED_AT:
                 break
-            found = self._run(table[some], grid_of(self.source, all_angles(count, self.turns)))
+            found = self._run(table[some], self._grid(all_angles(count, self.turns)))
             weakest[some] = found[:, self.source.weakest]
             strongest[some] = found[:, self.source.strongest]
         for k in some:
@@ -291,8 +308,7 @@ class Batch:
         for _ in range(ROUNDS):
             edges = np.linspace(low, high, PARTS + 1)
             values = [
-                sign
-                * self._run(row, grid_of(self.source, np.linspace(*ends, PARTS + 1)))[0, column]
+                sign * self._run(row, self._grid(np.linspace(*ends, PARTS + 1)))[0, column]
                 for ends in pairwise(edges)
             ]
             k = int(np.argmin(values))

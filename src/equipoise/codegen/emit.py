@@ -10,14 +10,15 @@ from collections.abc import Sequence
 
 from equipoise.codegen.figures import Figure, Gathered
 from equipoise.codegen.lines import Writer, write_demands, write_joints, write_motion
+from equipoise.codegen.loops import can_write
 from equipoise.codegen.source import Source, source_of
 from equipoise.errors import MassError, UsageError
 from equipoise.mechanism.checks import unknown
 from equipoise.mechanism.family import can_vary
 from equipoise.mechanism.linkage import Linkage, assemble
 from equipoise.mechanism.model import Machine
+from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.outputs import DECLARED, declared
-from equipoise.mechanism.steps import Call, Rotation, RunningAngle
 
 _LOOKED_UP = re.compile(r"\{([^}:]+)(:name)?\}")
 """Values in the expression of an output: of the machine, or of the member of a family."""
@@ -108,10 +109,12 @@ def _in_time(writer: Writer, values: Sequence[str], times: int) -> str:
 
 
 def can_emit(linkage: Linkage) -> bool:
-    """Whether the steps of a linkage can be written out: no group of loops, no soil."""
+    """Whether the steps of a linkage can be written out: no soil, no gears beside loops."""
     machine = linkage.machine
-    soil = machine.planting is not None and machine.planting.soil is not None
-    return not soil and all(isinstance(s, Call | RunningAngle | Rotation) for s in linkage.motion)
+    if machine.planting is not None and machine.planting.soil is not None:
+        return False
+    loops = [step for step in linkage.motion if isinstance(step, LoopGroup)]
+    return all(map(can_write, loops)) and not (loops and machine.gears)
 
 
 def emit(linkage: Linkage, gathered: Gathered) -> Source:
@@ -123,13 +126,15 @@ def emit(linkage: Linkage, gathered: Gathered) -> Source:
     MassError : it needs masses, and the machine lacks some.
     """
     if not can_emit(linkage):
-        raise UsageError("groups of loops, and fingers in soil, cannot be computed in a loop")
+        raise UsageError("large groups of loops, and fingers in soil, cannot be computed in a loop")
     writer = Writer(linkage)
     write_motion(writer)
     wanted = [one for one, _ in filter(None, map(declared, gathered.signals))]
     if any(one.needs == "masses" for one in wanted):
         write_demands(writer)
     if any("{joint " in (one.loop or "") for one in wanted):
+        if any(isinstance(step, LoopGroup) for step in linkage.motion):
+            raise UsageError("joint forces of groups of loops cannot be computed in a loop")
         write_joints(writer)
     signals = [writer.sheet.put(f"signal {s}", expression(writer, s)) for s in gathered.signals]
     return source_of(writer.sheet, signals, writer.numbers(), gathered)

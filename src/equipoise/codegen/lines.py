@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.codegen.loops import write_loops
 from equipoise.codegen.source import Read, Sheet
 from equipoise.errors import MassError
 from equipoise.mechanism import kernels
@@ -19,6 +20,7 @@ from equipoise.mechanism.dynamics import inertia_about, massless
 from equipoise.mechanism.linkage import Linkage
 from equipoise.mechanism.loads import load_at
 from equipoise.mechanism.model import FRAME, Load, Spring
+from equipoise.mechanism.newton import LoopGroup
 from equipoise.mechanism.steps import (
     Call,
     Rotation,
@@ -131,6 +133,9 @@ def _write_step(writer: Writer, step: Step, steps: str, number: int) -> None:
             _write_uniform_gear(writer, step)
         else:
             _write_call(writer, step, steps, number)
+    elif isinstance(step, LoopGroup):
+        write_loops(sheet, writer.linkage, number)
+        writer.points.update(step.anchors)
 
 
 def _write_running_angle(writer: Writer, link: str) -> None:

@@ -3,6 +3,10 @@
 ``state`` is the steps, one line each, calling the kernels; it holds no formula of its own.
 ``loop`` calls it for every design and crank angle and gathers what the figures need.  Compiled,
 both become one loop without calls.  NumPy runs ``state`` alone, on arrays.
+
+Where a group of loops goes from one crank angle to the next, ``state`` takes what the angle before
+carries on, and ``loop`` does some designs side by side, so that the processor can still handle
+several at once: `codegen.loops`.
 """
 
 from __future__ import annotations
@@ -30,6 +34,15 @@ is told; this takes a branch, which costs the loop its speed."""
 RESERVED = {name for name, found in vars(kernels).items() if inspect.isfunction(found)}
 RESERVED |= {*keyword.kwlist, "smallest", "greatest", "angle_of", "rotation", "complex", "range"}
 RESERVED |= {"abs", "state", "loop", "table", "grid", "out", "i", "k"}
+LANES = 32
+"""Designs that a march does side by side: their values fit into the nearest cache."""
+MARCH = ("step", "marked", "steady")
+"""What `state` is told of a crank angle in a march: how far it is from the one before; 1 where the
+file tells the pose, else 0; 1 from there on, 0 before."""
+WATCHED = ("loose", "astray", "open")
+"""Values that are carried on, whose last tells of a design whether Newton's method left its branch;
+did not arrive from the base, or too far from where the file tells; came back elsewhere."""
+RESERVED |= {*MARCH, "work", "lane", "begin", "place", "empty", "min"}
 
 
 @dataclass(frozen=True)
@@ -55,6 +68,18 @@ class Row:
 
 
 @dataclass(frozen=True)
+class Carried:
+    """A value that each crank angle has from the one before.
+
+    name, next : identifiers of what `state` takes and returns.  start : of every design.
+    """
+
+    name: str
+    next: str
+    start: float | complex
+
+
+@dataclass(frozen=True)
 class Source:
     """A loop as source, with what has to be handed to it.
 
@@ -65,6 +90,8 @@ class Source:
     gathered : columns of what it fills: those that are wanted, then the others below.
     weakest, strongest : columns of the smallest and the largest value of each watched number.
     nearest : columns of how near the running links stay to the base's: smallest cosine between.
+    carried : from crank angle to crank angle; none where each stands alone.
+    ends : for each of `WATCHED` the columns of its last values.
     """
 
     text: str
@@ -77,6 +104,8 @@ class Source:
     weakest: slice
     strongest: slice
     nearest: slice
+    carried: tuple[Carried, ...]
+    ends: Mapping[str, list[int]]
 
 
 class Sheet:
@@ -88,6 +117,7 @@ class Sheet:
         self.width = 0
         self.rows: dict[str, Row] = {}
         self.running: dict[str, str] = {}
+        self.carried: dict[str, float | complex] = {}
         self._names: dict[str, str] = {}
 
     def name(self, value: str) -> str:
@@ -116,6 +146,11 @@ class Sheet:
         self.rows.setdefault(found, Row(found, values))
         return found
 
+    def carry(self, value: str, start: float | complex) -> str:
+        """A value of the crank angle before; that of this one is put as ``next`` of it."""
+        self.carried[value] = start
+        return self.name(value)
+
     def put(self, value: str, expression: str) -> str:
         """Write a line that gives a value of the state."""
         found = self.name(value)
@@ -139,26 +174,35 @@ def source_of(
     """
     watched = [f"number {k}" for k in range(len(numbers))]
     cosines = [f"cosine {k}" for k in range(len(sheet.running))]
+    carried = tuple(
+        Carried(sheet.name(value), sheet.name(f"next {value}"), start)
+        for value, start in sheet.carried.items()
+    )
+    last = {key: [v for v in sheet.carried if v.startswith(f"{key} ")] for key in WATCHED}
     columns = [
         wanted.columns,
         [(number, "lowest") for number in watched],
         [(number, "highest") for number in watched],
         [(cosine, "lowest") for cosine in cosines],
+        [(sheet.name(f"next {value}"), "highest") for value in chain(*last.values())],
     ]
     gathered = Gathered(tuple(chain(*columns)))
     ends = pairwise(accumulate(map(len, columns), initial=0))
-    _, weakest, strongest, nearest = (slice(*both) for both in ends)
-    arguments = ", ".join([*sheet.rows, *sheet.slots])
+    _, weakest, strongest, nearest, _ = (slice(*both) for both in ends)
+    march = MARCH if carried else ()
+    arguments = ", ".join([*march, *sheet.rows, *sheet.slots, *(one.name for one in carried)])
+    results = [*signals, *numbers, *sheet.running.values(), *(one.next for one in carried)]
+    loop = _march(sheet, gathered, arguments, carried) if carried else None
     lines = [
         '"""Written out by equipoise.codegen from the steps of a linkage."""',
         "",
         "",
         f"def state({arguments}):",
         *(f"    {line}" for line in sheet.lines),
-        f"    return {', '.join([*signals, *numbers, *sheet.running.values()])},",
+        f"    return {', '.join(results)},",
         "",
         "",
-        *_loop(sheet, gathered, arguments),
+        *(loop or _loop(sheet, gathered, arguments)),
         "",
     ]
     return Source(
@@ -172,6 +216,11 @@ def source_of(
         weakest,
         strongest,
         nearest,
+        carried,
+        {
+            key: [gathered.columns.index((sheet.name(f"next {v}"), "highest")) for v in values]
+            for key, values in last.items()
+        },
     )
 
 
@@ -197,13 +246,78 @@ def _read(slot: Slot) -> str:
     return f"complex({first}, table[i, {slot.column + 1}])" if slot.vector else first
 
 
-def _gathering(columns: Mapping[tuple[str, str], str], signals: Mapping[str, str]) -> Iterator[str]:
-    """Lines that take in the signals' values."""
+def _march(
+    sheet: Sheet, gathered: Gathered, arguments: str, carried: Sequence[Carried]
+) -> list[str]:
+    """The loop where crank angles follow from each other: some designs go round side by side.
+
+    What they have of their own lies in `work`, each value of all of them in a row.
+    """
+    ends = {one.next: one.name for one in carried}
+    signals = {s: f"x{k}" for k, s in enumerate(gathered.signals) if s not in ends}
+    columns = {c: f"g{k}" for k, c in enumerate(gathered.columns) if c[0] in signals}
+    vectors = {slot.name: slot.vector for slot in sheet.slots.values()}
+    vectors |= {one.name: isinstance(one.start, complex) for one in carried}
+    vectors |= dict.fromkeys([*signals.values(), *columns.values()], False)
+    offsets = dict(zip(vectors, accumulate(1 + v for v in vectors.values()), strict=True))
+    width = max(offsets.values())
+    at = {name: f"work[{(end - 1) * LANES} + lane]" for name, end in offsets.items()}
+    before = {name: f"work[{(end - 2) * LANES} + lane]" for name, end in offsets.items()}
+
+    def get(name: str) -> str:
+        return f"{name} = " + (
+            f"complex({before[name]}, {at[name]})" if vectors[name] else at[name]
+        )
+
+    def keep(name: str, value: str) -> list[str]:
+        if vectors[name]:
+            return [f"{before[name]} = {value}.real", f"{at[name]} = {value}.imag"]
+        return [f"{at[name]} = {value}"]
+
+    starts = [line for one in carried for line in keep(one.name, repr(one.start))]
+    starts += [f"{at[name]} = {KINDS[kind].start}" for (_, kind), name in columns.items()]
+    taken = [
+        name for name, v in vectors.items() if name not in {*signals.values(), *columns.values()}
+    ]
+    found = [*signals.values(), *ends]
+    kept = [line for x in signals.values() for line in keep(x, x)]
+    kept += [line for key, name in ends.items() for line in keep(name, key)]
+    results = [columns[c] if c in columns else ends[c[0]] for c in gathered.columns]
+    return [
+        "def loop(table, grid, out):",
+        f"    work = empty({width * LANES})",
+        f"    for begin in range(0, table.shape[0], {LANES}):",
+        f"        for lane in range({LANES}):",
+        "            i = min(begin + lane, table.shape[0] - 1)",
+        f"            for k in range({sheet.width}):",
+        f"                work[k * {LANES} + lane] = table[i, k]",
+        *(f"            {line}" for line in starts),
+        "        for k in range(grid.shape[1]):",
+        "            place = grid[0, k]",
+        *(f"            {name} = grid[{r}, k]" for r, name in enumerate([*MARCH, *sheet.rows], 1)),
+        f"            for lane in range({LANES}):",
+        *(f"                {get(name)}" for name in taken),
+        f"                {', '.join(found)}, = state({arguments})",
+        *(f"                {line}" for line in kept),
+        "            if place >= 0.0:",
+        f"                for lane in range({LANES}):",
+        *(f"                    {get(name)}" for name in [*signals.values(), *columns.values()]),
+        *(f"                    {line}" for line in _gathering(columns, signals, "place")),
+        *(f"                    {at[name]} = {name}" for name in columns.values()),
+        f"        for lane in range(min({LANES}, table.shape[0] - begin)):",
+        *(f"            out[begin + lane, {k}] = {at[name]}" for k, name in enumerate(results)),
+    ]
+
+
+def _gathering(
+    columns: Mapping[tuple[str, str], str], signals: Mapping[str, str], number: str = "k"
+) -> Iterator[str]:
+    """Lines that take in the signals' values at the crank angle of this number."""
     for (signal, kind), name in columns.items():
         x = signals[signal]
         place = columns.get((signal, f"{kind}_at"))
         if place is not None:
             yield f"if {PLACE[kind].format(g=name, x=x)} {ROUNDING!r} * abs({x}):"
-            yield f"    {place} = k"
+            yield f"    {place} = {number}"
         if line := KINDS[kind].add:
             yield line.format(g=name, x=x)

@@ -31,7 +31,6 @@ from equipoise.keys.declaring import declared as declared
 from equipoise.keys.declaring import inside as inside
 from equipoise.keys.declaring import key as key
 from equipoise.keys.declaring import keys_of as keys_of
-from equipoise.keys.declaring import quantities_in as quantities_in
 from equipoise.keys.declaring import quantities_of as quantities_of
 from equipoise.keys.declaring import wrong_values as wrong_values
 from equipoise.keys.kinds import MOST_WHOLE as MOST_WHOLE

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
+from equipoise.guarding import keyworded
 from equipoise.keys.kinds import (
     PLANES,
     Kind,
@@ -136,9 +137,8 @@ def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, *
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
 def declared(cls: Class) -> Class:
     """Make a frozen dataclass of a class with keys."""
-    made: Any = dataclass(frozen=True)(cls)
-    result: Class = made
-    return result
+    made: Class = keyworded(dataclass(frozen=True)(cls))
+    return made
 
 
 def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:
@@ -189,8 +189,11 @@ class Frozen(Record):
         return {one.name: item for one, item in given if one.required or item != one.default}
 
     def following(self, changes: dict[str, Any]) -> dict[str, Any]:
-        """Changes of fields, with those of other fields that follow from them."""
+        """Changes of fields, with what they do to other fields that follow from them."""
         return changes
+
+    def follow(self) -> None:
+        """Set what follows from other fields, of which columns may be some; nothing is checked."""
 
     def altered(self, **changes: Any) -> Self:
         """The same with other fields, and with what follows from them."""
@@ -307,14 +310,9 @@ def _leaves(where: str, value: Any, of: Key | None) -> Iterator[tuple[str, Any, 
 # -- by path ---------------------------------------------------------------------------------------
 
 
-def quantities_of(value: Frozen) -> Mapping[str, Key]:
-    """Keys of an object that are one quantity each, by name."""
-    return quantities_in(type(value))
-
-
-def quantities_in(of: type[Frozen]) -> Mapping[str, Key]:
-    """Keys of a class that are one quantity each, by name."""
-    found = keys_of(of).items()
+def quantities_of(value: Frozen | type[Frozen]) -> Mapping[str, Key]:
+    """Keys of an object or a class that are one quantity each, by name."""
+    found = keys_of(value if isinstance(value, type) else type(value)).items()
     return {name: one for name, one in found if isinstance(one.kind, Quantity) and one.field}
 
 

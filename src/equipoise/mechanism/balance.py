@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from equipoise.errors import ModelError
 from equipoise.keys import Frozen, Table, Tables, Text, declared, key
+from equipoise.mechanism.bodies import MATERIALS, material_of
 from equipoise.mechanism.checks import LONGEST_NAME, Bodies, numbered, too_many, wrong_range
 from equipoise.mechanism.counterweights import (
     BalanceShafts,
@@ -21,7 +22,6 @@ from equipoise.mechanism.counterweights import (
 )
 from equipoise.mechanism.declaring import Measure
 from equipoise.mechanism.force_elements import wrong_ends
-from equipoise.mechanism.materials import MATERIALS, material_of
 from equipoise.mechanism.objectives import MEASURES, Limit, Objective, wrong_limit, wrong_objective
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (

@@ -11,10 +11,13 @@ from itertools import combinations
 from math import pi
 from typing import Any, ClassVar, Literal
 
+from equipoise.errors import ModelError
+from equipoise.i18n import to_say
 from equipoise.keys import (
     NO_INERTIA,
     Conditions,
     Frozen,
+    Key,
     Keys,
     Listing,
     Point,
@@ -29,7 +32,16 @@ from equipoise.keys import (
     not_both,
 )
 from equipoise.mechanism.checks import Vector
-from equipoise.mechanism.materials import material_key, with_density, with_material
+
+MATERIALS = {
+    to_say("steel"): 7850.0,
+    to_say("cast iron"): 7200.0,
+    to_say("brass"): 8500.0,
+    to_say("lead"): 11340.0,
+    to_say("tungsten alloy"): 17500.0,
+    to_say("aluminium"): 2700.0,
+}
+"""Densities, kg/m3."""
 
 Form = Literal["bar", "plate", "disc", "ring", "point"]
 Spot = str | Vector
@@ -56,6 +68,43 @@ TAKES: Mapping[str, tuple[str, ...]] = {
 """Keys that each may have."""
 MASSES = ("material", "density", "mass", "mass_per_length")
 """Keys of which one tells how heavy a body is."""
+
+
+def material_of(density: float) -> str:
+    """Name of the material of a density (kg/m3), or nothing where there is none."""
+    return next((name for name, value in MATERIALS.items() if value == density), "")
+
+
+def with_density(given: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """The values of a table with the density (kg/m3) of what it gives by name or by number."""
+    material = given.pop(f"{prefix}material", None)
+    if material is None:
+        return given
+    if f"{prefix}density" in given:
+        raise ModelError("", f"give either {prefix}material or {prefix}density")
+    if material not in MATERIALS:
+        shown = material if len(material) <= 60 else f"{material[:57]}..."
+        raise ModelError(
+            f"{prefix}material",
+            f"no material is called {shown!r}; there are {', '.join(map(repr, MATERIALS))}, or "
+            f"give {prefix}density",
+        )
+    return {**given, f"{prefix}density": MATERIALS[material]}
+
+
+def with_material(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """A table with the name of a material instead of its density, where it has one."""
+    if name := material_of(table.get(f"{prefix}density", 0.0)):
+        del table[f"{prefix}density"]
+        table[f"{prefix}material"] = name
+    return table
+
+
+def material_key(prefix: str, text: str) -> dict[str, Key]:
+    """The key of a material beside that of a density."""
+    kind = Text(suggested=(*MATERIALS,))
+    name = f"{prefix}material"
+    return {name: Key(name, kind, text, default=None, example="steel")}
 
 
 @declared
@@ -178,7 +227,7 @@ def place_of(spot: Any, points: Points) -> Any:
 
 def inertia_of(body: Body, points: Points) -> tuple[Any, Any, Any]:
     """Mass (kg), centre (complex, m) and moment of inertia about it (kg m2) of a body."""
-    amount, center, second = _gross(body, points)
+    amount, center, second = gross(body, points)
     parts = [(amount, center, second)]
     for hole in body.holes:
         area, polar = _round(hole.radius, 0.0, 1 / (1.0 if body.width is None else body.width))
@@ -204,7 +253,7 @@ def weighed(bodies: Sequence[Body], points: Points) -> dict[str, Any]:
     return {"mass": mass, "center_of_mass": (center.real, center.imag), "inertia": inertia}
 
 
-def _gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
+def gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
     """Amount, centre and second moment of a body without its holes."""
     if body.shape == "bar":
         first, last = (place_of(end, points) for end in body.between)
@@ -221,7 +270,8 @@ def _gross(body: Body, points: Points) -> tuple[Any, Any, Any]:
 
 def _round(outer: Any, inner: Any, scale: Any = 1.0) -> tuple[Any, Any]:
     """Area and polar second moment of a ring, times a scale."""
-    return pi * (outer**2 - inner**2) * scale, pi / 2 * (outer**4 - inner**4) * scale
+    area = pi * (outer - inner) * (outer + inner) * scale
+    return area, area * (outer**2 + inner**2) / 2
 
 
 def polygon(corners: Sequence[complex]) -> tuple[float, complex, float]:
@@ -255,14 +305,14 @@ def _section(body: Body) -> tuple[Any, Any]:
     """
     if body.outer_diameter is not None:
         outer, inner = body.outer_diameter, body.inner_diameter
-        return pi / 4 * (outer**2 - inner**2), (outer**2 + inner**2) / 16
+        return pi / 4 * (outer - inner) * (outer + inner), (outer**2 + inner**2) / 16
     width: Any = 0.0 if body.width is None else body.width
     thickness: Any = 0.0 if body.thickness is None else body.thickness
     if body.wall is None:
         return width * thickness, width**2 / 12
-    inside, through = width - 2 * body.wall, thickness - 2 * body.wall
-    area = width * thickness - inside * through
-    return area, (width**3 * thickness - inside**3 * through) / (12 * area)
+    inside = width - 2 * body.wall  # thin walls lose no digits so
+    squares = thickness * (width**2 + width * inside + inside**2) + inside**3
+    return 2 * body.wall * (thickness + inside), squares / (12 * (thickness + inside))
 
 
 def _per_amount(body: Body) -> Any:
@@ -271,52 +321,3 @@ def _per_amount(body: Body) -> Any:
         return body.mass_per_length
     measure: Any = _section(body)[0] if body.shape == "bar" else body.thickness
     return body.density * measure
-
-
-# -- from the side ---------------------------------------------------------------------------------
-
-Outline = tuple[list[complex], float]
-"""Corners, complex, m, and no radius; or a centre, and the radius of a circle, which is below 0
-where the body lies outside of it."""
-
-
-def outlines(body: Body, points: Points) -> list[Outline]:
-    """Edges of a body as it is seen from the side, without its holes; none of a point and of a bar
-    of which no section is given.
-    """
-    if body.shape == "plate":
-        return [([place_of(corner, points) for corner in body.corners], 0.0)]
-    if body.shape == "bar":
-        half = (body.width or body.outer_diameter or 0.0) / 2
-        first, last = (place_of(end, points) for end in body.between)
-        way = (last - first) / abs(last - first)
-        aside, beyond = 1j * half * way, body.overhang * way
-        one, other = first - beyond, last + beyond
-        sides = [one - aside, other - aside, other + aside, one + aside]
-        return [(sides, 0.0)] if half else []
-    if body.radius is None:
-        return []
-    center = [place_of(body.at, points)]
-    return [(center, body.radius)] + [(center, -r) for r in (body.inner_radius,) if r]
-
-
-MOST_AT_ONCE = 12
-"""Corners of a plate that are told of many designs at once not to lie crosswise."""
-
-
-def is_column(number: Any) -> bool:
-    """Whether it stands for the numbers of many designs."""
-    return bool(getattr(number, "ndim", 0))
-
-
-def outlined_by_columns(body: Body, points: Points) -> bool:
-    """Whether its holes, or the shape of a plate with many corners, depend on columns, of which
-    nobody tells whether they fit.
-    """
-    many = len(body.corners) > MOST_AT_ONCE
-    numbers = [place_of(c, points) for c in body.corners if body.holes or many]
-    if body.holes:
-        own = (*body.between, body.at, *(hole.at for hole in body.holes))
-        numbers += [place_of(spot, points) for spot in own if spot is not None]
-        numbers += [body.overhang, body.width, body.radius, body.inner_radius]
-    return any(map(is_column, numbers))

@@ -1,4 +1,4 @@
-"""What is wrong with the bodies of a link: their keys, numbers, corners and holes."""
+"""Outlines of bodies, and what is wrong with their keys, numbers, corners and holes."""
 
 from __future__ import annotations
 
@@ -15,11 +15,9 @@ from equipoise.mechanism.bodies import (
     NEEDS,
     TAKES,
     Body,
-    Outline,
     Points,
     edges_of,
-    is_column,
-    outlines,
+    gross,
     place_of,
 )
 from equipoise.mechanism.checks import numbered, too_many, unknown
@@ -28,6 +26,58 @@ MOST = {"bodies": 100, "corners": 200, "holes": 200}
 """Far beyond any link."""
 ROUNDING = 1e-9
 """Over a radius: a hole may come so far over an edge, and a square below zero."""
+
+
+# -- from the side ---------------------------------------------------------------------------------
+
+Outline = tuple[list[complex], float]
+"""Corners, complex, m, and no radius; or a centre, and the radius of a circle, which is below 0
+where the body lies outside of it."""
+
+
+def outlines(body: Body, points: Points) -> list[Outline]:
+    """Edges of a body as it is seen from the side, without its holes; none of a point and of a bar
+    of which no section is given.
+    """
+    if body.shape == "plate":
+        return [([place_of(corner, points) for corner in body.corners], 0.0)]
+    if body.shape == "bar":
+        half = (body.width or body.outer_diameter or 0.0) / 2
+        first, last = (place_of(end, points) for end in body.between)
+        way = (last - first) / abs(last - first)
+        aside, beyond = 1j * half * way, body.overhang * way
+        one, other = first - beyond, last + beyond
+        sides = [one - aside, other - aside, other + aside, one + aside]
+        return [(sides, 0.0)] if half else []
+    if body.radius is None:
+        return []
+    center = [place_of(body.at, points)]
+    return [(center, body.radius)] + [(center, -r) for r in (body.inner_radius,) if r]
+
+
+MOST_AT_ONCE = 12
+"""Corners of a plate that are told of many designs at once not to lie crosswise."""
+
+
+def is_column(number: Any) -> bool:
+    """Whether it stands for the numbers of many designs."""
+    return bool(getattr(number, "ndim", 0))
+
+
+def outlined_by_columns(body: Body, points: Points) -> bool:
+    """Whether its holes, or the shape of a plate with many corners, depend on columns, of which
+    nobody tells whether they fit.
+    """
+    many = len(body.corners) > MOST_AT_ONCE
+    numbers = [place_of(c, points) for c in body.corners if body.holes or many]
+    if body.holes:
+        own = (*body.between, body.at, *(hole.at for hole in body.holes))
+        numbers += [place_of(spot, points) for spot in own if spot is not None]
+        numbers += [body.overhang, body.width, body.radius, body.inner_radius]
+    return any(map(is_column, numbers))
+
+
+# -- checks ----------------------------------------------------------------------------------------
 
 
 def wrong_bodies(bodies: Sequence[Body], points: Points) -> Iterator[ModelError]:
@@ -186,6 +236,9 @@ def _wrong_holes(body: Body, points: Points) -> Wrong:
     for (i, one), (j, other) in combinations(enumerate(holes, 1), 2):
         if abs(one[0] - other[0]) < (one[1] + other[1]) * (1 - ROUNDING):
             yield f"holes[{j}]", f"cuts into holes[{i}]; set them apart"
+    area = gross(body, points)[0] * (1.0 if body.width is None else body.width)
+    if sum(pi * radius**2 for _, radius in holes) >= area * (1 - ROUNDING):
+        yield "holes", f"leave nothing of the {body.shape}; make them smaller"
 
 
 def _fits(center: complex, radius: float, outline: Outline) -> bool:

@@ -26,8 +26,8 @@ from equipoise.keys import (
     needs,
     not_both,
 )
+from equipoise.mechanism.bodies import material_key, with_density, with_material
 from equipoise.mechanism.checks import numbered, unknown, wrong_range
-from equipoise.mechanism.materials import material_key, with_density, with_material
 from equipoise.mechanism.parts import Mechanism
 from equipoise.mechanism.weights import (
     WEIGHT,

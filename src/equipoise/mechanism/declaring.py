@@ -33,16 +33,16 @@ KINEMATIC = "{what} is a part of the motion, which masses do not change"
 ONLY_READ = "{what} is only read; it is not known to be linear in the masses"
 """Why balancing cannot take an output."""
 GROUPS = {
-    "links": "links",
-    "points": "points",
-    "sliders": "sliders",
-    "transmission": "transmission angles",
-    "centers": "instant centres",
-    "forces": "frame and drive",
-    "joints": "joints",
-    "gears": "gears",
-    "rows": "all rows together",
-    "gauges": "gauges",
+    "links": to_say("links"),
+    "points": to_say("points"),
+    "sliders": to_say("sliders"),
+    "transmission": to_say("transmission angles"),
+    "centers": to_say("instant centres"),
+    "forces": to_say("frame and drive"),
+    "joints": to_say("joints"),
+    "gears": to_say("gears"),
+    "rows": to_say("all rows together"),
+    "gauges": to_say("gauges"),
 }
 """Groups of outputs and their headings, in the order in which they are offered."""
 

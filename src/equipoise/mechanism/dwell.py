@@ -14,6 +14,7 @@ RIVALS = 4
 """Dwells between the samples that are looked at closely: the longest by samples may not be it."""
 ZONE, INNER, ROUNDS = 65, 513, 5
 """Crank angles about each end and between both, and how often the ends are looked at closer."""
+DIRECTIONS = 64
 ALIKE = 1e-5
 """rad: dwells that differ by less are equal, and the first in the cycle is told."""
 
@@ -69,9 +70,10 @@ class Path:
 
 def longest_dwell(path: Path, tolerance: float) -> Dwell:
     """The longest part of a cycle in which no two places are further apart than a tolerance."""
-    count = len(path.place)
+    if _extent(path.place) <= tolerance:
+        return Dwell(tolerance, path.period, 0.0)
     starts, lengths = _sampled(path.place, tolerance)
-    if np.max(lengths) >= count - 1:
+    if np.max(lengths) >= len(path.place) - 1:
         return Dwell(tolerance, path.period, 0.0)
     found: list[tuple[float, float]] = []
     for k in np.argsort(-lengths, kind="stable"):
@@ -84,6 +86,16 @@ def longest_dwell(path: Path, tolerance: float) -> Dwell:
     longest = max(angle for _, angle in ends)
     begin, angle = next((a, b) for a, b in ends if b >= longest - ALIKE)
     return Dwell(tolerance, angle, begin)
+
+
+def _extent(place: Array) -> float:
+    """Distance of two places that are as far apart as any, but for a thousandth of it.
+
+    It is one of those that lie farthest in some direction.
+    """
+    ways = np.exp(1j * np.arange(DIRECTIONS) * (2 * pi / DIRECTIONS))
+    outer = place[[int(np.argmax((place * way).real)) for way in ways]]
+    return float(np.max(np.abs(outer[:, None] - outer)))
 
 
 def _apart(one: float, other: float, period: float) -> float:
@@ -103,11 +115,20 @@ def _sampled(place: Array, tolerance: float) -> tuple[Array, Array]:
         far = np.abs(place[near] - place[near - back]) > tolerance
         reach[near[far]] = back
         near = near[~far]
+        if back & (back - 1) == 0:  # now and then: what others hold back need not look further
+            near = near[back < _held_back(reach)[near]]
         if not near.size:
             break
+    lengths = _held_back(reach) - 1
+    return (np.arange(count) - lengths) % count, lengths
+
+
+def _held_back(reach: Array) -> Array:
+    """Samples (N,) from each back to the last that is too far from it or one between."""
+    count = len(reach)
     ends = np.arange(3 * count)  # two cycles before, so that what holds there is known
-    last = np.maximum.accumulate(ends - np.tile(reach, 3))[2 * count :]
-    return (last + 1) % count, ends[2 * count :] - last - 1
+    last = np.maximum.accumulate(ends - np.tile(reach, 3))
+    return np.asarray((ends - last)[2 * count :])
 
 
 def _refined(path: Path, low: float, high: float, tolerance: float) -> tuple[float, float]:

@@ -22,9 +22,10 @@ from typing import Any, TypeVar
 import numpy as np
 
 from equipoise.errors import UsageError
-from equipoise.keys import Frozen, changed, quantities_in
+from equipoise.keys import Frozen, changed, quantities_of
 from equipoise.mechanism import kernels
-from equipoise.mechanism.bodies import Body, outlined_by_columns
+from equipoise.mechanism.bodies import Body
+from equipoise.mechanism.body_checks import outlined_by_columns
 from equipoise.mechanism.linkage import Linkage, ordered
 from equipoise.mechanism.model import FRAME, Machine, Vector
 from equipoise.mechanism.steps import Array, Call, State, Step, p, planar, run, u
@@ -137,7 +138,7 @@ HOLDERS = {
     r"(links)\.(.+?)\.(points)\.(.+)": PAIR,
     r"(links)\.(.+)\.(center_of_mass)": PAIR,
     r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]\.(at)": PAIR,
-    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_in(Body)},
+    r"(links)\.(.+)\.(bodies)\[([1-9]\d*)\]": {*quantities_of(Body)},
     r"(links)\.(.+)\.(sides)": None,
     r"(links)\.(.+)": {"mass", "inertia", "length"},
     r"(sliders)\[([1-9]\d*)\]": {"direction", "angle"},
@@ -227,6 +228,8 @@ def _with(value: Value, **changes: Any) -> Value:
     result = object.__new__(type(value))
     kept = {key: item for key, item in vars(value).items() if not key.startswith("_")}
     result.__dict__.update(kept, **changes)
+    if isinstance(result, Frozen):
+        result.follow()
     return result
 
 

@@ -151,8 +151,8 @@ def ordered(
 
     drive = machine.drive.link
     pivot = drive_pivot(joints, drive)
-    builder = Builder(machine, points=set(machine.frame), running={FRAME, drive})
-    builder.now.update(start or {})
+    known = {FRAME, drive}
+    builder = Builder(machine, points=set(machine.frame), running=known, told=start or {})
     builder.add({FRAME: pivot, drive: pivot})
     unknown = [link for link in machine.links if link != drive]
     groups: list[Group] = []

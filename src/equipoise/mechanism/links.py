@@ -97,25 +97,20 @@ class Link(Frozen):
         measured = self.length is not None or bool(self.sides)
         for problem in wrong_values("", self) if measured or self.bodies else ():
             raise problem
-        if measured:
-            self._follow("points", placed(tuple(self.points), self.length, self.sides))
-        elif not isinstance(self.points, Mapping):
+        names = not isinstance(self.points, Mapping)
+        if names and not measured:
             raise ModelError("points", "got names alone; give length or sides too, or the places")
+        if measured:
+            points = placed(tuple(self.points), self.length, self.sides)
+            if not names and self.points != points:
+                raise ModelError("points", TOLD_BY_LENGTHS)
+            object.__setattr__(self, "points", MappingProxyType(points))
         for problem in wrong_bodies(self.bodies, self.points):
             raise problem
         for name, value in weighed(self.bodies, self.points).items() if self.bodies else ():
-            self._follow(name, value)
-
-    def _follow(self, name: str, value: Any) -> None:
-        """Give a field what follows from others, or complain of something else that it has."""
-        held = getattr(self, name)
-        if name == "points":
-            if isinstance(held, Mapping) and held != value:
-                raise ModelError(name, TOLD_BY_LENGTHS)
-            value = MappingProxyType(value)
-        elif held not in (None, value):
-            raise ModelError(name, TOLD_BY_BODIES)
-        object.__setattr__(self, name, value)
+            if getattr(self, name) not in (None, value):
+                raise ModelError(name, TOLD_BY_BODIES)
+            object.__setattr__(self, name, value)
 
     @classmethod
     def from_table(cls, given: dict[str, Any]) -> Link:
@@ -136,20 +131,25 @@ class Link(Frozen):
 
     def following(self, changes: dict[str, Any]) -> dict[str, Any]:
         """Lengths give new places, and places and bodies new masses; a place or a mass that is
-        given itself takes the place of these.  Numbers may be columns, of which nothing is checked.
+        given itself takes the place of these.
         """
         found = dict(changes)
         if "points" in changes:
             found = {"length": None, "sides": {}, **changes}
         elif changes.keys() & {"length", "sides"}:
-            length, sides = (changes.get(one, getattr(self, one)) for one in ("length", "sides"))
-            found["points"] = placed(tuple(self.points), length, sides)
-        bodies = changes.get("bodies", self.bodies)
+            found["points"] = tuple(self.points)
         if changes.keys() & MASS_FIELDS:
             found = {"bodies": (), **found}
-        elif bodies:
-            found |= weighed(bodies, found.get("points", self.points))
+        elif changes.get("bodies", self.bodies):
+            found |= dict.fromkeys(MASS_FIELDS)
         return found
+
+    def follow(self) -> None:
+        """Set places and masses anew, of which columns may be some; nothing is checked."""
+        if self.length is not None or self.sides:
+            self.__dict__["points"] = placed(tuple(self.points), self.length, self.sides)
+        if self.bodies:
+            self.__dict__.update(weighed(self.bodies, self.points))
 
     def with_added(self, mass: float, place: Vector, inertia: float = 0.0) -> Link:
         """With a mass (kg) at a place (m) in its axes, with so much inertia (kg m2) of its own:

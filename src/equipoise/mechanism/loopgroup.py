@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 from math import ceil, degrees, pi
-from typing import Any
 
 import numpy as np
 
@@ -28,14 +26,12 @@ from equipoise.mechanism.loops import (
 from equipoise.mechanism.model import FRAME, Gear, Position, Slider
 from equipoise.mechanism.newton import LoopForces, LoopGroup, poses_in
 from equipoise.mechanism.steps import (
-    Array,
     Builder,
     Group,
     Reaction,
     Step,
     initial_state,
     pin_reaction,
-    planar,
     run,
 )
 
@@ -60,8 +56,12 @@ def loop_group(builder: Builder, joints: Structure, links: tuple[str, ...]) -> G
         (),
         builder.size(),
     )
-    run(before, builder.now)
-    solved, loops = _solve_start(builder, before, unsolved, loops)
+    told = builder.told.get(f"reference({unsolved.reference})")
+    if told is not None:
+        solved = replace(unsolved, start=told[:, 0])
+    else:
+        run(before, builder.now)
+        solved, loops = _solve_start(builder, before, unsolved, loops)
     builder.add(maker.anchors, {maker.anchors[link] for link in links})
     builder.running.update(place.link for place in solved.tree if any(place.turning))
     reactions = tuple(maker.reaction(loop) for loop in loops)
@@ -232,59 +232,43 @@ def _solve_start(
         }
         there = {body: pose.pick((..., 0)) for body, pose in known.items()}
         guess = [x for link in group.links for x in _guess(builder, group, link, there, position)]
-        q = rough.solve(np.array(np.broadcast_arrays(*guess)), there, path[-1])
+        q = rough.solve(np.array(guess), there, path[-1])
         poses = rough.poses(there, q)
-        far = _far(builder, poses, position, group)
+        _check_near(builder, poses, position, group)
         start = np.array([one for place in group.tree for one in place.values(poses)])
         if position.crank_angle != 0:
-            start = group.follow(start, known, path[backwards])[0][..., -1]
+            start = group.follow(start, known, path[backwards])[0][:, -1]
         if not meshes:
-            angles = start[group.turning]
-            start[group.turning] = np.angle(np.exp(1j * angles))
-    start = np.where(far, np.nan, start)
-    offsets = {name: _plain(loop.gaps(poses, 0)[0]) for name, loop in meshes.items()}
+            start[group.turning] = np.angle(np.exp(1j * start[group.turning]))
+    meshed = {
+        name: replace(loop, offset=float(loop.gaps(poses, 0)[0])) for name, loop in meshes.items()
+    }
     loops, equations = (
-        tuple(
-            replace(loop, offset=offsets[loop.name]) if loop.name in offsets else loop
-            for loop in some
-        )
-        for some in (loops, group.equations)
+        tuple(meshed.get(loop.name, loop) for loop in some) for some in (loops, group.equations)
     )
     return replace(group, start=start, equations=equations), loops
 
 
-def _plain(value: Array) -> Any:
-    """The one number of an array, but a column of several designs as it is."""
-    return value[:, None] if np.ndim(value) else float(value)
-
-
-def _far(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> Any:
-    """Which solutions are so far from the position in the file that they may be others.
-
-    Errors as of a `ModelError`, where there is one machine.
-    """
-    result: Any = False
+def _check_near(builder: Builder, poses: Poses, position: Position, group: LoopGroup) -> None:
+    """A solution far from the position in the file may be another assembly of the links."""
     for link, anchor in zip(group.links, group.anchors, strict=True):
         for name in builder.machine.links[link].points.keys() & position.points.keys():
-            found = poses[link].point(builder.arm(link, anchor, name))[0]
-            far = abs(found - complex(*position.points[name])) > FAR * group.size
-            if far.ndim == 0 and far:
+            found = complex(poses[link].point(builder.arm(link, anchor, name))[0])
+            if abs(found - complex(*position.points[name])) > FAR * group.size:
                 raise ModelError(
                     f"position.points.{name}",
                     f"too rough: the links meet with {name} at ({found.real * 1e3:.4g}, "
                     f"{found.imag * 1e3:.4g}) mm; give a place nearer to where it is",
                 )
-            result = result | far
-    return result
 
 
 def _guess(
     builder: Builder, group: LoopGroup, link: str, known: Poses, position: Position
-) -> tuple[Array, Array, Array]:
+) -> tuple[float, float, float]:
     """Rough position of a link's anchor and its angle, from the file and from known pins."""
-    points = {name: planar(place) for name, place in builder.machine.links[link].points.items()}
-    given: list[tuple[Any, Any]] = [
-        (points[name], complex(*position.points[name]))
+    points = builder.machine.links[link].points
+    given = [
+        (complex(*points[name]), complex(*position.points[name]))
         for name in points
         if name in position.points
     ]
@@ -292,30 +276,19 @@ def _guess(
         for name in builder.machine.points_of(body):
             if name in points and name not in position.points:
                 arm = builder.arm(body, builder.anchors[body], name)
-                given.append((points[name], pose.point(arm)[0]))
-    angle: Any = position.angles.get(link)
-    if angle is None:
-        angle = _line_angle(given)
+                given.append((complex(*points[name]), complex(pose.point(arm)[0])))
+    anchor = complex(*points[group.anchors[group.links.index(link)]])
+    angle = position.angles.get(link)
+    if angle is None and len(given) >= 2:
+        pairs = [(a - b, c - d) for a, c in given for b, d in given if a != b]
+        local, world = max(pairs, key=lambda pair: abs(pair[0]))
+        angle = float(np.angle(world / local)) if world else None
     if angle is None or not given:
         raise ModelError(
             "position",
             f"does not place {link!r} at crank angle {degrees(position.crank_angle):g} deg; give "
             f"two of its points ({', '.join(points)}), or one and its angle",
         )
-    anchor = points[group.anchors[group.links.index(link)]]
-    shape = np.shape(next(iter(known.values())).place[0])
-    place, angle = np.broadcast_arrays(
-        given[0][1] + np.exp(1j * angle) * (anchor - given[0][0]), angle + np.zeros(shape)
-    )
-    return place.real, place.imag, angle
-
-
-def _line_angle(given: Sequence[tuple[Any, Any]]) -> Any:
-    """Angle of a link some of whose points, in its axes, have places: by those farthest apart."""
-    local: Any = 0.0
-    world: Any = 0.0
-    for (a, c), (b, d) in combinations(given, 2):
-        farther = abs(a - b) > abs(local)
-        local, world = np.where(farther, a - b, local), np.where(farther, c - d, world)
-    told = np.any(local != 0) and np.any(world != 0)
-    return np.angle(world / local) if told else None
+    turn = np.exp(1j * angle)
+    place = given[0][1] + turn * (anchor - given[0][0])
+    return float(place.real), float(place.imag), float(angle)

@@ -33,6 +33,7 @@ from equipoise.mechanism.checks import (
     SIDES,
     Bodies,
     Vector,
+    check_kept,
     numbered,
     too_many,
     unknown,
@@ -211,13 +212,29 @@ class Machine(Frozen):
         return sum(link.mass or 0.0 for link in self.links.values())
 
     def with_link(self, name: str, **changes: Any) -> Machine:
-        """Return the machine with fields of one link changed."""
+        """Return the machine with fields of one link changed; `points` has to have all of them."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
-        links = {**self.links, name: self.links[name].altered(**changes)}
-        return self._same_motion(
-            replace(self, links=links), set(changes) <= {*MASS_FIELDS, "bodies"}
-        )
+        check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
+        found = self._with_link(name, lambda link: link.altered(**changes))
+        return self._same_motion(found, set(changes) <= {*MASS_FIELDS, "bodies"})
+
+    def _with_link(self, name: str, change: Callable[[Link], Link]) -> Machine:
+        try:
+            link = change(self.links[name])
+        except ModelError as error:
+            raise error.within(f"links.{name}") from error
+        return replace(self, links={**self.links, name: link})
+
+    def with_point(self, body: str, point: str, place: Vector) -> Machine:
+        """Return the machine with one point of a link or the frame elsewhere, in its axes, m."""
+        if body not in self.bodies:
+            raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
+        where = "frame" if body == FRAME else f"links.{body}"
+        if point not in (points := self.points_of(body)):
+            raise ModelError(f"{where}.points", unknown(point, points, f"point of {body}"))
+        moved = {**points, point: place}
+        return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""
@@ -229,9 +246,17 @@ class Machine(Frozen):
         ``links``, ``crank``, ``mass`` or ``springs``, ``1``, ``stiffness``, in SI units.
         """
         first, last = steps[0], steps[-1]
+
+        def put(_: Any) -> float:
+            return number
+
         massive = first == "links" and bool({*steps[2:3]} & {*MASS_FIELDS, "bodies"})
         same = massive or first in {"planting", "support", "rows", "springs"} or last == "speed"
-        return self._same_motion(changed(self, steps, lambda _: number), same)
+        if first == "links":
+            found = self._with_link(steps[1], lambda link: changed(link, steps[2:], put))
+        else:
+            found = changed(self, steps, put)
+        return self._same_motion(found, same)
 
     def with_planting(self, **changes: Any) -> Machine:
         """Return the machine with values of its planting changed, or given for the first time."""

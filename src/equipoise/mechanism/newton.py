@@ -53,10 +53,8 @@ class LoopGroup:
     known : other bodies that the loops touch -> their anchors.
     tree : where each link is, in an order in which the bodies that this asks for come first.
     equations : the joints that the tree leaves.
-    start : (n,) unknowns at crank angle 0, on the branch; (n, P) where numbers are columns.
+    start : (n,) unknowns at crank angle 0, on the branch.
     size : a typical length, m, against which gaps and steps are measured.
-
-    Among columns a design that fails has NaN, where a single machine ends in a `MotionError`.
     """
 
     links: tuple[str, ...]
@@ -136,7 +134,7 @@ class LoopGroup:
         return result
 
     def solve(self, guess: Array, known: Poses, theta: Any) -> Array:
-        """Newton's method at all crank angles (N,), or one, together; guess, result (n, ..., N)."""
+        """Newton's method at all crank angles (N,), or one, together; guess, result (n, ...)."""
         shape = np.broadcast_shapes(*(np.shape(pose.place[0]) for pose in known.values()))
         q = np.array(np.broadcast_to(guess, np.broadcast_shapes(np.shape(guess), shape)))
         for _ in range(ITERATIONS):
@@ -146,15 +144,13 @@ class LoopGroup:
             sizes = np.max(self.sizes(step), axis=0)
             if not np.any(sizes >= SETTLED):  # the next step would be rounding
                 break
-        return self.kept(q, ~(sizes < SETTLED), theta)
+        self.check(sizes < SETTLED, theta)
+        return q
 
-    def kept(self, q: Array, bad: Array, theta: Any) -> Array:
-        """What is solved at crank angles, but for that which failed."""
-        if not np.any(bad):
-            return q
-        if bad.shape == np.shape(theta):  # of one machine
-            raise MotionError(self.failure(np.ravel(theta)[int(np.argmax(bad))]))
-        return np.where(bad, np.nan, q)
+    def check(self, good: Any, theta: Any) -> None:
+        """Raise an error that names the first crank angle at which something failed."""
+        if not np.all(good):
+            raise MotionError(self.failure(np.ravel(theta)[int(np.argmin(good))]))
 
     def sizes(self, steps: Array) -> Array:
         """Steps of the unknowns (n, ...) without dimension."""
@@ -192,9 +188,8 @@ class LoopGroup:
         )
         q = self.solve(between(theta, posts, *levels), known, theta)
         q1, q2 = self.derivatives(q, known)
-        bent = np.diff(q) - 0.5 * (q1[..., 1:] + q1[..., :-1]) * np.diff(theta)
-        if np.any(self.sizes(bent) > JUMP):
-            raise MotionError(self.failure(theta[0]))
+        bent = np.diff(q) - 0.5 * (q1[:, 1:] + q1[:, :-1]) * np.diff(theta)
+        self.check(np.all(self.sizes(bent) <= JUMP), theta)
         return q, q1, q2
 
     def follow_each(self, start: Array, known: Poses, theta: Array) -> tuple[Array, Array, Array]:
@@ -205,8 +200,7 @@ class LoopGroup:
             guess = here
             here = self.solve(guess, now, angle)
             if k:
-                far = np.any(self.sizes(here - guess) > 10 * JUMP, axis=0)
-                here = self.kept(here, far, angle)
+                self.check(np.all(self.sizes(here - guess) <= 10 * JUMP), angle)
             q1, q2 = self.derivatives(here, now)
             found.append((here, q1, q2))
             if k + 1 < len(theta):
@@ -251,23 +245,21 @@ def poses_in(state: State, bodies: Iterable[tuple[str, str]]) -> Poses:
 
 def divide(matrix: Array, right: Array) -> Array:
     """Solve matrices (..., n, n) for right-hand sides (n, ...); NaN where one is singular."""
-    columns = np.moveaxis(right, 0, -1)[..., None]
     try:
-        solution = np.linalg.solve(matrix, columns)
+        solution = np.linalg.solve(matrix, np.moveaxis(right, 0, -1)[..., None])
     except np.linalg.LinAlgError:
-        singular = np.linalg.det(matrix) == 0
-        solution = np.linalg.solve(np.where(singular[..., None, None], np.nan, matrix), columns)
+        return np.full_like(right, np.nan)
     return np.moveaxis(solution[..., 0], -1, 0)
 
 
 def between(theta: Array, posts: Array, q: Array, q1: Array, q2: Array) -> Array:
-    """Values (n, ..., N) at crank angles between posts, whose value and derivatives are known."""
+    """Values (n, N) at crank angles between posts, whose value and derivatives are known."""
     left = np.minimum(np.searchsorted(posts, np.arange(len(theta)), "right"), len(posts) - 1) - 1
     width = np.diff(theta[posts])[left]
     share = (theta - theta[posts[left]]) / width
     weights = QUINTIC @ share ** np.arange(6)[:, None]
     ends = [(q, 1.0), (q1, width), (q2, width * width)]
-    parts = [value[..., left + at] * scale for at in (0, 1) for value, scale in ends]
+    parts = [value[:, left + at] * scale for at in (0, 1) for value, scale in ends]
     return np.asarray(sum(part * weight for part, weight in zip(parts, weights, strict=True)))
 
 

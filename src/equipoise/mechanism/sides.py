@@ -195,6 +195,8 @@ def decided(
 
 def missing(machine: Machine, choices: Sequence[Choice], idle: Iterable[str] = ()) -> ModelError:
     """One error for all sides that are missing; `idle` are entries of joints that have none."""
+    # one entry is that of all dyads whose inner joint has its name
+    choices = [*{one.joint: one for one in (*choices, *choices[::-1])}.values()]
     first = choices[0]
     if len(choices) == 1:
         where = f"assembly.{first.joint}"

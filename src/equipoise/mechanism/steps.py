@@ -221,7 +221,8 @@ class Builder:
     rank : body -> position in the order of solution.  anchors : body -> the point from which its
     other points are reached and about which its moments are taken.  sides : joints whose
     assembly side was asked for.  missing : those of them that the file does not answer -> words
-    of the two sides, what they mean, what the file has.  motion : steps so far.
+    of the two sides, what they mean, what the file has.  motion : steps so far.  told :
+    references at crank angle 0, of a machine of the same build, whose branch is taken over.
     """
 
     machine: Machine
@@ -232,11 +233,12 @@ class Builder:
     sides: set[str] = field(default_factory=set)
     missing: dict[str, tuple[tuple[str, str], str, str | None]] = field(default_factory=dict)
     running: set[str] = field(default_factory=set)
+    told: State = field(default_factory=dict)
     _now: State = field(init=False)
     _ran: int = field(init=False, default=0)
 
     def __post_init__(self) -> None:
-        self._now = initial_state(self.machine, np.zeros(1))
+        self._now = initial_state(self.machine, np.zeros(1)) | self.told
 
     @property
     def now(self) -> State:

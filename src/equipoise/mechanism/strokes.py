@@ -57,7 +57,8 @@ class Stroke:
 
     stroke : largest less smallest place.
     lowest, highest : the smallest and largest place, both dead positions.
-    rise, fall : crank angle from the lowest to the highest place, and back, as the crank turns.
+    rise, fall : crank angle from the lowest place to the highest that comes next as the crank
+        turns, and from there to the lowest that comes next.
     time_ratio : the longer of these over the shorter: how quick the return is.
     dwell : longest crank angle over which it moves by no more than a hundredth of the stroke.
     least_advantage : smallest force (per m) or torque on it, over the torque of the crank, by
@@ -252,9 +253,12 @@ def _stroke(
     places = np.array([position.place for position in dead])
     low, high = (dead[highest_at(sign * places, smooth=False)] for sign in (-1, 1))
     period = 2 * pi * linkage.cycle.turns
-    way = 1 if linkage.machine.drive.speed >= 0 else -1
-    rise = way * (high.crank_angle - low.crank_angle) % period
     stroke = high.place - low.place
+    angles = np.array([position.crank_angle for position in dead])
+    tops, bottoms = (angles[np.abs(places - end.place) <= EQUAL * stroke] for end in (high, low))
+    way = 1 if linkage.machine.drive.speed >= 0 else -1
+    rise = float(np.min(way * (tops - low.crank_angle) % period))
+    fall = float(np.min(way * (bottoms - (low.crank_angle + way * rise)) % period))
     held = longest_dwell(_along(samples[0], samples[1], samples[2], period), SHARE * stroke)
     advantage, at = None, None
     if one.kind == "rocker" or one.name in guided(linkage.machine):
@@ -267,8 +271,8 @@ def _stroke(
         high.place,
         high.crank_angle,
         rise,
-        period - rise,
-        max(rise, period - rise) / min(rise, period - rise),
+        fall,
+        max(rise, fall) / min(rise, fall),
         held.angle,
         held.begin,
         advantage,

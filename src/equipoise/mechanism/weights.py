@@ -23,13 +23,13 @@ from equipoise.keys import (
     needs,
     not_both,
 )
-from equipoise.mechanism.checks import unknown, wrong_range
-from equipoise.mechanism.materials import (
+from equipoise.mechanism.bodies import (
     material_key,
     material_of,
     with_density,
     with_material,
 )
+from equipoise.mechanism.checks import unknown, wrong_range
 from equipoise.mechanism.parts import Mechanism
 
 Pair = tuple[float, float]

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import Any
 
 import equipoise
-from equipoise.balancing.blocks import outcome_blocks, said
+from equipoise.balancing.blocks import outcome_blocks
+from equipoise.balancing.told import nothing_told, said
 from equipoise.errors import UsageError
 from equipoise.handheld import blocks as of_tools
 from equipoise.handheld.hand_blocks import design_blocks, exposure_of_tool
@@ -17,12 +19,12 @@ from equipoise.planting.blocks import planting_blocks
 from equipoise.present.findings import Findings, ToolFindings, find
 from equipoise.present.pages import Document, check_pdf, page, pdf
 from equipoise.present.pictures import drawings
-from equipoise.present.remedies import nothing_told
 from equipoise.present.summary import answers, check_whole_cycle, tiles
 from equipoise.present.tool_summary import tool_answers, tool_tiles
 from equipoise.quantities import PER_RPM, chosen_units, number, showing_by_default
+from equipoise.results.analysis import Analysis
 from equipoise.results.analysis_blocks import force_blocks, joint_table, motion_blocks
-from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text
+from equipoise.results.blocks import Block, Facts, Listing, Notes, Section, Text, beside
 from equipoise.results.machine_blocks import angles_told, driven, model_blocks
 from equipoise.vibration.blocks import model_told, response_blocks
 from equipoise.vibration.sweep_blocks import resonances_table
@@ -79,12 +81,15 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     blocks["motion"] = [*drawn.get("motion", []), *motion_blocks(analysis)]
     if found.planting is not None:
         blocks["planting"] = [*drawn.get("planting", []), *planting_blocks(found.planting)]
+    later = found.after
     if analysis.solved is not None:
-        blocks["forces"] = [*drawn.get("forces", []), *force_blocks(analysis)]
-        blocks["joints"] = [*drawn.get("joints", []), joint_table(analysis)]
+        again = None if later is None else later.analysis
+        blocks["forces"] = [*drawn.get("forces", []), *_with_after(force_blocks, analysis, again)]
+        blocks["joints"] = [*drawn.get("joints", []), *_with_after(_joints, analysis, again)]
     if found.response is not None:
+        shaken = None if later is None else later.response
         blocks["vibration"] = [*drawn.get("vibration", []), *drawn.get("modes", [])]
-        blocks["vibration"] += response_blocks(found.response)
+        blocks["vibration"] += _with_after(response_blocks, found.response, shaken)
         if found.sweep is not None and found.sweep.resonances:
             blocks["vibration"].append(resonances_table(found.sweep))
     if found.balanced is not None:
@@ -101,24 +106,32 @@ def _of_linkage(found: Findings, language: str, command: str, together: bool) ->
     )
 
 
+def _joints(analysis: Analysis) -> Iterator[Block]:
+    yield joint_table(analysis)
+
+
+def _with_after(
+    blocks: Callable[[Any], Iterable[Block]], before: Any, after: Any
+) -> Iterator[Block]:
+    """What a result shows, beside the same after the change that helps most, where there is one."""
+    told = tuple(blocks(before))
+    if after is None:
+        yield from told
+        return
+    both = tuple(beside(told, blocks(after)))
+    if both != told:
+        yield Text(say("Lines that end in “after” are those after the change that helps most."))
+    yield from both
+
+
 def balance_blocks(found: Findings) -> Iterator[Block]:
     """What may be changed, what is to be changed, and every figure before and after."""
     balanced = found.balanced
     assert balanced is not None
-    if not found.own_plan:
-        of_rows = to_say(
-            "The file does not say what may be changed. So this is the remedy that costs "
-            "nothing: other phases of the rows."
-        )
-        of_one = to_say(
-            "The file does not say what may be changed. So this is the usual remedy: a "
-            "counterweight on the axis of the drive link, within its reach."
-        )
-        yield Text(say(of_one if balanced.plan.phases is None else of_rows))
-    if found.helped:
+    if found.helped or balanced.tried:
         yield from outcome_blocks(balanced)
     else:
-        yield from map(Text, nothing_told(found))
+        yield from map(Text, nothing_told(balanced))
 
 
 def _of_tool(found: ToolFindings, language: str, command: str) -> Document:

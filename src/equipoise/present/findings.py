@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from equipoise.handheld.model import Tool
     from equipoise.handheld.modes import ToolModes
     from equipoise.handheld.sweep import ToolSweep, Transmissions
-    from equipoise.mechanism.balance import Balance
     from equipoise.mechanism.model import Machine
     from equipoise.planting.summary import PlantingFigures
     from equipoise.results.analysis import Analysis
@@ -28,9 +27,6 @@ if TYPE_CHECKING:
     from equipoise.vibration.sweep import Sweep
 
 Part = TypeVar("Part")
-
-NOTHING = 0.01
-"""Share of what is made small below which making it smaller does not help."""
 
 ANGLES = 720
 """Crank angles in a turn."""
@@ -134,33 +130,23 @@ class Findings(_Found):
         return None if self.machine.support is None else modes(self.machine)
 
     @part("balance")
-    def plan(self) -> Balance | None:
-        """What is balanced: the machine's own plan, or the usual one."""
-        from equipoise.balancing.optimisation import default_plan
-
-        return default_plan(self.machine)
-
-    @part("balance")
     def balanced(self) -> Balanced | None:
-        """The machine with that plan carried out."""
-        from equipoise.balancing.optimisation import balance
+        """The machine balanced by its own plan, or by the remedy that helps most."""
+        from equipoise.balancing.advice import advise
 
-        return None if self.plan is None else balance(self.machine, self.plan)
-
-    @property
-    def own_plan(self) -> bool:
-        """Whether the file itself says what to balance."""
-        return self.plan is not None and self.plan is self.machine.balance
+        return advise(self.machine)
 
     @property
     def helped(self) -> bool:
         """Whether balancing brings anything that is worth a change."""
-        balanced = self.balanced
-        if balanced is None:
-            return False
-        pairs = balanced.objectives.values()
-        moved = (abs(after - before) > NOTHING * before for before, after in pairs)
-        return bool(balanced.plan.limits) or any(moved)
+        return self.balanced is not None and self.balanced.helps
+
+    @cached_property
+    def after(self) -> Findings | None:
+        """The same of the balanced machine; None where balancing brings nothing."""
+        if self.balanced is None or not self.helped:
+            return None
+        return Findings(self.balanced.machine, self.text, self.file, self.angles)
 
 
 @dataclass(frozen=True, eq=False)

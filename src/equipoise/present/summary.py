@@ -9,13 +9,13 @@ from math import cos, hypot, pi, sin
 
 import numpy as np
 
+from equipoise.balancing.told import capital, good_already, helps_told
 from equipoise.errors import UsageError
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.model import Machine
 from equipoise.mechanism.outputs import joint_named
 from equipoise.present.findings import Findings
 from equipoise.present.pages import Answer, Tile
-from equipoise.present.remedies import capital, good_already, helps_told
 from equipoise.quantities import (
     PER_RPM,
     Dimension,
@@ -101,8 +101,8 @@ def answers(found: Findings) -> Iterator[Answer]:
         shaking = Shaking.of(found)
         yield Answer(say("What shakes, and how much"), tuple(_shaken(found, shaking)))
         yield Answer(say("Why"), tuple(_why(found)))
-        if helps := tuple(helps_told(found)):
-            yield Answer(say("What helps most"), helps)
+        if found.balanced is not None:
+            yield Answer(say("What helps most"), tuple(helps_told(found.balanced)))
     if vibration := tuple(vibration_told(found)):
         yield Answer(say("What that does to the support"), vibration)
     if planting := tuple(planting_told(found)):
@@ -133,10 +133,10 @@ def tiles(found: Findings) -> Iterator[Tile]:
         label = say("largest joint force")
         yield _tile(label, largest.peak, "force", say("joint {name}", name=joint_named(name)))
     if found.balanced is not None:
-        first = found.balanced.plan.objectives[0]
-        told = change(*found.balanced.objectives[first.name]).removesuffix(" %") or percent(0)
+        first, pair = next(iter(found.balanced.aims.items()))
+        told = change(*pair).removesuffix(" %") or percent(0)
         what = objective_named(first, len(found.machine.rows))
-        note = what if found.helped else good_already(found)
+        note = what if found.helped else good_already(found.balanced)
         yield Tile(say("by balancing"), told, "%", note)
 
 
@@ -280,16 +280,23 @@ def vibration_told(found: Findings) -> Iterator[str]:
     response = found.response
     if response is None:
         return
+    later = None if found.after is None else found.after.response
     for name, gauge in response.gauges.items():
         moved = float(gauge.displacement.peak_to_peak)
         unit = shown_in("rad" if gauge.rotation else "m", [moved])
-        yield say(
-            "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm.",
-            gauge=name,
-            size=unit.text(moved, digits=3),
-            unit=unit.name,
-            speed=brief(abs(response.speed) / PER_RPM),
+        words = {"unit": unit.name, "speed": brief(abs(response.speed) / PER_RPM), "gauge": name}
+        words["size"] = unit.text(moved, digits=3)
+        template = to_say(
+            "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm."
         )
+        if later is not None:
+            after = float(later.gauges[name].displacement.peak_to_peak)
+            words["after"] = unit.text(after, moved, 3)
+            template = to_say(
+                "{gauge}: the support moves by {size} {unit} peak to peak at {speed} rpm, and by "
+                "{after} {unit} after that change."
+            )
+        yield say(template, **words)
     if found.sweep is None or not found.sweep.resonances:
         return
     nearest = min(found.sweep.resonances, key=lambda one: abs(abs(one.speed / response.speed) - 1))

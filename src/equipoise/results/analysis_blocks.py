@@ -27,7 +27,7 @@ from equipoise.results.machine_blocks import (
     span,
 )
 from equipoise.results.outputs import CAUSES, tops_of
-from equipoise.signals import Array, Periodic, figures
+from equipoise.signals import EQUAL, Array, Periodic, figures
 
 if TYPE_CHECKING:
     from equipoise.results.analysis import Analysis
@@ -92,7 +92,8 @@ def strokes_table(analysis: Analysis) -> Table:
             for place in one.dead_positions
         ]
         ends = [next(d for d in dead if d.at == at) for at in (one.lowest_at, one.highest_at)]
-        others = [other for other in dead if other not in ends]
+        least = EQUAL * one.stroke
+        others = [d for d in dead if one.lowest + least < d.value < one.highest - least]
         rest = Many(tuple(others[:MOST_DEAD]), max(len(others) - MOST_DEAD, 0)) if others else None
         stroke = Value(one.stroke, dimension=one.dimension)
         rows.append((joint_named(name), stroke, *ends, Value(one.time_ratio), rest))

@@ -6,11 +6,13 @@ who renders them chooses digits and signs by `equipoise.quantities`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass, replace
+from itertools import takewhile
+from math import isclose
 from typing import Any, ClassVar
 
-from equipoise.i18n import Note
+from equipoise.i18n import Note, say
 from equipoise.quantities import Dimension
 from equipoise.results.charts import Chart
 
@@ -182,3 +184,52 @@ class Section:
     name: str
     title: str
     blocks: tuple[Block | Section, ...]
+
+
+# -- before and after ------------------------------------------------------------------------------
+
+SAME, ROUNDING = 1e-6, 1e-9
+"""Share of a figure, and of what it is told beside, by which it has to change to be told again."""
+
+
+def beside(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
+    """Blocks of something, in whose tables each row is followed by that of it changed, where that
+    differs; rows are those that begin with the same words, of tables of the same title.
+    """
+    later = {one.title: one for one in after if isinstance(one, Table)}
+    for one in before:
+        if isinstance(one, Table) and one.title in later:
+            rows = {_words(row): row for row in later[one.title].rows}
+            yield replace(one, rows=tuple(_followed(one.rows, rows)))
+        else:
+            yield one
+
+
+def _followed(
+    rows: Iterable[tuple[Cell, ...]], later: dict[tuple[str, ...], tuple[Cell, ...]]
+) -> Iterator[tuple[Cell, ...]]:
+    for row in rows:
+        yield row
+        words = _words(row)
+        changed = later.pop(words, None)
+        if words and changed is not None and not all(map(_alike, row, changed)):
+            yield _named_after(changed)
+    yield from (_named_after(row) for words, row in later.items() if words)
+
+
+def _words(row: tuple[Cell, ...]) -> tuple[str, ...]:
+    """The words that a row begins with."""
+    return tuple(takewhile(lambda cell: isinstance(cell, str), row))  # type: ignore[arg-type]
+
+
+def _named_after(row: tuple[Cell, ...]) -> tuple[Cell, ...]:
+    words = _words(row)
+    return (say("{what}, after", what=words[0]), *("" for _ in words[1:]), *row[len(words) :])
+
+
+def _alike(one: Cell, other: Cell) -> bool:
+    """Whether two cells tell the same, but for rounding."""
+    if isinstance(one, Value) and isinstance(other, Value):
+        least = ROUNDING * max(one.scale, other.scale)
+        return isclose(one.value, other.value, rel_tol=SAME, abs_tol=least)
+    return one == other

@@ -97,7 +97,7 @@ def _with_points(rows: list[Row]) -> list[Row]:
 
 
 def _pointed(cell: str) -> str:
-    return cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell
+    return cell.replace(",", ".") if "," in cell and DECIMAL_COMMA.fullmatch(cell) else cell
 
 
 def check_width(line: int, row: list[str], columns: int) -> None:

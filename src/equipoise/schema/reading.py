@@ -33,9 +33,7 @@ def written_place(place: Iterable[str | int]) -> str:
 
 def within(place: Place, error: ModelError) -> ModelError:
     """The same error, whose place is inside of another."""
-    outer = written_place(place)
-    point = "." if outer and error.where and error.where[0] != "[" else ""
-    return ModelError(f"{outer}{point}{error.where}", error.what)
+    return error.within(written_place(place))
 
 
 WRONG = object()
@@ -143,9 +141,8 @@ def _example(one: keys.Key) -> str:
 
 def _tables(kind: keys.Tables, given: Any, place: Place, context: Context) -> Any:
     if not isinstance(given, list):
-        return context.wrong(
-            place, given, f"write each as a table under [[{written_place(place)}]]"
-        )
+        header = written_place(step for step in place if isinstance(step, str))
+        return context.wrong(place, given, f"write each as a table under [[{header}]]")
     return tuple(_table(kind.item, one, (*place, n), context) for n, one in enumerate(given))
 
 

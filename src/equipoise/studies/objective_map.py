@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.balancing.advice import pin_of
 from equipoise.balancing.design_variables import LinkParameters, with_parameters
 from equipoise.balancing.effects import Effects
 from equipoise.balancing.objectives import Near, measured, signals_of, unit_of
-from equipoise.balancing.optimisation import pin_of
 from equipoise.balancing.problem import Problem
 from equipoise.errors import EquipoiseError, MassError, ModelError, UsageError
 from equipoise.mechanism.balance import Balance, Objective

@@ -11,7 +11,8 @@ import numpy as np
 
 from equipoise.errors import EquipoiseError
 from equipoise.mechanism import kernels
-from equipoise.mechanism.bodies import Outline, outlines, place_of
+from equipoise.mechanism.bodies import place_of
+from equipoise.mechanism.body_checks import Outline, outlines
 from equipoise.mechanism.joints import gear_pins
 from equipoise.mechanism.model import FRAME, Link, Machine
 from equipoise.mechanism.motion import Motion

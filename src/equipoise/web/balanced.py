@@ -4,28 +4,30 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from math import dist, isclose
+from math import dist, isclose, sqrt
 from types import MappingProxyType
 from typing import Any
 
+from equipoise.balancing.advice import advise
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.blocks import gap_told
 from equipoise.balancing.objectives import unit_of as si_unit
-from equipoise.balancing.optimisation import balance, default_plan
+from equipoise.balancing.optimisation import balance
 from equipoise.balancing.phase_search import PhaseSearch
 from equipoise.balancing.problem import Problem
-from equipoise.balancing.workshop import sentences
+from equipoise.balancing.told import (
+    aims_told,
+    figure_named,
+    figure_unit,
+    nothing_told,
+    proof_told,
+    worse_told,
+)
+from equipoise.balancing.workshop import SPREAD, sentences
 from equipoise.mechanism.balance import Balance, Objective
 from equipoise.mechanism.model import Link, Machine
 from equipoise.mechanism.outputs import declared
 from equipoise.quantities import display, told
-from equipoise.results.outputs import (
-    MEASURES,
-    objective_named,
-    output_named,
-    shown_in,
-    unit_of_measure,
-)
+from equipoise.results.outputs import objective_named, shown_in
 from equipoise.web.design import Counterweight, Design, clean, joined, pin_of, place_of_pin
 from equipoise.web.edits import Solved
 from equipoise.web.figures import compared, figures_of, signals_of
@@ -39,20 +41,23 @@ GAIN = 1e-3
 
 
 def balanced(base: Design) -> Balanced:
-    """By the machine's own plan, or the usual one; with the errors of `balance`.
+    """By the plan that was used last, or as `advise` does it; with the errors of `balance`.
 
-    A counterweight of which the plan is free to choose another is replaced: the plan begins
-    without it, and what was before is nevertheless the machine as it is shown.
+    A counterweight of which a plan is free to choose another is replaced: the plan begins without
+    it, and what was before is nevertheless the machine as it is shown.
     """
-    plan = base.plan or default_plan(base.machine)
-    free = _replaced(base, plan)
-    found = balance(base.without(free).machine, plan)
-    if not free:
-        return found
-    shown = base.machine.with_balance(None)
-    before = _aims_of(shown, plan)
-    aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
-    return replace(found, original=shown, objectives=aims)
+
+    def solve(_: Machine, plan: Balance) -> Balanced:
+        free = _replaced(base, plan)
+        found = balance(base.without(free).machine, plan)
+        if not free:
+            return found
+        shown = base.machine.with_balance(None)
+        before = _aims_of(shown, plan)
+        aims = {name: (before[name], after) for name, (_, after) in found.objectives.items()}
+        return replace(found, original=shown, objectives=aims)
+
+    return advise(base.machine, solve) if base.plan is None else solve(base.machine, base.plan)
 
 
 def _replaced(base: Design, plan: Balance) -> list[str]:
@@ -75,20 +80,16 @@ def _aims_of(machine: Machine, plan: Balance) -> dict[str, float]:
 
 def nothing_gained(found: Balanced) -> str | None:
     """The sentence that what was to become small hardly does; None where it does."""
-    shares = [
-        after / before if before else float(after > 0)
-        for before, after in found.objectives.values()
-    ]
-    plan = found.plan
-    if plan.combined(shares) < (1 - GAIN) * plan.combined([1.0] * len(shares)):
+    if found.tried:
+        return None if found.helps else " ".join(nothing_told(found))
+    if found.gain > GAIN:
         return None
-    rows = len(found.machine.rows)
-    aims = " and ".join(objective_named(one, rows) for one in plan.objectives)
-    return f"nothing to gain: balancing would not make {aims} smaller by {100 * GAIN:g} %"
+    share = f"{100 * GAIN:g} %"
+    return f"nothing to gain: balancing would not make {aims_told(found)} smaller by {share}"
 
 
 def balanced_design(base: Design, found: Balanced) -> Design:
-    """The balanced machine, whose point masses on pins of the frame can be changed further.
+    """The balanced machine, whose masses on pins of the frame can be changed further.
 
     base : what was balanced.
     """
@@ -111,17 +112,19 @@ def balanced_design(base: Design, found: Balanced) -> Design:
 
 
 def _weights(base: Design, found: Balanced) -> dict[str, Counterweight]:
-    """Those point masses that were found on pins of the frame, by link."""
+    """Masses that were found about pins of the frame, by link."""
     weights = {}
     for change in found.changes:
         link, values = change.link, dict(change.values)
-        shapes = [piece["shape"] for piece in values.get("pieces", ())]
         known = link in base.own.links  # and no shaft that is new
-        if known and shapes == ["point"] and values["at"] == pin_of(base.own, link):
+        if known and values.get("pieces") and values["at"] == pin_of(base.own, link):
+            beyond = values["inertia"] / values["mass"] - values["radius"] ** 2
+            point = beyond <= SPREAD * values["radius"] ** 2
             weights[link] = Counterweight(
                 clean(values["mass"], "mass"),
                 clean(values["radius"], "length"),
                 clean(values["direction"], "angle"),
+                0.0 if point else clean(sqrt(beyond), "length"),
             )
     return weights
 
@@ -162,9 +165,10 @@ def balanced_told(base: Solved, after: Solved, found: Balanced) -> Values:
             *(_taken_off(name, base.design.counterweights[name]) for name in replaced),
             *(line for change in found.changes for line in sentences(change)),
         ],
-        "aims": [_aim(found, one, figures) for one in found.plan.objectives],
+        "aims": [_aim(found, one, figures) for one in found.aims],
         "figures": [_figure(found, name, *figures[name]) for name in names],
-        "proof": _proof(found, bool(replaced)),
+        "worse": list(worse_told(found)),
+        "proof": proof_told(found),
         "notes": list(map(str, found.notes)),
     }
 
@@ -185,12 +189,11 @@ def _read(base: Solved, after: Solved) -> dict[str, tuple[float, float]]:
 
 def _aim(found: Balanced, one: Objective, figures: Mapping[str, tuple[float, float]]) -> Values:
     """What was to become small."""
-    rows = len(found.machine.rows)
-    pair = found.objectives[one.name]
+    rows, pair = len(found.machine.rows), found.aims[one]
     if not (one.about or one.orders or one.speeds):
         name = f"{one.output}.{one.measure}"
         pair = figures.get(f"rows.{name}" if rows > 1 else name, pair)
-    unit = shown_in(found.units[one.name], pair)
+    unit = shown_in(si_unit(one, found.original), pair)
     before, after = (unit.factor * value for value in pair)
     return {"label": objective_named(one, rows), "unit": unit.name, **compared(before, after)}
 
@@ -205,20 +208,7 @@ def _figure(found: Balanced, name: str, before: float, after: float) -> Values:
         one, _ = declared(output) or (None, "")
         whole = one is not None and one.part not in ("x", "y") and one.group in ("forces", "rows")
         main = whole and measure in MAIN
-        label = f"{output_named(output, len(found.machine.rows))}, {MEASURES[measure]}"
-        if output.startswith("gauges"):
-            si = si_unit(Objective(output), found.original)
-        else:
-            si = unit_of_measure(output, measure)
-        unit = shown_in(si, [before, after])
+        label = figure_named(name, len(found.machine.rows))
+        unit = shown_in(figure_unit(found, name), [before, after])
     values = compared(unit.factor * before, unit.factor * after)
     return {"label": label, "unit": unit.name, "main": main, **values}
-
-
-def _proof(found: Balanced, replaced: bool) -> str:
-    proved = f"proved {' and '.join(map(str, found.scope))}".strip()
-    of = "without the counterweights that were taken off" if replaced else "before"
-    return (
-        f"Found by {found.method}; {proved}: nothing that is allowed is better by more than "
-        f"{gap_told(found.gap)} of the value {of}."
-    )

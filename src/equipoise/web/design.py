@@ -10,7 +10,7 @@ from math import cos, floor, isfinite, log10, pi, sin
 from types import MappingProxyType
 from typing import Any
 
-from equipoise.balancing.optimisation import reach_of
+from equipoise.balancing.advice import reach_of
 from equipoise.errors import UsageError
 from equipoise.mechanism.balance import Balance
 from equipoise.mechanism.links import MASS_FIELDS
@@ -54,14 +54,16 @@ def clean_place(place: complex, size: float = 0.0, digits: int = DIGITS) -> Vect
 
 @dataclass(frozen=True)
 class Counterweight:
-    """A point mass on a link that is pinned to the frame.
+    """A mass on a link that is pinned to the frame.
 
     mass : kg.  radius : from the pin, m.  direction : in the link's axes, rad.
+    gyration : radius of gyration about its own centre of mass, m; 0 of a point mass.
     """
 
     mass: float = 0.0
     radius: float = 0.0
     direction: float = 0.0
+    gyration: float = 0.0
 
     @property
     def arm(self) -> complex:
@@ -162,16 +164,16 @@ def _opposite(machine: Machine, link: str) -> Counterweight:
 
 
 def joined(link: Link, weight: Counterweight, pin: complex) -> Link:
-    """A link with a point mass on it in mass, centre of mass and inertia.
+    """A link with a counterweight on it in mass, centre of mass and inertia.
 
     pin : from which the weight's place is told, in the link's axes, m.
     """
     if not weight.mass:
         return link
-    place = pin + weight.arm
+    place, inertia = pin + weight.arm, weight.mass * weight.gyration**2
     if link.bodies:
-        return link.with_added(weight.mass, clean_place(place))
-    made = link.with_added(weight.mass, (place.real, place.imag))
+        return link.with_added(weight.mass, clean_place(place), clean(inertia))
+    made = link.with_added(weight.mass, (place.real, place.imag), inertia)
     assert made.mass is not None and made.center_of_mass is not None and made.inertia is not None
     center = clean_place(complex(*made.center_of_mass))
     return replace(made, mass=clean(made.mass), center_of_mass=center, inertia=clean(made.inertia))

@@ -176,6 +176,9 @@ def test_limits_are_kept_in_other_phases() -> None:
     price = both.prices[along.name]
     assert price.at_most == pytest.approx(0.2 * rms(machine, "shaking_force.x"), rel=1e-9)
     assert rms(both.machine) < 0.35 * rms(machine)
+    assert 0 <= both.gap <= 5 * CLOSE  # the price is that of phases that are followed in turn
+    without = eq.balance(machine, replace(plan, phases=PHASES, limits=()))
+    assert without.cost <= both.cost
 
 
 def test_mass_that_does_nothing_is_not_added() -> None:

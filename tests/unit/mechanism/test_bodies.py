@@ -400,13 +400,15 @@ def test_bodies_that_are_refused(shape: Any, given: dict[str, Any], where: str, 
         ("plate", {"corners": SQUARE}, [((2.0, 0.5), 0.1)], 1),
         ("plate", {"corners": SQUARE}, [((0.3, 0.5), 0.2), ((0.6, 0.5), 0.2)], 2),
         ("disc", {"at": "A", "radius": 0.5}, [("B", 0.3)], 1),
+        ("disc", {"at": "A", "radius": 0.5}, [("A", 0.5)], 0),
         ("ring", {"at": "A", "radius": 0.5, "inner_radius": 0.2}, [("B", 0.15)], 1),
         ("bar", {"between": ("A", "B"), "width": 0.1}, [("B", 0.01)], 1),
     ],
 )
 def test_holes_that_do_not_fit(shape: Any, given: Any, holes: Any, where: int) -> None:
     body = Body(shape, **CUT, **given, holes=[Hole(*hole) for hole in holes])
-    refused(f"bodies[1].holes[{where}]", "", lambda: Link(POINTS, bodies=[body]))
+    place = f"bodies[1].holes[{where}]" if where else "bodies[1].holes"
+    refused(place, "", lambda: Link(POINTS, bodies=[body]))
     Link(POINTS, bodies=[replace(body, holes=())])
 
 
@@ -487,6 +489,11 @@ def test_a_file_keeps_its_bodies_and_lengths() -> None:
             "links.coupler.points: length or sides tell the places; give the names",
         ),
         (
+            "[[links.rocker.bodies.holes]]",
+            "[links.rocker.bodies.holes]",
+            "holes: got a table; write each as a table under [[links.rocker.bodies.holes]]",
+        ),
+        (
             'length = "71.5 mm"',
             "",
             "links.coupler.points: got names alone; give length or sides too",
@@ -550,6 +557,14 @@ def test_numbers_of_bodies_and_lengths_by_their_path() -> None:
         machine.links["coupler"].mass * 75 / 71.5,
         rel=1e-12,  # type: ignore[operator]
     )
+
+
+def test_errors_of_changed_links_tell_their_place() -> None:
+    machine = loads(TEXT)
+    steps = ("links", "rocker", "bodies", "1", "width")
+    refused("links.rocker.bodies[1].width", "got -1 m", lambda: machine.with_number(steps, -1.0))
+    refused("links.rocker.mass", "cannot be", lambda: machine.with_link("rocker", mass=-1.0))
+    refused("links.coupler.length", "give more", lambda: machine.with_link("coupler", length=0.0))
 
 
 def test_what_is_given_itself_takes_the_place_of_what_told_it() -> None:

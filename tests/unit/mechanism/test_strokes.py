@@ -132,6 +132,27 @@ def test_of_equal_extremes_the_first_is_told() -> None:
     assert degrees(found.highest_at) == pytest.approx(0.0, abs=1e-9)
     assert degrees(found.lowest_at) == pytest.approx(90.0)
     assert found.stroke == pytest.approx(0.2)
+    assert (found.rise, found.fall) == pytest.approx((pi / 2, pi / 2))
+    assert found.time_ratio == pytest.approx(1.0)
+
+
+def test_over_many_turns_neighbouring_strokes_are_compared() -> None:
+    """A four-bar behind gears does the same as without, while the crank turns so much more."""
+    plain = eq.analyze(crank_rocker(), 8).strokes["rocker"]
+    given = crank_rocker()
+    links = {**given.links, "wheel": given.links["crank"]}
+    links["crank"] = heavy(E=ORIGIN)
+    frame = {**given.frame, "E": (0.0, -1.0)}
+    gears = (eq.Gear("crank", "wheel", teeth=(13, 20)),)
+    found = eq.analyze(replace(given, frame=frame, links=links, gears=gears), 8)
+    assert found.motion.turns == 20
+    one, more = found.strokes["rocker"], 20 / 13
+    assert len(one.dead_positions) == 26
+    assert one.stroke == pytest.approx(plain.stroke, rel=1e-9)
+    assert one.time_ratio == pytest.approx(plain.time_ratio, rel=1e-9)
+    assert (one.rise, one.fall) == pytest.approx((more * plain.fall, more * plain.rise), rel=1e-9)
+    assert one.dwell == pytest.approx(more * plain.dwell, rel=1e-5)
+    assert one.least_advantage == pytest.approx(more * plain.least_advantage, rel=1e-9)
 
 
 # -- dwells ----------------------------------------------------------------------------------------
@@ -179,6 +200,7 @@ def test_the_dwell_of_a_circle_is_a_chord() -> None:
     path = of_function(np.array([0, 0, 2.0 + 0j]))
     assert longest_dwell(path, 1.0).angle == pytest.approx(2 * asin(0.25), abs=1e-6)
     assert longest_dwell(path, 4.1).angle == pytest.approx(2 * pi)
+    assert longest_dwell(path, 3.9999).angle < 2 * pi
 
 
 @pytest.mark.parametrize("seed", range(6))

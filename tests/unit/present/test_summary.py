@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -14,6 +15,7 @@ from equipoise.present.composition import balance_blocks
 from equipoise.present.findings import find
 from equipoise.present.pictures import pictures
 from equipoise.present.summary import Shaking, answers, tiles
+from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
@@ -57,13 +59,18 @@ def test_rows_shake_together_as_they_do_one_by_one():
 
 
 def test_what_helps_most_is_what_balancing_finds():
-    found = find("yamashita-rig-counterweight")
+    """What the gauge reads is told, and what it reads after."""
+    found = find("yamashita-rig")
     told = text_of(found)
-    better = eq.analyze(found.balanced.machine).forces.shaking_force.value
-    rms = float(np.sqrt(np.mean(np.abs(better) ** 2)))
-    assert f"→ {brief(rms)} N" in told
-    gauge = found.response.gauges["gauge"].displacement.peak_to_peak
-    assert f"moves by {brief(1e3 * float(gauge))} mm peak to peak at 193 rpm" in told
+    before, after = (
+        eq.respond(machine).gauges["gauge"].displacement
+        for machine in (found.machine, found.balanced.machine)
+    )
+    rms = [1e3 * float(np.std(one.samples(1440))) for one in (before, after)]
+    assert f"Reading at gauge, RMS about the mean: {brief(rms[0])} → {brief(rms[1])} mm" in told
+    sizes = [brief(1e3 * float(one.peak_to_peak)) for one in (before, after)]
+    assert f"moves by {sizes[0]} mm peak to peak at 193 rpm, and by {sizes[1]} mm after" in told
+    assert "In exchange these become larger, frame and drive: shaking moment, RMS, by 72 %" in told
 
 
 def test_without_masses_nothing_is_said_of_forces():
@@ -94,7 +101,7 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
     before, after = next(iter(found.balanced.objectives.values()))
     assert 0.99 * before < after <= before
     told = text_of(found)
-    assert f"RMS, {brief(before)} N, is already as small as a counterweight on the crank" in told
+    assert "nothing that was tried makes shaking force, RMS at 6000 rpm smaller by 1 %" in told
     assert "add a counterweight" not in told
     assert [tile.note for tile in tiles(found)][-1].startswith("already as small as")
     assert "balance" not in {one.section for one in pictures(found)}
@@ -103,9 +110,10 @@ def test_where_balancing_brings_nothing_that_is_said_and_not_drawn():
 def test_rows_are_not_told_of_a_counterweight():
     found = find("walking-transplanter")
     told = " ".join(str(block) for block in balance_blocks(found))
-    assert "other phases of the rows" in told and "counterweight" not in told
+    assert "other phases of the rows" in told and "add a counterweight" not in told
     rolls = found.balanced.after["rows.roll_moment.peak"]
-    assert f"roll moment from 0 to {brief(rolls)} N m" in text_of(found)
+    rolls = found.balanced.after["rows.roll_moment.rms"]
+    assert f"roll moment, RMS, from 0 to {brief(rolls)} N m" in text_of(found)
 
 
 def test_a_mass_that_is_large_beside_the_links_is_told():
@@ -132,3 +140,23 @@ def test_notes_are_said_in_the_language_of_the_reader():
     with speaking("ko"):
         assert noted(note).startswith("참고: float: 정지")
         assert noted("the moon is full") == "참고(원문): the moon is full"
+
+
+def test_a_tool_s_hand_that_gets_worse_is_told():
+    """Beside the gain of the hand that felt most; a gain is not."""
+    found = find("brush-cutter")
+    design = found.design
+    first, *others = design.figures
+    kept = [replace(one, after=0.9 * one.before) for one in others]
+    assert "larger" not in " ".join(of_tool(found, replace(design, figures=(first, *kept))))
+    worse = replace(kept[0], before=2.0, after=2.03)
+    told = of_tool(found, replace(design, figures=(first, worse, *kept[1:])))
+    assert told[-1].startswith("In exchange these become larger, hands and holders: ")
+    assert told[-1].endswith(", by 1.5 %.")
+
+
+def of_tool(found, design):
+    """What helps most by a design of a tool."""
+    found.__dict__["design"] = design
+    (helps,) = (one for one in tool_answers(found) if one.question == "What helps most")
+    return helps.sentences

@@ -1,0 +1,163 @@
+"""Figures of a machine before and after a change, and which of them got worse."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from equipoise.balancing.effects import ANGLES
+from equipoise.balancing.multi_row import Rows, Term
+from equipoise.balancing.objectives import measured
+from equipoise.errors import EquipoiseError, ModelError, ResponseError
+from equipoise.mechanism.balance import Balance, Objective
+from equipoise.mechanism.dynamics import forces
+from equipoise.mechanism.model import Machine
+from equipoise.mechanism.motion import move
+from equipoise.mechanism.outputs import DECLARED, declared
+from equipoise.planting.summary import plant
+from equipoise.results.analysis import Analysis
+from equipoise.results.outputs import Outputs, unit_of_measure
+from equipoise.vibration.forced import respond, usual_step
+
+WORSE = 0.01
+"""Share by which a figure has to grow to be told as worse, or an aim to shrink to be worth it."""
+FAINT = 1e-6
+"""Of the largest figure of its unit: what is smaller is nobody's concern."""
+IMPORTANT = ("gauges", "rows", "forces", "joints", "gears")
+"""Groups of outputs in the order in which a reader asks for them."""
+
+Pair = tuple[float, float]
+"""A value before and after."""
+
+
+@dataclass(frozen=True)
+class Worse:
+    """A figure that got larger by more than `WORSE`: of several measures the one that grew most.
+
+    objective : its output, its measure, and where it is read.  group : of the output.
+    """
+
+    objective: Objective
+    group: str
+    before: float
+    after: float
+
+    @property
+    def growth(self) -> float:
+        """Over the value before; endless where there was nothing."""
+        return self.after / self.before - 1 if self.before > 0 else float("inf")
+
+
+def worse_of(
+    before: Mapping[str, float], after: Mapping[str, float], aims: Mapping[Objective, Pair]
+) -> tuple[Worse, ...]:
+    """Every figure that got worse, the important ones first, and the worst first among these.
+
+    Parameters
+    ----------
+    before, after : from `figures_of`.  aims : what was made small.
+    """
+    pairs = dict(aims)
+    for name, old in before.items():
+        output, _, measure = name.rpartition(".")
+        if output and not output.startswith("planting"):
+            pairs[Objective(output, measure)] = (old, after.get(name, 0.0))  # type: ignore[arg-type]
+    largest: dict[str, float] = {}
+    for one, pair in pairs.items():
+        largest[_kin(one)] = max(largest.get(_kin(one), 0.0), *pair)
+    found = []
+    for one, (old, new) in pairs.items():
+        if new > (1 + WORSE) * old and new > FAINT * largest[_kin(one)]:
+            there = old if old > FAINT * new else 0.0
+            found.append(Worse(one, _group_of(one.output), there, new))
+    found.sort(key=lambda one: (IMPORTANT.index(one.group), -one.growth))
+    seen: dict[tuple[str, tuple[float, ...], str | None], Worse] = {}
+    for grown in found:
+        aim = grown.objective
+        seen.setdefault((aim.output, aim.speeds, aim.about), grown)
+    return tuple(seen.values())
+
+
+def _group_of(output: str) -> str:
+    known = declared(output)
+    return known[0].group if known is not None else output.partition(".")[0]
+
+
+def _kin(one: Objective) -> str:
+    """Figures of the same kind, among which one may be nothing but rounding."""
+    if one.output.startswith("gauges."):
+        return "gauges"
+    unit = unit_of_measure(one.output, one.measure)
+    return "N m" if unit == "J" else unit
+
+
+def merged(plan: Balance, values: Mapping[str, Pair]) -> dict[Objective, Pair]:
+    """Aims of a plan before and after; of one that is read at several speeds the loudest.
+
+    values : of each objective, by its name.
+    """
+
+    groups: dict[Objective, list[Objective]] = {}
+    for one in plan.objectives:
+        groups.setdefault(replace(one, speeds=(), weight=1.0), []).append(one)
+    found: dict[Objective, Pair] = {}
+    for first, *others in groups.values():
+        speeds = tuple(speed for one in (first, *others) for speed in one.speeds)
+        pairs = [values[one.name] for one in (first, *others)]
+        old, new = (max(each) for each in zip(*pairs, strict=True))
+        found[replace(first, speeds=speeds)] = (old, new)
+    return found
+
+
+# -- figures before and after ----------------------------------------------------------------------
+
+
+def figures_of(machine: Machine) -> dict[str, float]:
+    """Figures by name, such as ``shaking_force.rms``; SI units.
+
+    Moments are about the drive's pivot; areas are those under the absolute value over a turn, in J.
+    """
+    motion = move(machine, ANGLES, acceleration=0.0)
+    figures = {"mass": machine.mass}
+    for one in Outputs(Analysis(motion, forces(motion))):
+        for measure in one.declared.compared if one.declared.needs == "masses" else ():
+            figures[f"{one.name}.{measure}"] = measured(one.component, measure)
+    return figures | _of_rows(machine) | _of_support(machine) | _of_planting(machine)
+
+
+def _of_rows(machine: Machine) -> dict[str, float]:
+    """Figures of all rows together, where there are several."""
+    rows, phases, figures = Rows(machine), np.array([row.phase for row in machine.rows]), {}
+    for one in DECLARED.values() if len(phases) > 1 else ():
+        for measure in one.compared if one.needs == "rows" else ():
+            objective = Objective(one.name.removeprefix("rows."), measure)
+            value = Term(objective, rows.signals(objective)).value_at(phases)
+            figures[f"{one.name}.{measure}"] = value
+    return figures
+
+
+def _of_support(machine: Machine) -> dict[str, float]:
+    figures: dict[str, float] = {}
+    if machine.support is None:
+        return figures
+    try:
+        gauges = respond(machine, model=usual_step(machine)).gauges
+    except (ModelError, ResponseError):  # without a steady state gauges have no figures
+        return figures
+    for name, gauge in gauges.items():
+        figures[f"gauges.{name}.peak_to_peak"] = float(gauge.displacement.peak_to_peak)
+        figures[f"gauges.{name}.ripple"] = float(gauge.displacement.vibration_rms)
+    return figures
+
+
+def _of_planting(machine: Machine) -> dict[str, float]:
+    """Figures of the tip's path, which balancing must not change."""
+    if machine.planting is None:
+        return {}
+    try:
+        found = plant(machine).figures
+    except EquipoiseError:  # a tip that never reaches the soil has no figures, and still shakes
+        return {}
+    return {f"planting.{name}": value for name, value in found.items()}

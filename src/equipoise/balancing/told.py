@@ -1,0 +1,316 @@
+"""What balancing says in sentences: what was tried, what is proved, what got worse."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from itertools import groupby
+from math import ceil, floor, isinf, log10
+from operator import eq
+from typing import TYPE_CHECKING
+
+from equipoise.balancing.objectives import unit_of
+from equipoise.balancing.workshop import sentences
+from equipoise.i18n import Note, say, to_say
+from equipoise.mechanism.balance import CUT, Balance, Objective, Weight, material_of
+from equipoise.mechanism.outputs import GROUPS
+from equipoise.quantities import PER_RPM, brief, change, percent, told
+from equipoise.results.blocks import Block, Change, Column, Table, Text
+from equipoise.results.outputs import (
+    MEASURES,
+    objective_named,
+    output_named,
+    shown_in,
+    unit_of_measure,
+)
+
+if TYPE_CHECKING:
+    from equipoise.balancing.balanced import Balanced
+    from equipoise.balancing.compared import Worse
+
+EXACT, SMALL = 1e-12, 1.01e-4
+"""Gap below which nothing more is told of it; above which it is told in percent."""
+FEW = 0.1
+"""Growth below which a digit more is told."""
+
+
+def said(text: Note | str) -> str:
+    """A sentence or a part of one, in the language that is spoken."""
+    return text.said() if isinstance(text, Note) else text
+
+
+def listed(parts: Iterable[str]) -> str:
+    """Parts of a sentence with "and" before the last."""
+    *first, last = parts
+    return say(" and ").join([*filter(None, [say(", ").join(first)]), last])
+
+
+def capital(text: str) -> str:
+    """A text that begins a sentence."""
+    return text[:1].upper() + text[1:]
+
+
+# -- what got worse --------------------------------------------------------------------------------
+
+
+def worse_told(found: Balanced) -> Iterator[str]:
+    """Every figure that got larger by more than 1 %, a sentence for each group of outputs."""
+    for group, ones in groupby(found.worse, key=lambda one: one.group):
+        figures = say("; ").join(_grown(found, one) for one in ones)
+        yield say(
+            "In exchange these become larger, {group}: {figures}.",
+            group=say(GROUPS[group]),
+            figures=figures,
+        )
+
+
+def _grown(found: Balanced, one: Worse) -> str:
+    aim, rows = one.objective, len(found.original.rows)
+    what = figure_named(f"{aim.output}.{aim.measure}", rows)
+    if aim.speeds or aim.about or aim.orders:
+        what = objective_named(aim, rows)
+    if one.before > 0:
+        return larger(what, one.growth)
+    unit = shown_in(figure_unit(found, f"{aim.output}.{aim.measure}"), [one.after])
+    size = unit.text(one.after, digits=3)
+    return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
+
+
+def larger(what: str, growth: float) -> str:
+    """A figure that got worse, and by which share."""
+    return say("{what}, by {share} %", what=what, share=percent(growth, 1 if growth < FEW else 0))
+
+
+def figure_named(name: str, rows: int) -> str:
+    """A figure that is told before and after, in words."""
+    if name == "mass":
+        return say("mass of the links")
+    output, _, measure = name.rpartition(".")
+    return say(", ").join((output_named(output, rows), say(MEASURES[measure])))
+
+
+def figure_unit(found: Balanced, name: str) -> str:
+    """SI unit of such a figure."""
+    if name == "mass":
+        return "kg"
+    output, _, measure = name.rpartition(".")
+    if output.startswith("gauges."):
+        return unit_of(Objective(output), found.original)
+    return unit_of_measure(output, measure)
+
+
+# -- what is proved --------------------------------------------------------------------------------
+
+
+def proof_told(found: Balanced) -> str:
+    """What is proved: of which freedom, of which aim, at which speed."""
+    return say(
+        "Proof, by {method}: with {freedom}, no choice makes {aims} smaller than here by more than "
+        "{gap} of the value before{scope}.",
+        method=said(found.method),
+        freedom=listed(freedoms(found.plan)),
+        aims=aims_told(found),
+        gap=gap_told(found.gap),
+        scope=scope_of(found),
+    )
+
+
+def gap_told(gap: float) -> str:
+    """A gap as it is printed, never smaller than it is where that could be seen."""
+    if gap <= SMALL:
+        return f"{max(gap, EXACT):.0e}"
+    digit = 10.0 ** floor(log10(gap) - 1)
+    return f"{100 * digit * ceil(gap / digit):.4g} %"
+
+
+def scope_of(found: Balanced) -> str:
+    """Of what the proof holds, where that is not all that the plan allows."""
+    parts = say(" and ").join(map(said, found.scope))
+    return f" {parts}" if parts else ""
+
+
+def aims_told(found: Balanced) -> str:
+    """What was made small, and at which speed."""
+    rows, aims = len(found.original.rows), [*found.aims]
+    told = _gauges_named(aims) or listed(objective_named(one, rows) for one in aims)
+    if len(aims) > 1:
+        ways = {
+            "sum": to_say("the sum, each over its value before, of {aims}"),
+            "squares": to_say(
+                "the root of the sum of squares, each over its value before, of {aims}"
+            ),
+        }
+        told = say(ways[found.plan.combine], aims=told)
+    if all(one.speeds for one in aims):
+        return told
+    speed = brief(abs(found.original.drive.speed) / PER_RPM)
+    return say("{aims} at {speed} rpm", aims=told, speed=speed)
+
+
+def _gauges_named(aims: list[Objective]) -> str:
+    """Several gauges that are read alike, in short; nothing where they are not."""
+    names = [one.output.removeprefix("gauges.") for one in aims]
+    same = {replace(one, output="", weight=1.0) for one in aims}
+    if len(aims) < 2 or len(same) > 1 or any(map(eq, names, (one.output for one in aims))):
+        return ""
+    first = objective_named(replace(aims[0], output="gauges.{}"))
+    return first.replace("{}", listed(names))
+
+
+def freedoms(plan: Balance) -> Iterator[str]:
+    """What a plan may change, in words."""
+    for move in plan.moves:
+        yield say("another centre of mass of {link}", link=move.link)
+    for added in plan.masses:
+        room = _room(added.weight)
+        yield say("{weight} on {link} about {point}", weight=room, link=added.link, point=added.at)
+    for geared in plan.geared:
+        yield say("{weight} geared to {link}", weight=_room(geared.weight), link=geared.driver)
+    for shafts in plan.shafts:
+        yield say("a pair of balance shafts, {name}", name=shafts.name)
+    for spring in plan.springs:
+        yield say("a spring between {link} and {to}", link=spring.link, to=spring.to)
+    if plan.phases is not None:
+        yield say("other phases of the rows")
+
+
+SHAPES = {
+    "any": to_say("any mass"),
+    "point": to_say("a point mass"),
+    "disc": to_say("a disc"),
+    "ring": to_say("a ring"),
+    "sector": to_say("a sector"),
+}
+
+
+def _room(weight: Weight) -> str:
+    """A weight: its shape, the plate that it is cut from, and its room."""
+    shape = say(SHAPES[weight.shape])
+    if weight.mass is not None:
+        shape = say("{shape} of {mass}", shape=shape, mass=told(weight.mass, "mass"))
+    if isinf(weight.radius):
+        return shape
+    outer = told(weight.radius, "length", "mm")
+    if weight.shape in CUT:
+        density = weight.density or 0.0
+        return say(
+            "{shape} of {thickness} {stuff} plate from {inner} to {outer}",
+            shape=shape,
+            thickness=told(weight.thickness or 0.0, "length", "mm"),
+            stuff=say(material_of(density) or told(density, "density")),
+            inner=told(weight.inner_radius, "length", "mm"),
+            outer=outer,
+        )
+    return (
+        shape if isinf(weight.radius) else say("{shape} within {outer}", shape=shape, outer=outer)
+    )
+
+
+# -- what was tried --------------------------------------------------------------------------------
+
+
+def tried_blocks(found: Balanced) -> Iterator[Block]:
+    """Where the file does not say what may be changed: what was tried, and how to ask for more."""
+    if not found.tried:
+        return
+    template = to_say(
+        "The file does not say what may be changed. So remedies that can be built were tried: "
+        "counterweights of steel plate within the reach of their links, together no heavier than "
+        "the links. [balance] in the file asks for something else, or options such as --objective, "
+        "--counterweight and --move-cm."
+    )
+    of_rows = to_say(
+        "The file does not say what may be changed. So remedies that can be built were tried: "
+        "phases of the rows, and counterweights of steel plate within the reach of their links, "
+        "together no heavier than the links of a row. [balance] in the file asks for something "
+        "else, or options such as --objective, --phases, --counterweight and --move-cm."
+    )
+    yield Text(say(of_rows if len(found.original.rows) > 1 else template))
+    rows = (
+        (listed(freedoms(one.plan)), Change(1.0, 1 - one.gain), _harm(one)) for one in found.tried
+    )
+    columns = (Column(say("remedy")), Column(say("change")), Column(""))
+    title = say("What was tried to make smaller {aims}", aims=aims_told(found))
+    yield Table(title, columns, tuple(rows))
+
+
+def _harm(one: Balanced) -> str:
+    return say("a gauge gets worse") if one.harms else ""
+
+
+def nothing_told(found: Balanced) -> Iterator[str]:
+    """That balancing brings nothing; how small the aims are, and what is proved."""
+    if found.tried:
+        yield say(
+            "Of what can be built easily nothing that was tried makes {aims} smaller by 1 %; the "
+            "most, {gain} %, by {freedom}.",
+            aims=aims_told(found),
+            gain=percent(max(found.gain, 0.0), 2),
+            freedom=listed(freedoms(found.plan)),
+        )
+    else:
+        for one, (before, _) in found.aims.items():
+            unit = shown_in(unit_of(one, found.original), [before])
+            yield say(
+                "{what}, {value} {unit}, is {already}.",
+                what=capital(objective_named(one, len(found.original.rows))),
+                value=unit.text(before, digits=3),
+                unit=unit.name,
+                already=good_already(found),
+            )
+    yield proof_told(found)
+
+
+def good_already(found: Balanced) -> str:
+    """What a machine is where balancing brings nothing, as a part of a sentence."""
+    if found.tried:
+        return say("already as small as what was tried can make it")
+    return say("already as small as what may be changed can make it")
+
+
+# -- what helps most -------------------------------------------------------------------------------
+
+LARGE = 0.5
+"""Added mass over that of all links from which it is told."""
+
+
+def helps_told(balanced: Balanced) -> Iterator[str]:
+    """What to change, what that brings, and what it costs."""
+    if not balanced.helps:
+        yield from nothing_told(balanced)
+        return
+    for made in balanced.changes:
+        first, *pieces = sentences(made)
+        yield say("{sentence}.", sentence="; ".join([first, *pieces]) if balanced.tried else first)
+    yield from _heavy(balanced)
+    for one, (before, after) in balanced.aims.items():
+        unit = shown_in(unit_of(one, balanced.original), [before])
+        yield say(
+            "{what}: {before} → {after} {unit} ({change}).",
+            what=capital(objective_named(one, len(balanced.original.rows))),
+            before=unit.text(before, digits=3),
+            after=unit.text(after, before, 3),
+            unit=unit.name,
+            change=change(before, after) or percent(0),
+        )
+    yield from worse_told(balanced)
+    yield proof_told(balanced)
+    if balanced.planting_kept:
+        yield say("The planting figures stay as they are.")
+
+
+def _heavy(balanced: Balanced) -> Iterator[str]:
+    """That the mass to be added is large, where it is."""
+    links = balanced.original.mass
+    added = sum(
+        float(dict(change.values)["mass"])
+        for change in balanced.changes
+        if change.kind == "added mass"
+    )
+    if added > LARGE * links > 0:
+        yield say(
+            "That is a large mass for this linkage: all its links together have {links}, and "
+            "{added} are added.",
+            links=told(links, "mass", "kg", digits=3),
+            added=told(added, "mass", "kg", digits=3),
+        )
