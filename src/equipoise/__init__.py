@@ -11,8 +11,8 @@ it is first used.
 
 from __future__ import annotations
 
-from lazy_loader import attach_stub
+from equipoise.guarding import attach
 
 __version__ = "0.1.0"
 
-__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -15,9 +15,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from typing import Any, Self
+from unicodedata import normalize
 
 
 @dataclass(frozen=True)
@@ -130,6 +132,36 @@ class ResponseError(EquipoiseError):
 
 class UsageError(EquipoiseError):
     """An argument cannot be used."""
+
+
+MOST_SHOWN = 20
+"""Names in an error."""
+
+
+def unknown(given: str, known: Iterable[str], kind: str) -> str:
+    """Say that a name is unknown, and what would be right."""
+    names = list(known)
+    hint = meant(given, names) or f"there are {_listed(names)}"
+    return f"no {kind} is called {given!r}; {hint}"
+
+
+def meant(given: str, names: Sequence[str]) -> str:
+    """Ask whether the nearest of some names is meant; empty where none is near."""
+    from difflib import get_close_matches
+
+    by_form = {form_of(name): name for name in reversed(names)}
+    near = get_close_matches(form_of(given), by_form, 1)
+    return f"did you mean {by_form[near[0]]!r}?" if near else ""
+
+
+def form_of(name: str) -> str:
+    """A name without its case, and with letters of any width as usual ones."""
+    return normalize("NFKC", name).casefold().strip()
+
+
+def _listed(names: list[str]) -> str:
+    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
+    return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
 
 
 EXTRAS = {"distributed": "cluster", "av": "video"}

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import inspect
+import pickle
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -122,3 +123,71 @@ def test_star_import() -> None:
     names: dict[str, Any] = {}
     exec("from equipoise import *", names)
     assert {*eq.__all__} <= names.keys()
+
+
+# -- wrong arguments -------------------------------------------------------------------------------
+
+MODEL = eq.load("yamashita-1")
+WRONG: dict[str, tuple[Callable[[], object], str]] = {
+    "file for machine": (
+        lambda: eq.analyze("a.toml"),  # type: ignore[arg-type]
+        "analyze: machine: got 'a.toml'; give a Machine, which load reads from a file",
+    ),
+    "unit for keyword": (
+        lambda: MODEL.with_drive(rpm=300),
+        "Drive: no parameter is called 'rpm'; ",
+    ),
+    "keyword of a link": (
+        lambda: MODEL.with_link("crank", mas=1),
+        "Link: no parameter is called 'mas'; did you mean 'mass'?",
+    ),
+    "keyword of a constructor": (
+        lambda: eq.Link(point={}),  # type: ignore[call-arg]
+        "Link: no parameter is called 'point'; did you mean 'points'?",
+    ),
+    "misspelt": (
+        lambda: eq.analyze(MODEL, sped=1),  # type: ignore[call-arg]
+        "analyze: no parameter is called 'sped'; did you mean 'speed'?",
+    ),
+    "too few": (eq.analyze, "analyze: missing a required argument: 'machine'; it takes machine,"),
+    "text for number": (
+        lambda: eq.simulate(MODEL, "1 s"),  # type: ignore[arg-type]
+        "simulate: duration: got '1 s'; give a number in SI units",
+    ),
+    "machine for study": (
+        lambda: eq.studies.run_study(MODEL, "x"),  # type: ignore[arg-type]
+        "run_study: study: got one of the type Machine; give a Study",
+    ),
+    "swapped": (lambda: eq.save("a.toml", MODEL), "save: model: got 'a.toml'; give a Machine or"),  # type: ignore[arg-type]
+    "no list": (lambda: MODEL.with_springs(5), "with_springs: springs: got 5; give a list"),  # type: ignore[arg-type]
+}
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_wrong_arguments_are_told_in_a_sentence(name: str) -> None:
+    call, words = WRONG[name]
+    with pytest.raises(eq.EquipoiseError) as caught:
+        call()
+    assert str(caught.value).startswith(words)
+
+
+FUNCTIONS = {
+    name: one
+    for name, one in NAMES.items()
+    if inspect.isfunction(one) and not name.startswith("signals.")  # no room, but a module
+}
+
+
+@pytest.mark.parametrize("name", FUNCTIONS)
+def test_every_function_refuses_what_is_nothing_of_the_kind(name: str) -> None:
+    """Whatever is given first, and under a keyword that nobody has."""
+    for given, more in (((object(),), {}), ((), {"no_such": 1})):
+        with pytest.raises(eq.EquipoiseError):
+            FUNCTIONS[name](*given, **more)
+
+
+def test_guarded_functions_are_still_what_they_were() -> None:
+    """The same wherever they are offered, for workers too, and with their signature."""
+    for name, one in FUNCTIONS.items():
+        assert pickle.loads(pickle.dumps(one)) is one, name
+        assert inspect.signature(one) == inspect.signature(inspect.unwrap(one))

@@ -10,6 +10,7 @@ from types import MappingProxyType
 from typing import Any, ClassVar, Self, TypeVar, dataclass_transform
 
 from equipoise.errors import ModelError
+from equipoise.guarding import keyworded
 from equipoise.keys.kinds import (
     PLANES,
     Kind,
@@ -136,9 +137,8 @@ def inside(kind: Kind | str, *, default: Any = REQUIRED, compare: bool = True, *
 @dataclass_transform(frozen_default=True, field_specifiers=(key, inside, field))
 def declared(cls: Class) -> Class:
     """Make a frozen dataclass of a class with keys."""
-    made: Any = dataclass(frozen=True)(cls)
-    result: Class = made
-    return result
+    made: Class = keyworded(dataclass(frozen=True)(cls))
+    return made
 
 
 def once(compute: Callable[[type[Frozen]], Result]) -> Callable[[type[Frozen]], Result]:

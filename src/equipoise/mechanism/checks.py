@@ -5,9 +5,30 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from math import pi
 from typing import Any, TypeVar
-from unicodedata import normalize
 
-from equipoise.errors import ModelError
+from equipoise.errors import ModelError, form_of, meant, unknown
+
+__all__ = [
+    "FRAME",
+    "LONGEST_NAME",
+    "SIDES",
+    "Bodies",
+    "Named",
+    "Vector",
+    "bodies_at",
+    "check_kept",
+    "form_of",
+    "meant",
+    "numbered",
+    "positive",
+    "too_many",
+    "unknown",
+    "unknown_link",
+    "unknown_point",
+    "wrong_range",
+    "wrong_speeds",
+    "wrong_text",
+]
 
 FRAME = "frame"
 SIDES = ("left", "right", "forward", "backward")
@@ -18,36 +39,8 @@ Bodies = Mapping[str, Mapping[str, Vector]]
 
 Value = TypeVar("Value")
 
-MOST_SHOWN = 20
-"""Names in an error."""
 LONGEST_NAME = 200
 """Far beyond any machine; they keep a file of nonsense from running for hours."""
-
-
-def unknown(given: str, known: Iterable[str], kind: str) -> str:
-    """Say that a name is unknown, and what would be right."""
-    names = list(known)
-    hint = meant(given, names) or f"there are {_listed(names)}"
-    return f"no {kind} is called {given!r}; {hint}"
-
-
-def meant(given: str, names: Sequence[str]) -> str:
-    """Ask whether the nearest of some names is meant; empty where none is near."""
-    from difflib import get_close_matches
-
-    by_form = {form_of(name): name for name in reversed(names)}
-    near = get_close_matches(form_of(given), by_form, 1)
-    return f"did you mean {by_form[near[0]]!r}?" if near else ""
-
-
-def form_of(name: str) -> str:
-    """A name without its case, and with letters of any width as usual ones."""
-    return normalize("NFKC", name).casefold().strip()
-
-
-def _listed(names: list[str]) -> str:
-    shown = ", ".join(repr(name) for name in names[:MOST_SHOWN]) or "none"
-    return shown if len(names) <= MOST_SHOWN else f"{shown} and {len(names) - MOST_SHOWN} more"
 
 
 class Named(dict[str, Value]):
@@ -68,6 +61,14 @@ def bodies_at(bodies: Bodies) -> dict[str, list[str]]:
         for point in points:
             found.setdefault(point, []).append(body)
     return found
+
+
+def check_kept(where: str, old: Iterable[str], new: Any) -> None:
+    """Refuse points that leave some of the old ones out, which nobody would notice."""
+    lost = [one for one in old if one not in new] if new and isinstance(new, Mapping) else ()
+    if lost:
+        all_of_them = "give all points, or move one by with_point"
+        raise ModelError(where, f"{', '.join(lost)} would be lost; {all_of_them}")
 
 
 def numbered(key: str, items: Sequence[Any]) -> Iterator[tuple[str, Any]]:

@@ -33,6 +33,7 @@ from equipoise.mechanism.checks import (
     SIDES,
     Bodies,
     Vector,
+    check_kept,
     numbered,
     too_many,
     unknown,
@@ -211,9 +212,10 @@ class Machine(Frozen):
         return sum(link.mass or 0.0 for link in self.links.values())
 
     def with_link(self, name: str, **changes: Any) -> Machine:
-        """Return the machine with fields of one link changed."""
+        """Return the machine with fields of one link changed; `points` has to have all of them."""
         if name not in self.links:
             raise ModelError(f"links.{name}", unknown(name, self.links, "link"))
+        check_kept(f"links.{name}.points", self.links[name].points, changes.get("points"))
         found = self._with_link(name, lambda link: link.altered(**changes))
         return self._same_motion(found, set(changes) <= {*MASS_FIELDS, "bodies"})
 
@@ -223,6 +225,16 @@ class Machine(Frozen):
         except ModelError as error:
             raise error.within(f"links.{name}") from error
         return replace(self, links={**self.links, name: link})
+
+    def with_point(self, body: str, point: str, place: Vector) -> Machine:
+        """Return the machine with one point of a link or the frame elsewhere, in its axes, m."""
+        if body not in self.bodies:
+            raise ModelError(f"links.{body}", unknown(body, self.bodies, "link"))
+        where = "frame" if body == FRAME else f"links.{body}"
+        if point not in (points := self.points_of(body)):
+            raise ModelError(f"{where}.points", unknown(point, points, f"point of {body}"))
+        moved = {**points, point: place}
+        return replace(self, frame=moved) if body == FRAME else self.with_link(body, points=moved)
 
     def with_drive(self, **changes: Any) -> Machine:
         """Return the machine with fields of its drive changed."""

@@ -2,6 +2,6 @@
 
 from __future__ import annotations
 
-from lazy_loader import attach_stub
+from equipoise.guarding import attach
 
-__getattr__, __dir__, __all__ = attach_stub(__name__, __file__)
+__getattr__, __dir__, __all__ = attach(__name__, __file__)

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.told import capital
+from equipoise.balancing.compared import WORSE
+from equipoise.balancing.told import capital, larger
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
-from equipoise.handheld.hand_blocks import varied_named
+from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
@@ -191,3 +192,14 @@ def _helps(design: ToolDesign) -> Iterator[str]:
         after=brief(best.after),
         change=change(best.before, best.after),
     )
+    worse = [
+        larger(figure_named(one), one.after / one.before - 1)
+        for one in design.figures[1:]
+        if one.dimension != "mass" and one.after > (1 + WORSE) * one.before > 0
+    ]
+    if worse:
+        yield say(
+            "In exchange these become larger, {group}: {figures}.",
+            group=say("hands and holders"),
+            figures=say("; ").join(worse),
+        )

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import copy
 import pickle
+import re
+from collections.abc import Callable
 from dataclasses import replace
 from math import inf, nan, pi
 from typing import Any
@@ -114,7 +116,8 @@ LINKS: list[tuple[str, str, Any]] = [
     ("frame.points", "there is no point; give at least one", lambda: replace(FOUR, frame={})),
     ("frame.points", "a point has an empty name", lambda: replace(FOUR, frame={" ": ORIGIN})),
     ("links.rocker.points", "there is no point; give at least one", lambda: rocker(points={})),
-    ("links.rocker.points", "a point has an empty name", lambda: rocker(points={" ": ORIGIN})),
+    ("links.rocker.points", "a point has an empty name",
+     lambda: rocker(points={**FOUR.links["rocker"].points, " ": ORIGIN})),
     ("links.rocker", "mass missing; give mass, center_of_mass and inertia together...",
      lambda: rocker(mass=None)),
     ("links.rocker", "center_of_mass missing; give...", lambda: rocker(center_of_mass=None)),
@@ -329,6 +332,32 @@ def test_joints_of_one_name_are_refused() -> None:
     renamed = pinned
     for name, link in pinned.links.items():
         points = {"piston on frame" if p == "B" else p: q for p, q in link.points.items()}
-        renamed = renamed.with_link(name, points=points)
+        renamed = replace(renamed, links={**renamed.links, name: replace(link, points=points)})
     with pytest.raises(ModelError, match="two joints would be called 'piston on frame'"):
         eq.mechanism.assemble(renamed)
+
+
+# -- points ----------------------------------------------------------------------------------------
+
+
+def test_one_point_is_moved() -> None:
+    """On a link or the frame; what else the body has stays where it is."""
+    moved = FOUR.with_point("crank", "B", (0.3, 0.1)).with_point(FRAME, "D", (1.1, 0.0))
+    assert dict(moved.links["crank"].points) == {"A": ORIGIN, "B": (0.3, 0.1)}
+    assert dict(moved.frame) == {"A": ORIGIN, "D": (1.1, 0.0)}
+    found = eq.move(moved, 12).points["B"].place
+    np.testing.assert_allclose(np.abs(found), np.hypot(0.3, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda: FOUR.with_link("crank", points={"B": (0.3, 0.0)}), "A would be lost; give all"),
+        (lambda: FOUR.with_point("crank", "b", ORIGIN), "no point of crank is called 'b'; did you"),
+        (lambda: FOUR.with_point("krank", "B", ORIGIN), "did you mean 'crank'?"),
+        (lambda: FOUR.with_point("crank", "B", 3.0), "'B': 3.0}; give a mapping of names to two"),  # type: ignore[arg-type]
+    ],
+)
+def test_no_point_is_lost_or_made_unawares(change: Callable[[], object], words: str) -> None:
+    with pytest.raises(ModelError, match=re.escape(words)):
+        change()
