@@ -20,6 +20,8 @@ import numpy as np
 import pytest
 
 import equipoise as package
+from equipoise.errors import UsageError
+from equipoise.schema.files import json_text
 from surface.running import (
     EXAMPLES,
     READY,
@@ -600,3 +602,36 @@ def test_output_onto_a_full_disk() -> None:
                          stderr=subprocess.PIPE)  # fmt: skip
     assert result.status == 2
     assert result.err == "equipoise: the output cannot be written (No space left on device)\n"
+
+
+@pytest.mark.parametrize("columns", [1, 2, 20])
+def test_help_in_a_narrow_terminal(columns: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    lines = succeeded(equipoise("analyze", "--help")).splitlines()
+    assert any("--angles" in line for line in lines)
+    assert max(map(len, lines)) <= 40
+
+
+def test_names_of_files_are_printed_in_plain_signs() -> None:
+    name = "a\x1b[31mb"
+    result = equipoise("plot", "yamashita-1", "-o", name, "--only", "linkage")
+    assert "\x1b" not in succeeded(result) + result.err
+    assert Path(name).is_dir()
+
+
+def test_json_refuses_what_is_not_finite() -> None:
+    values = {"gauges": {"seat": np.array([1.0, np.inf])}}
+    with pytest.raises(UsageError, match=r"^gauges\.seat\[2\]: is beyond all numbers"):
+        json_text(values)
+
+
+def test_everything_is_written_or_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A table that cannot be shown, after all files were written."""
+
+    def broken(*_: object, **__: object) -> None:
+        raise UsageError("a figure is missing")
+
+    monkeypatch.setattr("equipoise.present.terminal._Printer.table", broken)
+    words = ("balance", "balance-crank", "-o", "new.toml", "--csv", "b.csv", "--plot", "pictures")
+    assert refused(equipoise(*words)) == "a figure is missing"
+    assert not list(Path().iterdir())

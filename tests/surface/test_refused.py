@@ -310,7 +310,7 @@ REFUSED = {
             "--objective: got '100'; the unit is missing; give an angular speed, such"
         ),
         "four-row-transplanter --limit 'joints.B <= 5 N'": (
-            "limits are not kept while phases are looked for; leave one of them out"
+            "no phase changes the force in a joint; leave its limit out"
         ),
         "conditions yamashita-1 --crank-counterweight": "Unknown option: --crank-counterweight.",
     },

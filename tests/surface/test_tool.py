@@ -285,3 +285,10 @@ def test_numbers_out_of_scale() -> None:
     said = "check its length, stiffness and mass"
     line = refuses("tool model.toml --respond '1000 rpm : 9000 rpm'", said)
     assert line.startswith("model.toml: shaft: at ")
+
+
+@pytest.mark.parametrize("length", ["1e20 m", "1e30 m"])
+def test_a_shaft_of_absurd_length(length: str) -> None:
+    text = example_text("nagamine-irie").replace("1.544 m", length)
+    for words in ("--modes", "--modes --json", "--respond '1000:9000 rpm' --json"):
+        refuses(f"tool {written(text)} {words}", "shaft: ")

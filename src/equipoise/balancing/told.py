@@ -70,11 +70,15 @@ def _grown(found: Balanced, one: Worse) -> str:
     if aim.speeds or aim.about or aim.orders:
         what = objective_named(aim, rows)
     if one.before > 0:
-        share = percent(one.growth, 1 if one.growth < FEW else 0)
-        return say("{what}, by {share} %", what=what, share=share)
+        return larger(what, one.growth)
     unit = shown_in(figure_unit(found, f"{aim.output}.{aim.measure}"), [one.after])
     size = unit.text(one.after, digits=3)
     return say("{what}, from 0 to {size} {unit}", what=what, size=size, unit=unit.name)
+
+
+def larger(what: str, growth: float) -> str:
+    """A figure that got worse, and by which share."""
+    return say("{what}, by {share} %", what=what, share=percent(growth, 1 if growth < FEW else 0))
 
 
 def figure_named(name: str, rows: int) -> str:

@@ -139,16 +139,16 @@ def serve(
     from equipoise.web import server
     from equipoise.web.session import Session, opened_file
 
-    design = None if file is None else opened_file(file)
+    first = Session()
+    if file is not None:
+        with naming(file):  # what is wrong with the machine is told before a page is opened
+            first.open(opened_file(file))
 
     def begin() -> Session:
         session = Session()
-        if design is not None:
-            session.open(design)
+        if first.found is not None:
+            session.open(first.found.design, first.found)
         return session
-
-    with naming(file or ""):
-        begin()  # what is wrong with the machine is told before a page is opened
 
     def tell(address: str) -> None:
         print(address, flush=True)

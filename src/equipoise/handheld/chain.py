@@ -286,6 +286,7 @@ def _back(step: Step, q: Pair, g: Pair) -> Pair:
     )
 
 
+@np.errstate(all="ignore")
 def count(carried: Carried) -> Array:
     """How many natural frequencies lie below that of a chain without damping (Wittrick-Williams).
 

@@ -62,6 +62,12 @@ def _free(tool: Tool, plane: int) -> Array:
     return np.eye(2)[: 1 if turning else 2]
 
 
+TOO_FAR_APART = (
+    "sizes are too far apart for natural frequencies and modes to be computed; check its length, "
+    "stiffness and mass, and the masses and springs on it"
+)
+
+
 def natural_frequencies(tool: Tool, number: int) -> Array:
     """The first so many natural frequencies (2, number) of both planes, rad/s, without damping.
 
@@ -116,7 +122,11 @@ def _enough(tool: Tool, number: int) -> tuple[Layout, float]:
 def _count(layout: Layout, frequency: Array) -> Array:
     """Natural frequencies below each of these (2, F), rad/s."""
     s = 1j * frequency
-    total = count(carry(layout.chain(s, "undamped")))
+    carried = carry(layout.chain(s, "undamped"))
+    last = carried.stiffness[-1]
+    if not np.any(np.isfinite(last.aa * last.tt)):
+        raise ModelError("shaft", TOO_FAR_APART)
+    total = count(carried)
     for below in layout.absorbers(s, "undamped"):  # with its base held, it swings at k = m w^2
         total = total + (np.real(below) < 0)
     return np.broadcast_to(total, frequency.shape)

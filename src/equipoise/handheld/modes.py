@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.errors import ModelError
 from equipoise.handheld.chain import Pair, carry, solve
 from equipoise.handheld.frequencies import (
+    TOO_FAR_APART,
     eigenvalues,
     floating,
     frequencies_below,
@@ -313,6 +315,8 @@ def _loaded(layout: Layout, s: Array, places: Array, kind: Kind) -> tuple[Array,
 
 def scaled(shapes: Array) -> Array:
     """Shapes (..., X), each 1 where it is largest."""
+    if not np.all(np.isfinite(shapes)):
+        raise ModelError("shaft", TOO_FAR_APART)
     at = highest_at(np.abs(shapes), smooth=False)[..., None]
     largest = np.take_along_axis(shapes, at, -1)
     return np.asarray(shapes / np.where(largest == 0, 1.0, largest))

@@ -9,16 +9,17 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from equipoise.balancing.told import capital
+from equipoise.balancing.compared import WORSE
+from equipoise.balancing.told import capital, larger
 from equipoise.exposure.blocks import VERDICTS
 from equipoise.handheld.blocks import UNITS
 from equipoise.handheld.exposed import WORKING, grips
-from equipoise.handheld.hand_blocks import varied_named
+from equipoise.handheld.hand_blocks import figure_named, varied_named
 from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
-from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
+from equipoise.quantities import PER_RPM, Dimension, brief, change, display, percent
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
@@ -172,7 +173,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
 def _helps(design: ToolDesign) -> Iterator[str]:
     for one in design.variables:
         kind: Dimension = one.dimension  # type: ignore[assignment]
-        unit = in_unit(UNITS.get(kind, SI[kind]))
+        unit = display(kind, [one.before, one.after], UNITS.get(kind))
         before, after = unit.text(one.before), unit.text(one.after)
         if before != after:
             name = varied_named(one.name)
@@ -191,3 +192,14 @@ def _helps(design: ToolDesign) -> Iterator[str]:
         after=brief(best.after),
         change=change(best.before, best.after),
     )
+    worse = [
+        larger(figure_named(one), one.after / one.before - 1)
+        for one in design.figures[1:]
+        if one.dimension != "mass" and one.after > (1 + WORSE) * one.before > 0
+    ]
+    if worse:
+        yield say(
+            "In exchange these become larger, {group}: {figures}.",
+            group=say("hands and holders"),
+            figures=say("; ").join(worse),
+        )

@@ -8,7 +8,8 @@ import json
 import os
 import re
 import stat
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -152,8 +153,34 @@ def reason(error: Exception) -> str:
 
 
 def json_text(values: dict[str, Any]) -> str:
-    """Nested values with NumPy arrays as one JSON object."""
-    return json.dumps(values, default=_plain, allow_nan=False)
+    """Nested values with NumPy arrays as one JSON object.
+
+    Raises
+    ------
+    UsageError : one of them is not finite, for which JSON has no word.
+    """
+    try:
+        return json.dumps(values, default=_plain, allow_nan=False)
+    except ValueError as error:
+        where = next(_endless(values, ""), "a figure")
+        raise UsageError(
+            f"{where}: is beyond all numbers; sizes in the file are too far apart to be computed "
+            "with, check its lengths, masses, stiffnesses and speeds"
+        ) from error
+
+
+def _endless(value: Any, where: str) -> Iterator[str]:
+    """Names of the figures that are not finite."""
+    if isinstance(value, Mapping):
+        for name, inner in value.items():
+            yield from _endless(inner, f"{where}.{name}" if where else str(name))
+    elif isinstance(value, list | tuple):
+        for number, inner in enumerate(value, 1):
+            yield from _endless(inner, f"{where}[{number}]")
+    elif hasattr(value, "tolist"):
+        yield from _endless(value.tolist(), where)
+    elif isinstance(value, float) and not isfinite(value):
+        yield where
 
 
 def _plain(value: Any) -> Any:

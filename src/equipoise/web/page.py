@@ -8,17 +8,22 @@ import struct
 import sys
 import traceback
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import Executor
-from typing import TYPE_CHECKING
+from functools import partial
+from typing import TYPE_CHECKING, Any
+
+from starlette.websockets import WebSocketDisconnect
 
 from equipoise.errors import UsageError
+from equipoise.web.lanes import MOMENT, Lanes, Work
 from equipoise.web.messages import SLOW, Message, read
 from equipoise.web.session import Reply, Session, refused
 
 if TYPE_CHECKING:
     from starlette.websockets import WebSocket
 
+Do = Callable[[Callable[[], Any]], Any]
 MOST_WAITING, MOST_QUESTIONS = 100, 3
 PAUSE = 0.2
 """s without a message, after which what takes longer is told too."""
@@ -31,13 +36,11 @@ POLICY_VIOLATION, TRY_LATER = 1008, 1013
 class Page:
     """A page that is open.
 
-    quick, slow : threads that compute; what takes long has its own, so that dragging goes on.
+    lanes : threads that compute; what takes long has its own, so that dragging goes on.
     """
 
-    def __init__(
-        self, socket: WebSocket, session: Session, quick: Executor, slow: Executor
-    ) -> None:
-        self.socket, self.session, self.quick, self.slow = socket, session, quick, slow
+    def __init__(self, socket: WebSocket, session: Session, lanes: Lanes) -> None:
+        self.socket, self.session, self.lanes, self.work = socket, session, lanes, Work()
         self.waiting: deque[Message | UsageError] = deque()
         self.come = asyncio.Event()
         self.closed = False
@@ -48,16 +51,22 @@ class Page:
     async def run(self) -> None:
         """Answer until the page is closed."""
         await self.socket.accept()
-        reader, worker = asyncio.create_task(self._read()), asyncio.create_task(self._work())
+        # What computes has a task of its own each: a page that is closed waits for none of them.
+        tasks = [asyncio.create_task(one) for one in (self._read(), self._work(), self._talk())]
         try:
-            await self._send(self.session.hello())
-            while (message := await self._next()) is not None:
-                await self._take(message)
+            await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
         finally:
             self.closed = True
-            for task in (reader, worker, self.more):
-                if task is not None:
-                    task.cancel()
+            self.work.end()
+            tasks += [self.more] if self.more is not None else []
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _talk(self) -> None:
+        await self._send(self.session.hello())
+        while (message := await self._next()) is not None:
+            await self._take(message)
 
     # -- what comes in -----------------------------------------------------------------------------
 
@@ -91,7 +100,9 @@ class Page:
             await self._send(refused(None, message))
         elif message.kind not in SLOW:
             self.last = message
-            await self._answer(self.session.receive(message), message.seq, self.quick)
+            known = message.kind != "open" and self.work.spent < MOMENT
+            lane = self.lanes.quick if known else self.lanes.heavy
+            await self._answer(self.session.receive(message), message.seq, lane, self.work.timed)
             if _done(self.more):
                 self.more = asyncio.create_task(self._tell_more())
         elif self.questions.full():
@@ -103,7 +114,7 @@ class Page:
         """Answer what takes long, one after the other, beside what does not."""
         while True:
             message = await self.questions.get()
-            await self._answer(self.session.receive(message), message.seq, self.slow)
+            await self._answer(self.session.receive(message), message.seq, self.lanes.long)
 
     async def _tell_more(self) -> None:
         """What takes too long to be told at every move of a drag."""
@@ -111,21 +122,30 @@ class Page:
             last = self.last
             await asyncio.sleep(PAUSE)
             if not self.waiting and self.last is last:
-                await self._answer(self.session.tell_more(), None, self.slow)
+                await self._answer(self.session.tell_more(), None, self.lanes.long)
 
-    async def _answer(self, replies: Iterator[Reply], seq: int | None, pool: Executor) -> None:
+    async def _answer(
+        self, replies: Iterator[Reply], seq: int | None, lane: Executor, do: Do | None = None
+    ) -> None:
         """Send replies as they are computed; a mistake of the program must not end the page."""
-        loop = asyncio.get_running_loop()
+        loop, do = asyncio.get_running_loop(), do or self.work.do
         try:
-            while (reply := await loop.run_in_executor(pool, next, replies, None)) is not None:
-                await self._send(reply)
+            while True:
+                one = await loop.run_in_executor(lane, do, partial(next, replies, None))
+                if one is None:
+                    break
+                await self._send(one)
         except Exception as error:  # whatever it is, the last good state is still there
             traceback.print_exception(error, file=sys.stderr)
             await self._send(refused(seq, UsageError(f"{MISTAKE} ({type(error).__name__})")))
 
     async def _send(self, reply: Reply) -> None:
-        if not self.closed:
-            await self.socket.send_bytes(packed(reply))
+        try:
+            if not self.closed:
+                await self.socket.send_bytes(packed(reply))
+        except (WebSocketDisconnect, RuntimeError):  # the page has gone without a word
+            self.closed = True
+            self.come.set()
 
 
 async def turn_away(socket: WebSocket, why: str) -> None:

@@ -10,9 +10,8 @@ from __future__ import annotations
 
 import os
 import socket
+import sys
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor
-from concurrent.futures import ThreadPoolExecutor as Threads
 from contextlib import contextmanager, suppress
 from importlib.resources import files
 from secrets import compare_digest, token_urlsafe
@@ -20,6 +19,7 @@ from typing import TYPE_CHECKING
 
 from equipoise.errors import UsageError
 from equipoise.schema.files import reason
+from equipoise.web.lanes import Lanes
 from equipoise.web.messages import LARGEST_MESSAGE
 from equipoise.web.page import Page, turn_away
 from equipoise.web.session import Session
@@ -128,6 +128,10 @@ def assets() -> dict[str, bytes]:
 
 
 ADDRESS = "127.0.0.1"
+SWITCH = 1e-3
+"""s after which a thread that computes makes way for another; five times as often as usual, so
+that a short answer does not wait for long ones.
+"""
 MOST_PAGES = 20
 FULL = f"{MOST_PAGES} pages are open already; close one of them"
 NOTHING = "equipoise: there is nothing here; open the address that was printed\n"
@@ -150,14 +154,12 @@ HTML = """<!doctype html>
 """
 
 
-def application(
-    port: int, token: str, begin: Callable[[], Session], quick: Executor, slow: Executor
-) -> ASGIApp:
+def application(port: int, token: str, begin: Callable[[], Session], lanes: Lanes) -> ASGIApp:
     """The server as an ASGI application.
 
     port : on which it is served.  token : that every request has to carry.
     begin : makes the session of a page that is opened.
-    quick, slow : threads that compute.
+    lanes : threads that compute.
     """
     from starlette.applications import Starlette
     from starlette.responses import PlainTextResponse, Response
@@ -180,7 +182,7 @@ def application(
         if len(pages) >= MOST_PAGES:
             await turn_away(socket, FULL)
             return
-        page = Page(socket, begin(), quick, slow)
+        page = Page(socket, begin(), lanes)
         pages.add(page)
         try:
             await page.run()
@@ -213,12 +215,11 @@ def served(
     token = token_urlsafe(24)
     with (
         _listening(port) as listener,
-        Threads(4) as quick,
-        Threads(2) as slow,
+        Lanes() as lanes,
     ):
         port = listener.getsockname()[1]
         config = uvicorn.Config(
-            application(port, token, begin, quick, slow),
+            application(port, token, begin, lanes),
             ws="websockets-sansio",
             ws_max_size=LARGEST_MESSAGE,
             ws_per_message_deflate=False,
@@ -238,6 +239,7 @@ def serve(begin: Callable[[], Session], port: int, tell: Callable[[str], None]) 
 
     tell : is given the address of the page, which is served from then on.
     """
+    sys.setswitchinterval(SWITCH)
     with served(begin, port) as (server, listener, address), suppress(KeyboardInterrupt):
         tell(address)
         server.run(sockets=[listener])

@@ -173,9 +173,12 @@ class Session:
             }
         )
 
-    def open(self, design: Design) -> None:
-        """Begin with a design; what was done before is forgotten."""
-        found = solved(design)
+    def open(self, design: Design, found: Solved | None = None) -> None:
+        """Begin with a design; what was done before is forgotten.
+
+        found : the design, if it has been computed.
+        """
+        found = found or solved(design)
         with self.lock:
             self.scale = Scale.of(design)
             self._go(History(Step(design, "")), found)

@@ -140,6 +140,35 @@ def test_angles_in_any_order_lie_on_one_branch() -> None:
         np.testing.assert_allclose(again.points[name].place, want, rtol=0, atol=1e-13)
 
 
+@pytest.mark.parametrize("strides", [(), (np.radians(6),)])
+def test_wide_steps_lead_where_narrow_ones_do(
+    strides: tuple[float, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wide = eq.move(eq.load("class-three"), 48)
+    monkeypatch.setattr("equipoise.mechanism.newton.STRIDES", strides)
+    narrow = eq.move(eq.load("class-three"), 48)
+    for name, point in wide.points.items():
+        for part in ("place", "place_1", "place_2"):
+            want = getattr(narrow.points[name], part)
+            np.testing.assert_allclose(getattr(point, part), want, rtol=0, atol=1e-12)
+
+
+def test_few_crank_angles_are_solved_by_themselves(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The way round takes a post every 30 degrees, and all between at once."""
+    sizes = []
+    solve = LoopGroup.solve
+
+    def counted(self: LoopGroup, guess: np.ndarray, *given: object) -> np.ndarray:
+        found = solve(self, guess, *given)  # type: ignore[arg-type]
+        sizes.append(found.size)
+        return found
+
+    monkeypatch.setattr(LoopGroup, "solve", counted)
+    eq.move(eq.load("class-three"), 360)
+    assert len(sizes) < 20
+    assert max(sizes) == 4 * 721
+
+
 def places_of(motion: eq.mechanism.Motion, names: str) -> dict[str, tuple[float, float]]:
     points = {name: motion.points[name] for name in names}
     return {name: (float(point.x[0]), float(point.y[0])) for name, point in points.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -14,6 +15,7 @@ from equipoise.present.composition import balance_blocks
 from equipoise.present.findings import find
 from equipoise.present.pictures import pictures
 from equipoise.present.summary import Shaking, answers, tiles
+from equipoise.present.tool_summary import tool_answers
 from equipoise.quantities import brief
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.blocks import Table
@@ -138,3 +140,23 @@ def test_notes_are_said_in_the_language_of_the_reader():
     with speaking("ko"):
         assert noted(note).startswith("참고: float: 정지")
         assert noted("the moon is full") == "참고(원문): the moon is full"
+
+
+def test_a_tool_s_hand_that_gets_worse_is_told():
+    """Beside the gain of the hand that felt most; a gain is not."""
+    found = find("brush-cutter")
+    design = found.design
+    first, *others = design.figures
+    kept = [replace(one, after=0.9 * one.before) for one in others]
+    assert "larger" not in " ".join(of_tool(found, replace(design, figures=(first, *kept))))
+    worse = replace(kept[0], before=2.0, after=2.03)
+    told = of_tool(found, replace(design, figures=(first, worse, *kept[1:])))
+    assert told[-1].startswith("In exchange these become larger, hands and holders: ")
+    assert told[-1].endswith(", by 1.5 %.")
+
+
+def of_tool(found, design):
+    """What helps most by a design of a tool."""
+    found.__dict__["design"] = design
+    (helps,) = (one for one in tool_answers(found) if one.question == "What helps most")
+    return helps.sentences

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import socket
+import struct
 import threading
+import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
@@ -20,6 +22,8 @@ from equipoise.mechanism.model import Machine
 from equipoise.web import server as served_module
 from equipoise.web import session as session_module
 from equipoise.web.balanced import balanced
+from equipoise.web.design import Design
+from equipoise.web.lanes import MOMENT, Work
 from equipoise.web.page import MOST_WAITING
 from equipoise.web.server import FULL, HOST, MOST_PAGES, ORIGIN, POLICY, TOKEN, served
 from equipoise.web.session import Session, opened_example
@@ -200,6 +204,77 @@ def test_dragging_goes_on_while_something_takes_long(
         late = hear(page)
         assert (late["type"], late["seq"]) == ("refused", 1)
         assert "was changed while" in late["message"]
+
+
+def test_a_page_does_not_wait_for_what_others_open(
+    here: Here, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    answered = threading.Event()
+
+    def slowly(name: str) -> Design:
+        assert answered.wait(20)
+        return opened_example(name)
+
+    monkeypatch.setattr(session_module, "opened_example", slowly)
+    change = {"set": "drive.speed", "text": "200 rpm"}
+    with ExitStack() as stack:
+        idle, *others = (stack.enter_context(here.page()) for _ in range(7))
+        for page in others:
+            assert hear(page)["type"] == "hello"
+            page.send(json.dumps({"type": "open", "seq": 1, "example": "yamashita-2"}))
+        assert hear(idle)["type"] == "hello"
+        assert ask(idle, {"type": "edit", "seq": 2, "edits": [change]})["seq"] == 2
+        answered.set()
+        for page in others:
+            assert hear(page)["type"] == "state"
+
+
+def test_a_page_whose_answers_take_long_is_heavy() -> None:
+    work = Work()
+    assert work.timed(lambda: 3) == 3
+    assert work.spent < MOMENT
+    end = time.thread_time() + 1.5 * MOMENT
+
+    def computed() -> None:
+        while time.thread_time() < end:
+            pass
+
+    work.timed(computed)
+    assert work.spent > MOMENT
+
+
+@pytest.mark.parametrize("how", ["closed", "gone"])
+def test_work_ends_with_its_page_and_leaves_no_word(
+    here: Here, how: str, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    begun, ended = threading.Event(), threading.Event()
+
+    def without_end(machine: Machine) -> Balanced:
+        begun.set()
+        try:
+            while True:
+                pass
+        finally:
+            ended.set()
+
+    monkeypatch.setattr(session_module, "balanced", without_end)
+    with here.page() as page:
+        hear(page)
+        assert ask(page, {"type": "balance", "seq": 1})["type"] == "busy"
+        assert begun.wait(20)
+        if how == "gone":  # as a program that is killed leaves
+            reset = struct.pack("ii", 1, 0)
+            page.socket.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, reset)
+            for _ in range(30):
+                page.send('{"type":"ready"}')
+            page.socket.close()
+    assert ended.wait(20)
+    monkeypatch.undo()
+    with here.page() as next_one:
+        assert hear(next_one)["type"] == "hello"
+        assert ask(next_one, {"type": "balance", "seq": 1})["type"] == "busy"
+        assert hear(next_one)["type"] == "balanced"
+    assert capfd.readouterr().err == ""
 
 
 def test_there_is_an_end_to_pages_and_messages(here: Here) -> None:

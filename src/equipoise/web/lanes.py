@@ -1,0 +1,90 @@
+"""Threads that compute for all pages: an idle page never waits for busy ones, and the work of a
+page ends with it.
+
+Every page has at most one job of a kind in a queue, so that pages take turns.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import time
+from collections.abc import Callable
+from concurrent.futures import Executor
+from concurrent.futures import ThreadPoolExecutor as Threads
+from contextlib import AbstractContextManager, ExitStack
+from threading import Lock, get_ident
+from typing import TypeVar
+
+Found = TypeVar("Found")
+
+MOMENT = 0.1
+"""s of computing, below which an answer is quick."""
+
+
+class EndedError(BaseException):
+    """The page for which something is computed has been closed; nothing may take it for an error
+    of the computation.
+    """
+
+
+class Lanes(AbstractContextManager["Lanes"]):
+    """The threads of a server.
+
+    quick : for pages whose answers take a moment.  heavy : for those whose answers take longer,
+    and for machines that are opened, which nobody knows yet.  long : for what may take minutes.
+    """
+
+    def __init__(self) -> None:
+        self._stack = ExitStack()
+        self.quick: Executor = self._stack.enter_context(Threads(2, "quick"))
+        self.heavy: Executor = self._stack.enter_context(Threads(1, "heavy"))
+        self.long: Executor = self._stack.enter_context(Threads(1, "long"))
+
+    def __exit__(self, *_: object) -> None:
+        self._stack.close()
+
+
+class Work:
+    """What is computed for one page.
+
+    spent : s of computing that the last answer took.
+    """
+
+    def __init__(self) -> None:
+        self.spent = 0.0
+        self._lock, self._threads, self._ended = Lock(), set[int](), False
+
+    def do(self, compute: Callable[[], Found]) -> Found:
+        """Compute in this thread; `EndedError` as soon as the page is closed."""
+        thread = get_ident()
+        with self._lock:
+            if self._ended:
+                raise EndedError
+            self._threads.add(thread)
+        try:
+            return compute()
+        finally:
+            with self._lock:  # from here on nobody raises anything in this thread
+                self._threads.discard(thread)
+                _raise_in(thread, None)
+
+    def timed(self, compute: Callable[[], Found]) -> Found:
+        """The same, and remember how long it took."""
+        begun = time.thread_time()
+        try:
+            return self.do(compute)
+        finally:
+            self.spent = time.thread_time() - begun
+
+    def end(self) -> None:
+        """Stop what is computed, wherever it is, and begin nothing more."""
+        with self._lock:
+            self._ended = True
+            for thread in self._threads:
+                _raise_in(thread, EndedError)
+
+
+def _raise_in(thread: int, error: type[BaseException] | None) -> None:
+    """Have an error raised in another thread at its next step in Python; None takes that back."""
+    raised = None if error is None else ctypes.py_object(error)
+    ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), raised)
