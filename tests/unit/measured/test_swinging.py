@@ -79,7 +79,7 @@ def test_noise_is_the_same_for_the_same_seed() -> None:
     ("change", "said"),
     [
         ({"natural_frequency": 0.0}, "natural_frequency: got 0; give a number above 0"),
-        ({"natural_frequency": "12"}, "natural_frequency: got '12'; give a number above 0"),
+        ({"natural_frequency": "12"}, "natural_frequency: got '12'; give a number in SI units"),
         ({"damping_ratio": 1.0}, "damping_ratio: got 1; give 0 to below 1"),
         ({"coulomb": -0.1}, "coulomb: got -0.1; give 0 or more"),
         ({"noise": -1}, "noise: got -1; give 0 or more"),
