@@ -62,7 +62,7 @@ def test_motor() -> None:
     line = "motor: 3000 rpm without load, 2.000 N m at standstill, ratio 12.50"
     assert f"{line}; mean speed is the drive's" in checked(MOTOR)
     free = checked(f'{MOTOR}inertia = "8 kg cm^2"\nmean_speed = "free"\n')
-    assert f"{line}, rotor 8.000e-04 kg m^2; mean speed follows from it" in free
+    assert f"{line}, rotor 800.0 kg mm^2; mean speed follows from it" in free
     Path("m.csv").write_text("speed [rpm],torque [N m]\n0,2\n1500,1.9\n3000,-0.5\n")
     table = checked('\n[drive.motor]\ntable = "m.csv"\n')
     assert "motor: 3 rows from 0 to 3000 rpm, ratio 1.000; mean speed is the drive's" in table

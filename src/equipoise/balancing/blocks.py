@@ -18,10 +18,10 @@ from equipoise.balancing.told import (
 )
 from equipoise.balancing.workshop import sentences
 from equipoise.i18n import say, to_say
-from equipoise.quantities import SI, Dimension, in_unit, number
+from equipoise.quantities import Dimension, display, number
 from equipoise.results.blocks import Block, Cell, Change, Column, Facts, Notes, Table, Text, Value
 from equipoise.results.machine_blocks import driven, rows_table
-from equipoise.results.outputs import objective_named
+from equipoise.results.outputs import DIMENSIONS, objective_named
 
 if TYPE_CHECKING:
     from equipoise.balancing.balanced import Balanced, Price
@@ -31,17 +31,16 @@ MOST_ORDERS = 8
 """That are named one by one."""
 USUAL: dict[Dimension, str] = {"length": "mm", "angle": "mrad", "mass": "g", "inertia": "kg mm^2"}
 """Units in which what is balanced is told."""
-OF_UNIT: dict[str, Dimension] = {unit: dimension for dimension, unit in reversed(SI.items())}
 
 
 def quantity(value: float, unit: str, scale: float = 0.0) -> Value:
     """A figure with its SI unit, as a cell."""
-    return Value(value, scale, dimension=OF_UNIT.get(unit), unit=shown_unit(unit))
+    return Value(value, scale, dimension=DIMENSIONS.get(unit), unit=shown_unit(unit))
 
 
 def shown_unit(unit: str) -> str | None:
     """Unit in which figures with an SI unit are told; None for the one that suits their size."""
-    dimension = OF_UNIT.get(unit)
+    dimension = DIMENSIONS.get(unit)
     return None if dimension is None else USUAL.get(dimension)
 
 
@@ -156,9 +155,11 @@ def _saved(found: Balanced, price: Price, unit: str) -> str:
 
 def _shown(unit: str) -> tuple[float, str]:
     """Factor and unit in which a figure with an SI unit is told."""
-    usual = shown_unit(unit)
-    display = None if usual is None else in_unit(usual)
-    return (1.0, unit) if display is None else (display.factor, display.unit)
+    dimension = DIMENSIONS.get(unit)
+    if dimension is None:
+        return 1.0, unit
+    told = display(dimension, (), shown_unit(unit) or unit)
+    return told.factor, told.unit
 
 
 def _speeds(found: Balanced) -> Iterator[tuple[Cell, ...]]:

@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from equipoise.balancing.balanced import Balanced
-from equipoise.balancing.blocks import OF_UNIT, shown_unit
+from equipoise.balancing.blocks import shown_unit
 from equipoise.balancing.objectives import unit_of
 from equipoise.balancing.optimisation import balance
 from equipoise.balancing.problem import Problem
@@ -22,7 +22,7 @@ from equipoise.i18n import say
 from equipoise.mechanism.balance import Balance, Limit, Objective
 from equipoise.mechanism.model import Machine
 from equipoise.results.blocks import Block, Column, Table, Text, Value
-from equipoise.results.outputs import objective_named
+from equipoise.results.outputs import DIMENSIONS, objective_named
 from equipoise.results.result import Result
 from equipoise.signals import Array
 
@@ -160,7 +160,7 @@ def front_blocks(found: Front) -> Iterator[Block]:
     labels = (objective_named(found.first), objective_named(found.second), say("added mass"))
     units = [unit for _, unit, _ in found.columns()]
     columns = [
-        Column(label, OF_UNIT.get(unit), shown_unit(unit))
+        Column(label, DIMENSIONS.get(unit), shown_unit(unit))
         for label, unit in zip(labels, units, strict=True)
     ]
     values = (column.tolist() for _, _, column in found.columns())

@@ -183,10 +183,15 @@ def tell(line: str, stream: TextIO | None = None) -> None:
 
 def write_pictures(figures: Mapping[str, Picture], folder: str, kind: Kind) -> None:
     """Write pictures into a folder, and say so."""
-    from equipoise.figures import render
+    from equipoise.figures import render, unwritten
     from equipoise.schema.files import write_all
 
     write_all(folder, {f"{name}.{kind}": render(figure, kind) for name, figure in figures.items()})
+    lost = {} if kind == "svg" else dict.fromkeys("".join(map(unwritten, figures.values())))
+    if lost:
+        signs = "".join(lost)[:20]
+        hint = "install one such as Noto Sans CJK, or give --format svg"
+        tell(f"note: no font has {signs}, for which boxes are drawn; {hint}", sys.stderr)
     tell_pictures(len(figures), folder)
 
 

@@ -14,7 +14,7 @@ Kind = Literal["svg", "png", "pdf"]
 Picture = Chart
 """What can be drawn."""
 
-__all__ = ["Kind", "Picture", "figure", "plot", "render"]
+__all__ = ["Kind", "Picture", "figure", "plot", "render", "unwritten"]
 
 
 def render(picture: Chart, kind: Kind = "svg") -> bytes:
@@ -29,6 +29,14 @@ def render(picture: Chart, kind: Kind = "svg") -> bytes:
     from equipoise.figures.paint import painted
 
     return painted(sheet, kind)
+
+
+def unwritten(picture: Chart) -> str:
+    """Signs of a picture that no installed font has, so that PNG and PDF show boxes for them."""
+    from equipoise.figures.layout import lay_out
+    from equipoise.figures.paint import unwritten as found
+
+    return found(lay_out(picture))
 
 
 def figure(picture: Chart) -> Figure:

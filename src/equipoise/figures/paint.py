@@ -16,6 +16,7 @@ from matplotlib import font_manager
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import get_font
 from matplotlib.lines import Line2D
 from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path
@@ -61,6 +62,9 @@ OTHER_SCRIPTS = (
 )
 """Fonts, where a computer has them, for signs that Matplotlib's own font lacks."""
 
+LAST_RESORT = "Last Resort"
+"""The font that has a box for every sign."""
+
 _painting = RLock()
 
 
@@ -75,8 +79,49 @@ def _families() -> list[str]:
     return ["DejaVu Sans", *(name for name in OTHER_SCRIPTS if name in installed), "sans-serif"]
 
 
+@cache
+def _signs_of(path: str) -> frozenset[int]:
+    try:
+        return frozenset(get_font(path).get_charmap())
+    except (OSError, RuntimeError):  # a font that cannot be read
+        return frozenset()
+
+
+@cache
+def fonts_for(signs: frozenset[str]) -> tuple[tuple[str, ...], str]:
+    """Families beside the usual ones that have further signs, of all fonts there are, and the signs
+    that none has.
+    """
+    left = {ord(sign) for sign in signs if not sign.isspace()}
+    fonts = font_manager.fontManager
+    every = {font.name: font.fname for font in reversed(fonts.ttflist)}
+    for name in _families()[:-1]:
+        left -= _signs_of(every[name])
+    if left:  # the list may be older than a font
+        known = {font.fname for font in fonts.ttflist}
+        for path in sorted({*font_manager.findSystemFonts()} - known):
+            if left & _signs_of(path):
+                fonts.addfont(path)
+        every = {font.name: font.fname for font in reversed(fonts.ttflist)}
+    more: list[str] = []
+    for name in sorted(every):
+        if left & _signs_of(every[name]) and not name.startswith(LAST_RESORT):
+            more.append(name)
+            left -= _signs_of(every[name])
+    return tuple(more), "".join(sorted(map(chr, left)))
+
+
+def unwritten(sheet: Sheet) -> str:
+    """Signs of a sheet's texts that no installed font has."""
+    return fonts_for(_signs(sheet))[1]
+
+
+def _signs(sheet: Sheet) -> frozenset[str]:
+    return frozenset("".join(words.text for words in sheet.words))
+
+
 @contextmanager
-def settings() -> Iterator[None]:
+def settings(sheet: Sheet | None = None) -> Iterator[None]:
     """Everything inside looks the same whatever the user's Matplotlib is set to.
 
     Matplotlib's settings belong to the whole process, so one thread paints at a time.
@@ -84,14 +129,15 @@ def settings() -> Iterator[None]:
     with _painting, matplotlib.rc_context(), warnings.catch_warnings():
         matplotlib.rcdefaults()
         matplotlib.rcParams.update(PARAMETERS)
-        matplotlib.rcParams["font.family"] = _families()
+        more = () if sheet is None else fonts_for(_signs(sheet))[0]
+        matplotlib.rcParams["font.family"] = [*_families()[:-1], *more, "sans-serif"]
         warnings.filterwarnings("ignore", r"Glyph \d+ .*missing from", UserWarning)
         yield
 
 
 def figure_of(sheet: Sheet) -> Figure:
     """A sheet as a figure, one unit of whose axes is a point."""
-    with settings():
+    with settings(sheet):
         figure = Figure(figsize=(sheet.width / 72, sheet.height / 72), facecolor=PAPER)
         FigureCanvasAgg(figure)
         axes = figure.add_axes((0, 0, 1, 1))
@@ -106,7 +152,7 @@ def figure_of(sheet: Sheet) -> Figure:
 def painted(sheet: Sheet, kind: Kind) -> bytes:
     """A sheet as a file of Matplotlib."""
     figure, file = figure_of(sheet), BytesIO()
-    with settings():
+    with settings(sheet):
         figure.savefig(file, format=kind, metadata=METADATA[kind])
     return file.getvalue()
 

@@ -19,7 +19,7 @@ from equipoise.handheld.response import respond_tool
 from equipoise.i18n import say, spoken, to_say
 from equipoise.present.findings import ToolFindings
 from equipoise.present.pages import Answer, Tile
-from equipoise.quantities import PER_RPM, SI, Dimension, brief, change, in_unit, percent
+from equipoise.quantities import PER_RPM, Dimension, brief, change, display, percent
 from equipoise.signals import highest_at
 
 if TYPE_CHECKING:
@@ -173,7 +173,7 @@ def _near(found: ToolFindings, modes: ToolModes) -> Iterator[str]:
 def _helps(design: ToolDesign) -> Iterator[str]:
     for one in design.variables:
         kind: Dimension = one.dimension  # type: ignore[assignment]
-        unit = in_unit(UNITS.get(kind, SI[kind]))
+        unit = display(kind, [one.before, one.after], UNITS.get(kind))
         before, after = unit.text(one.before), unit.text(one.after)
         if before != after:
             name = varied_named(one.name)

@@ -222,3 +222,25 @@ def test_a_support_that_is_a_point_is_as_large_as_its_linkage() -> None:
 def test_what_is_at_one_place_shares_a_name() -> None:
     (panel,) = pictures_of(eq.modes(eq.load("exudyn-slider-crank")))["mode-1"].panels
     assert [mark.text for mark in panel.marks] == ["x\ny\nalong\nacross"]
+
+
+def test_signs_that_some_font_has_are_written(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever the font is called; where none has them, they are told."""
+    from equipoise.figures import paint
+
+    signs = frozenset("クランク")
+    paint.fonts_for.cache_clear()
+    found, lost = paint.fonts_for(signs)
+    assert set(lost) <= set(signs)
+    assert not any("Last Resort" in name for name in found)
+    own = [font for font in paint.font_manager.fontManager.ttflist if font.name == "DejaVu Sans"]
+    monkeypatch.setattr(paint.font_manager.fontManager, "ttflist", own)
+    monkeypatch.setattr(paint.font_manager, "findSystemFonts", list)
+    monkeypatch.setattr(paint, "_families", lambda: ["DejaVu Sans", "sans-serif"])
+    paint.fonts_for.cache_clear()
+    assert paint.fonts_for(signs) == ((), "".join(sorted(signs)))
+    assert paint.fonts_for(frozenset("crank, é")) == ((), "")
+    monkeypatch.setattr(paint, "_signs_of", lambda path: frozenset(map(ord, "クランク")))
+    paint.fonts_for.cache_clear()
+    assert paint.fonts_for(signs)[1] == ""
+    paint.fonts_for.cache_clear()

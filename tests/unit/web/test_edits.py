@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.quantities import format_exact
-from equipoise.web.edits import movable
+from equipoise.quantities import format_exact, showing
+from equipoise.web.design import clean
+from equipoise.web.edits import edited, movable
+from equipoise.web.messages import Drag
 from unit.web.pages import ask, counterweight, edit, move, opened, refusal
 
 ROUNDED = 1e-6
@@ -108,6 +110,23 @@ def test_what_cannot_be_is_refused_and_changes_nothing(
     before = session.shown
     assert told in refusal(ask(session, "edit", seq=3, commit=True, edits=[change]))
     assert session.shown is before
+
+
+@pytest.mark.parametrize("meant", [0.01, 0.011, 0.0125, 0.01275])
+def test_a_place_that_a_page_knows_as_a_short_number_is_that_in_the_file(meant: float) -> None:
+    """A page has places as 32-bit floats, and moves a point by the keys from there."""
+    session, before = opened("yamashita-1")
+    for rounding in (float(np.float32(meant)), meant * (1 - 3.6e-9)):
+        place = complex(rounding, before.place("D")[0].imag)
+        design = edited(session.shown, [Drag("D", False, place, 0)]).design
+        assert format_exact(design.own.frame["D"][0], "length") == f"{1e3 * meant:g} mm"
+
+
+def test_what_a_program_finds_at_a_limit_is_the_limit() -> None:
+    assert clean(0.099999999637, "length") == 0.1 and clean(0.03350000000113394, "length") == 0.0335
+    assert clean(1.0305925284451134, "mass") == 1.03059252845
+    with showing({"length": "in"}):
+        assert format_exact(clean(0.10160000003, "length"), "length") == "4 in"
 
 
 def test_the_model_has_no_digits_of_rounding() -> None:

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.quantities import change, display_rules, number, typeset
-from surface.running import massless
+from equipoise.quantities import change, display, display_rules, number, typeset
+from surface.running import example_text, massless
 from unit.web.pages import ask, edit, opened
 
 
@@ -106,6 +106,28 @@ def test_a_machine_without_masses_moves() -> None:
     assert shown["missing"] == ["crank", "coupler", "rocker"]
     assert "shaking_force" not in shown["arrays"]
     assert not [one for one in shown["fields"] if one["path"].startswith("counterweights")]
+
+
+def test_a_page_follows_the_units_of_its_file() -> None:
+    session, plain = opened("yamashita-rig")
+    text = example_text("yamashita-rig").replace(
+        "[drive]", 'units = { length = "in", force = "lbf" }\n\n[drive]', 1
+    )
+    shown, response = ask(session, "open", name="inches.toml", text=text)[:2]
+    found = shown.content
+    assert plain.content["length"]["unit"] == "mm" and found["length"]["unit"] == "in"
+    force = next(one for one in found["figures"] if one["name"] == "shaking_force.rms")
+    old = plain.figure("shaking_force.rms")
+    assert (force["unit"], old["unit"], force["value"]) == ("lbf", "N", old["value"])
+    assert float(force["text"]) == pytest.approx(old["value"] / 4.4482216152605, rel=1e-3)
+    moment = next(one for one in found["charts"] if one["name"] == "shaking_moment")
+    assert moment["choices"][0]["unit"] == "lbf in"
+    field = next(one for one in found["fields"] if one["path"] == "links.crank.points.B.x")
+    assert (field["text"], field["unit"]) == ("1.318898 in", "in")
+    assert response.content["charts"][0]["choices"][0]["unit"] == "in"
+    (model,) = ask(session, "download", kind="model")
+    assert b'length = "in"' in model.buffer
+    assert display("length").unit == "mm"  # nothing of it stays
 
 
 def test_numbers_are_written_as_everywhere() -> None:
