@@ -19,7 +19,7 @@ PAGES = [*sorted((TOP / "docs").glob("*.md")), TOP / "README.md", TOP / "CONTRIB
 LINES, MODULES, FILE, FUNCTION, NAMES = 65_200, 271, 350, 60, 40
 """Most lines and modules in all, lines in a file and in a function, names at the top.
 
-The first two are what there is: whoever needs more says why, and half as much to know is the aim."""
+The first two are what there is; half as much to know is the aim, so whoever needs more says why."""
 
 
 def named(file: Path) -> str:
