@@ -29,6 +29,7 @@ from equipoise.mechanism.balance import (
 )
 from equipoise.mechanism.objectives import balanced_names
 from equipoise.quantities import SI
+from equipoise.quantities.units import FACTORS
 from equipoise.results.blocks import Column, Many, Span, Table, Value
 from equipoise.symbols.scene import Scene
 from laws.subjects import machine_of, names
@@ -43,10 +44,15 @@ MICRO = Units(2.0**-13, 2.0**-38, 2.0**-6)
 NUMBER = re.compile(r"[-+−]?\d+(?:\.\d+)?(?:e[-+]\d+)?")
 
 
+SCALES = (*FACTORS, "kg/m³", "ng", "nN m", "nN", "nJ")
+"""Units, and those that only tell what is small."""
+UNIT = re.compile(f"# (?:{'|'.join(sorted(map(re.escape, SCALES), key=len, reverse=True))})\\b")
+
+
 def words(text: Any) -> str:
-    """A sentence without its numbers, and without materials, which do not scale."""
-    plain = NUMBER.sub("#", str(text))
-    return re.sub("|".join(MATERIALS), "# kg/m^#", plain)
+    """A sentence without its numbers, the units that their sizes choose, and materials."""
+    named = re.sub("|".join(MATERIALS), "1 kg/m³", str(text))
+    return UNIT.sub("#", NUMBER.sub("#", named))
 
 
 def same_blocks(found: Any, want: Any, tolerance: float) -> None:
@@ -119,9 +125,13 @@ def test_balancing_by_a_plan(name: str) -> None:
     """With a plan of its own where it has one; the same change is told."""
     kept = eq.load(name) if name in EXAMPLES else machine_of(name)
     small, large = both(kept, lambda one: eq.balance(one, plan_of(one)))
-    same_blocks(small, large, 1e-7)
+    # Steps towards limits of gauges end where numbers stand still to 1e-8 of their room.
+    exact = not any(one.objective.output.startswith("gauges.") for one in large.plan.limits)
+    same_blocks(small, large, 1e-7 if exact else 1e-4)
     for link, body in in_units(large.machine, MICRO).links.items():
-        assert small.machine.links[link].mass == pytest.approx(body.mass, rel=1e-9)
+        assert small.machine.links[link].mass == pytest.approx(
+            body.mass, rel=1e-9 if exact else 1e-6
+        )
     assert any("mass" in dict(one.values) for one in small.changes) == any(
         "mass" in dict(one.values) for one in large.changes
     )
