@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import csv
+import io
 import json
 import math
 import os
 import re
 import subprocess
 import sys
+import threading
 import tomllib
 from functools import cache
 from importlib.resources import files
@@ -20,6 +22,7 @@ import numpy as np
 import pytest
 
 import equipoise as package
+from equipoise.cli import run
 from equipoise.errors import UsageError
 from equipoise.schema.files import json_text
 from surface.running import (
@@ -635,3 +638,35 @@ def test_everything_is_written_or_nothing(monkeypatch: pytest.MonkeyPatch) -> No
     words = ("balance", "balance-crank", "-o", "new.toml", "--csv", "b.csv", "--plot", "pictures")
     assert refused(equipoise(*words)) == "a figure is missing"
     assert not list(Path().iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="needs a shell that limits the sizes of files")
+def test_a_full_disk_leaves_nothing() -> None:
+    """Files of more than 4 kB cannot be written; the model would have been a small one."""
+    words = command("balance", "balance-crank", "-o", "new.toml", "--plot", "pictures")
+    limited = ["sh", "-c", 'ulimit -f 8; exec "$@"', "sh", *words]
+    done = subprocess.run(limited, capture_output=True, encoding="utf-8", timeout=60, check=False)
+    assert done.returncode == 2
+    assert done.stderr.startswith("equipoise: pictures/")
+    assert "the file cannot be written (file too large)" in done.stderr
+    assert not list(Path().iterdir())
+
+
+def test_a_command_that_takes_long_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = threading.Event()
+
+    def slowly(*_: object) -> None:
+        assert told.wait(30)
+
+    class Heard(io.StringIO):
+        def write(self, text: str) -> int:
+            told.set()
+            return super().write(text)
+
+    monkeypatch.delenv("EQUIPOISE_PROGRESS")
+    monkeypatch.setattr("equipoise.cli.SIGN", 0.01)
+    monkeypatch.setattr("equipoise.vibration.forced.respond", slowly)
+    monkeypatch.setattr("sys.stderr", heard := Heard())
+    with pytest.raises(AttributeError):  # there is nothing to show
+        run(["respond", "yamashita-rig"])
+    assert re.match(r"still computing, \d+ s\n", heard.getvalue())

@@ -10,7 +10,10 @@ import io
 import os
 import shutil
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from threading import Event, Thread
+from time import monotonic
 from typing import TYPE_CHECKING
 
 from cyclopts import App, CycloptsError, Parameter
@@ -63,7 +66,7 @@ def run(arguments: Sequence[str] | None = None) -> int:
         for name in COMMANDS:
             _ = app[name]
     try:
-        with together():
+        with together(), _signs_of_life(given):
             app(
                 arguments,
                 exit_on_error=False,
@@ -89,6 +92,36 @@ def run(arguments: Sequence[str] | None = None) -> int:
         print(f"equipoise: the output cannot be written ({error.strerror})", file=sys.stderr)
         return 2
     return 0
+
+
+SIGN = 5.0
+"""s without a word, after which a line tells that work goes on; then twice as long each time."""
+
+
+@contextmanager
+def _signs_of_life(given: Sequence[str]) -> Iterator[None]:
+    """Tell in a line now and then that a command still computes, where nothing else tells it."""
+    silent = os.environ.get("EQUIPOISE_PROGRESS") == "off" or sys.stderr is None
+    if silent or given[:1] == ["serve"]:  # which waits for its pages
+        yield
+        return
+    ended, begun = Event(), monotonic()
+
+    def tell() -> None:
+        wait = SIGN
+        while not ended.wait(wait):
+            progress = sys.modules.get("equipoise.cli.progress")
+            if progress is None or not progress.shown_now:
+                print(f"still computing, {monotonic() - begun:.0f} s", file=sys.stderr)
+            wait *= 2
+
+    thread = Thread(target=tell, daemon=True)
+    thread.start()
+    try:
+        yield
+    finally:
+        ended.set()
+        thread.join()
 
 
 def _console(width: int) -> Console:

@@ -31,6 +31,10 @@ SURE, LATEST = 0.02, 60.0
 """Share of the designs, or time in s, after which a rate is one: loops are compiled at first."""
 
 
+shown_now = False
+"""Whether something is told at the moment, so that nothing else need be."""
+
+
 @dataclass(frozen=True)
 class Step:
     """How far work is.
@@ -56,15 +60,20 @@ def _shown(first: float = SECONDS) -> Iterator[Callable[[Callable[[], Step], boo
     if sys.stderr is None or os.environ.get("EQUIPOISE_PROGRESS") == "off":
         yield lambda step, last: None
         return
-    if not sys.stderr.isatty():
-        yield _Log(first).add
-        return
-    from rich.console import Console
-    from rich.live import Live
+    global shown_now  # noqa: PLW0603 - there is one standard error
+    shown_now = True
+    try:
+        if not sys.stderr.isatty():
+            yield _Log(first).add
+            return
+        from rich.console import Console
+        from rich.live import Live
 
-    bar = _Bar()
-    with Live(bar, console=Console(stderr=True), transient=True, refresh_per_second=4):
-        yield bar.add
+        bar = _Bar()
+        with Live(bar, console=Console(stderr=True), transient=True, refresh_per_second=4):
+            yield bar.add
+    finally:
+        shown_now = False
 
 
 class _Log:
