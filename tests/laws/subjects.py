@@ -41,7 +41,18 @@ def machine_of(name: str) -> eq.Machine:
         return in_soil()
     kind, _, seed = name.partition(":")
     # What may be changed of it does nothing to what is analysed, and its names need not follow.
-    return make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    found = make(kind, int(seed)).machine if seed else eq.load(name).with_balance(None)
+    return spelled_out(found)
+
+
+def spelled_out(machine: eq.Machine) -> eq.Machine:
+    """Return a machine whose links are given by places and masses, not by lengths and bodies."""
+
+    def plain(link: eq.Link) -> eq.Link:
+        given = {name: getattr(link, name) for name in ("mass", "center_of_mass", "inertia")}
+        return eq.Link(dict(link.points), **given)
+
+    return replace(machine, links={name: plain(link) for name, link in machine.links.items()})
 
 
 def in_soil() -> eq.Machine:
