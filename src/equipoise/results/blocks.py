@@ -195,14 +195,20 @@ SAME, ROUNDING = 1e-6, 1e-9
 def beside(before: Iterable[Block], after: Iterable[Block]) -> Iterator[Block]:
     """Blocks of something, in whose tables each row is followed by that of it changed, where that
     differs; rows are those that begin with the same words, of tables of the same title.
+
+    A table that has other columns afterwards, such as those of further orders, follows whole.
     """
     later = {one.title: one for one in after if isinstance(one, Table)}
     for one in before:
-        if isinstance(one, Table) and one.title in later:
-            rows = {_words(row): row for row in later[one.title].rows}
+        other = later.get(one.title) if isinstance(one, Table) else None
+        if not isinstance(one, Table) or other is None:
+            yield one
+        elif [column.label for column in other.columns] == [c.label for c in one.columns]:
+            rows = {_words(row): row for row in other.rows}
             yield replace(one, rows=tuple(_followed(one.rows, rows)))
         else:
             yield one
+            yield replace(other, title=say("{what}, after", what=other.title))
 
 
 def _followed(
