@@ -6,7 +6,7 @@ import os
 import pickle
 import warnings
 from collections.abc import Callable, Mapping
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from json import dumps
@@ -118,6 +118,8 @@ def resume(
             "it was changed, sweep anew"
         )
     if not store.missing():
+        with suppress(UsageError), store.writing():  # clears what a killed process left
+            pass
         if progress is not None:
             progress(_counted(store, study).progress())
         return store

@@ -18,7 +18,7 @@ from equipoise.codegen.figures import REASONS
 from equipoise.errors import UsageError
 from equipoise.partial import beside
 from equipoise.studies.design_space import Output, Range, Sampling, Vary
-from equipoise.studies.run import create_store
+from equipoise.studies.run import create_store, resume
 from equipoise.studies.sampling import samples
 from equipoise.studies.store import UNKNOWN, open_store, versions
 from support.studies import LENGTH, MASS, SPEED, Formulas, contents, filled, restore, short_study
@@ -244,3 +244,10 @@ def test_what_killed_processes_have_begun_goes_with_the_next_store(tmp_path: Pat
     assert len(left) == 3
     assert {"s", ".mine.tmp"} < left
     assert any(name.endswith(f"-{os.getppid()}.tmp") for name in left)
+
+
+def test_the_lock_of_a_process_that_was_killed_at_its_end_is_cleared(tmp_path: Path) -> None:
+    store = filled(tmp_path / "s", STUDY)
+    (store.path / ".lock").write_text("process 1 on a machine")
+    resume(store.path, restore)
+    assert (store.path / ".lock").read_bytes() == b""
