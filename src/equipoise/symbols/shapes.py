@@ -189,11 +189,15 @@ def _head(role: str, place: complex, way: complex, size: float) -> Shape:
 # -- the field -------------------------------------------------------------------------------------
 
 
+MOST_STUBBLES = 300
+"""Beyond which a picture shows none of them, as where sizes are too far apart."""
+
+
 def soil(left: float, right: float, surface: float, bottom: float, unit: float) -> list[Shape]:
     """Earth from its surface down to a depth, all m."""
     corners = complex(left, surface), complex(right, surface)
     deep = complex(right, bottom), complex(left, bottom)
-    count = max(int((right - left) / (28 * unit)), 3)
+    count = int(np.clip((right - left) / (28 * unit), 3, MOST_STUBBLES))
     x = left + (right - left) * (np.arange(count) + 0.5) / count
     strokes = [
         sign("stubble", complex(at, surface), [k - 4j, k - 7 - 11j]) for at in x for k in (-5, 0, 5)
