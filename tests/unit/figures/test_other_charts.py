@@ -31,8 +31,8 @@ from equipoise.studies.objective_map import Landscape, landscape
 from equipoise.studies.search import Searched, search_designs
 from equipoise.studies.selection import Best
 from equipoise.studies.tolerances import Tolerances, tolerance
+from unit.figures.checks import check
 from unit.figures.samples import words
-from unit.figures.test_pictures import check
 
 HOUR = 3600.0
 TIME = np.linspace(0.0, 4.0, 2000)
