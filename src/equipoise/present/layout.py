@@ -47,7 +47,7 @@ _OPEN, _SHUT = (
 )
 _WIDE = "\u3041-\u30ff\u3400-\u9fff\uf900-\ufaff"
 _PIECE = re.compile(rf" *[{_OPEN}]*(?:[{_WIDE}]|[^ {_OPEN}{_SHUT}{_WIDE}]+)?[{_SHUT}]*")
-_INNER = re.compile(r".+?(?:(?<=[^\W\d])[./-](?=\w)|$)")
+_INNER = re.compile(r".+?(?:(?<=[^\W\d]{2})[./-](?=\w)|$)")
 
 
 _PLAIN = str.maketrans(

@@ -23,8 +23,8 @@ from equipoise.studies.objective_map import Landscape, landscape
 from equipoise.studies.search import Searched, search_designs
 from equipoise.studies.selection import Best
 from equipoise.studies.tolerances import Tolerances, tolerance
+from unit.figures.checks import check
 from unit.figures.samples import words
-from unit.figures.test_pictures import check
 
 OWN = (np.array([0.199, 0.012, 0.0, 0.0715, 0.08]), np.array([8.7, 12.2, 0.21]))
 
