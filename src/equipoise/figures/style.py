@@ -65,8 +65,8 @@ KINDS = (
 )
 """Colour and sign of several curves that are told apart; what is beyond is thin."""
 
-POINTS = "#6b9fc9"
-"""Of what is many."""
+POINTS, DIM = "#6b9fc9", "#c4c4c4"
+"""Of what is many, and of that of it which is not wanted; in grey one is lighter."""
 
 LOOKS: dict[str, Look] = {
     "main": Look(),
@@ -128,10 +128,10 @@ LOOKS: dict[str, Look] = {
     "quiet speed": Look(LINES, 1.0, sign="v", size=5.5, order=5),
     # clouds
     "kept": Look(POINTS, 0.0, sign=".", size=2.4, order=2.2),
-    "beyond": Look(FAINT, 0.0, sign=".", size=1.7, order=2.1),
+    "beyond": Look(DIM, 0.0, sign=".", size=1.7, order=2.1),
     "failed": Look(INK, 0.0, sign="x", size=3.0, order=2.3),
     "kept line": Look(POINTS, 0.5, order=2.2),
-    "beyond line": Look(PALE, 0.5, order=2.1),
+    "beyond line": Look(DIM, 0.5, order=2.1),
     "designs": Look(STRESS, 0.0, sign="o", size=4.5, order=4.2),
     "design line": Look(STRESS, 1.3, order=3.3),
     "front": Look(STRESS, 1.0, order=4.1),
