@@ -13,7 +13,8 @@ from equipoise.figures.style import Look, look_of
 from equipoise.figures.view import View, corners_of
 from equipoise.results.charts import Area, Bars, Curve, Panel
 from equipoise.symbols import looks
-from equipoise.symbols.shapes import PIN, Shape, circle, gauge, mass, sign
+from equipoise.symbols.carrier import gauge
+from equipoise.symbols.shapes import PIN, Shape, circle, mass, sign
 
 CAP = 2.2
 """Points: half the line across the end of an interval."""
