@@ -41,7 +41,7 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
         if len(alone):
             view.sheet.add(signs_at(alone, Look(look.color, sign=".", size=2.5)), look.order)
     if look.sign:
-        at = _spaced(places, number) if look.spaced else np.flatnonzero(there)
+        at = _spaced(places, number, view.box) if look.spaced else np.flatnonzero(there)
         clip = None if look.spaced else view.box
         if len(at):
             view.sheet.add(signs_at(places[at], look, clip), look.order + 0.01)
@@ -66,12 +66,14 @@ def thinned(places: Array) -> Array:
     return np.asarray(kept[np.concatenate([[True], turned | ~ahead, [True]])])
 
 
-def _spaced(places: Array, number: int) -> Array:
+def _spaced(places: Array, number: int, box: Box) -> Array:
     """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
+    left, top, right, bottom = box
     x = np.where(np.isfinite(places[:, 0]), places[:, 0], -1e9)
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS
     nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
-    return np.asarray(nearest[np.isfinite(places[nearest, 1])])
+    inside = (places[nearest] >= (left, top)) & (places[nearest] <= (right, bottom))
+    return np.asarray(nearest[np.all(inside, axis=1)])
 
 
 def signs_at(places: Array, look: Look, clip: Box | None = None) -> Signs:

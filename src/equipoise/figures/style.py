@@ -71,7 +71,7 @@ LOOKS: dict[str, Look] = {
     "lines": Look(LINES, 0.9),
     "strong": Look(INK, 1.8),
     "dashed ink": Look(INK, 1.2, (4.0, 2.0)),
-    "stress": Look(STRESS, 1.6, order=3.4),
+    "stress": Look(STRESS, 1.8, order=3.4),
     "faint": Look(FAINT, 0.9, order=2),
     "thin": Look(MAIN, 1.0),
     "zero": Look(FAINT, 0.8, order=1),
@@ -185,12 +185,12 @@ LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
 
 
 def look_of(role: str, dashed: bool = False) -> Look:
-    """The look of a role, ``meeting 5.5`` of so many points; dashed ones have no signs."""
+    """The look of a role, ``meeting 5.5`` of so many points; or the same, dashed."""
     name, _, size = role.rpartition(" ")
     if name == "meeting":
         return replace(LOOKS[name], size=float(size))
     look = LOOKS[role]
-    return replace(look, dashes=MEDIUM, sign="") if dashed else look
+    return replace(look, dashes=MEDIUM) if dashed else look
 
 
 def short(name: str, most: int = 24) -> str:

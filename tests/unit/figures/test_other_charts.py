@@ -19,8 +19,8 @@ from equipoise.figures.view import Scale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
 from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel
+from unit.figures.checks import check
 from unit.figures.samples import words
-from unit.figures.test_pictures import check
 
 HOUR = 3600.0
 TIME = np.linspace(0.0, 4.0, 2000)
