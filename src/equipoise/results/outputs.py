@@ -252,11 +252,11 @@ def output_named(name: str, rows: int = 1) -> str:
     return say("all rows: {what}", what=output_named(rest)) if first == "rows" else name
 
 
-def objective_named(one: Objective, rows: int = 1) -> str:
-    """What is to become small, in words."""
+def objective_named(one: Objective, rows: int = 1, measured: bool = True) -> str:
+    """What is to become small, in words; measured : with its measure."""
     of_joint = one.output.startswith(("joints.", "gauges."))
     output = one.output if rows < 2 or of_joint else f"rows.{one.output}"
-    words = [output_named(output), say(MEASURES[one.measure])]
+    words = [output_named(output), *([say(MEASURES[one.measure])] if measured else [])]
     if one.about:
         words.append(say("about {point}", point=one.about))
     if one.orders:
