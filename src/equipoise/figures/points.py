@@ -210,7 +210,7 @@ def kinematics(analysis: Analysis) -> Iterator[Chart]:
     angles = [one.name for one in analysis.outputs if one.group == "transmission"]
     if angles:
         what = say("Transmission angles")
-        yield outputs_chart(analysis, angles, "kinematics-transmission", what)
+        yield outputs_chart(analysis, angles, kinematics_named("transmission"), what)
     yield from _each(analysis, "links")
     yield from _each(analysis, "points")
 
@@ -222,7 +222,7 @@ def main_kinematics(analysis: Analysis) -> list[Chart]:
     if not wanted:
         pinned = [link for link, body in machine.links.items() if {*body.points} & {*machine.frame}]
         wanted = [link for link in pinned if link != machine.drive.link][:MOST_LINKS]
-    names = {"kinematics-transmission", *map(_name, wanted)}
+    names = {kinematics_named("transmission"), *map(kinematics_named, wanted)}
     return [chart for chart in kinematics(analysis) if chart.name in names]
 
 
@@ -235,8 +235,9 @@ def _each(analysis: Analysis, group: str) -> Iterator[Chart]:
             members.setdefault(one.item, []).append(one)
     for item, ones in members.items():
         what = say("Motion of {name}", name=short(joint_named(item), 24))
-        yield outputs_chart(analysis, [one.name for one in ones], _name(item), what)
+        yield outputs_chart(analysis, [one.name for one in ones], kinematics_named(item), what)
 
 
-def _name(item: str) -> str:
+def kinematics_named(item: str) -> str:
+    """Name of the chart of a slider, link or point."""
     return f"kinematics-{item.translate(FORBIDDEN)}"
