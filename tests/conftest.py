@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from support import gallery
+
 SEEDED = {Path(__file__).parent / room for room in ("laws", "secondroute")}
 NAMED = re.compile(r"(.+):(\d+)")
 """A random machine by its kind and seed, such as ``slider_crank:3``."""
@@ -33,6 +35,12 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         (kept if few or not seed else left).append(item)
     config.hook.pytest_deselected(items=left)
     items[:] = kept
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Make the page of all pictures that tests have kept, once all workers have ended."""
+    if not hasattr(session.config, "workerinput"):
+        gallery.write_page()
 
 
 def _seed_of(item: pytest.Item) -> tuple[tuple[str, ...], str]:

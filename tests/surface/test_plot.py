@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from support.gallery import keep_files
 from surface.running import equipoise, refuses, succeeded
 
 WEIGHT = "counterweights.crank"
@@ -61,6 +62,7 @@ def test_a_map_tells_the_best_place(folder: Path) -> None:
     told = succeeded(result)
     assert f"{WEIGHT}.radius = 35.7 mm and {WEIGHT}.direction = 194 deg" in told
     assert [path.name for path in (folder / "map").iterdir()] == ["landscape.svg"]
+    keep_files("plot map yamashita-1", folder / "map")
 
 
 def test_tools_have_no_crank_angles_and_no_map() -> None:
@@ -99,6 +101,7 @@ def test_pictures_beside_what_is_printed(line: str) -> None:
     assert result.err == f"wrote {count} to new/pictures\n"
     assert {path.name for path in Path("new/pictures").iterdir()} == {f"{n}.svg" for n in names}
     assert all(b"<svg" in path.read_bytes()[:600] for path in Path("new/pictures").iterdir())
+    keep_files(line, Path("new/pictures"))
 
 
 @pytest.mark.parametrize(("kind", "begin"), [("png", b"\x89PNG"), ("pdf", b"%PDF")])

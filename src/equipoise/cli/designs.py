@@ -51,7 +51,7 @@ def best(
     most
         Most designs that are told.
     """
-    from equipoise.figures.studies import best_charts
+    from equipoise.figures.designs import best_charts
     from equipoise.schema.study_units import machine_of, owner_of, study_of, units_in
     from equipoise.studies import selection as of_stores
     from equipoise.studies.blocks import columns_of
@@ -131,7 +131,7 @@ def search(
     seed
         Of the random numbers, that of the study if not given; the same gives the same designs.
     """
-    from equipoise.figures.studies import searched_charts
+    from equipoise.figures.designs import searched_charts
     from equipoise.schema.studies import load_study
     from equipoise.schema.study_units import units_of
     from equipoise.studies.blocks import columns_of

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -182,17 +182,19 @@ def joints(analysis: Analysis) -> Iterator[Chart]:
     every = list(found)
     for suffix, names in groups(every):
         what = title(analysis, say("Force in each joint") + continued(names, every), "", True)
-        panels = tuple(_over_angle(analysis, found[name]) for name in names)
+        panels = tuple(_over_angle(analysis, found[name], found.values()) for name in names)
         yield Chart(f"joints{suffix}", analysis.machine.title, what, panels, columns=2)
 
 
-def _over_angle(analysis: Analysis, joint: Joint) -> Panel:
+def _over_angle(analysis: Analysis, joint: Joint, every: Iterable[Joint]) -> Panel:
+    """One of several joints, whose forces have one unit."""
+    beside = np.concatenate([one.values for one in every if one.couple == joint.couple])
     if joint.couple:
         values, most = joint.values, 2
-        y = Axis.of(say("couple"), "torque", values, room=ROOM)
+        y = Axis.of(say("couple"), "torque", beside, room=ROOM)
     else:
         values, most = np.abs(joint.values), 1
-        y = Axis.of(say("force"), "force", values, low=0.0, room=ROOM)
+        y = Axis.of(say("force"), "force", beside, low=0.0, room=ROOM)
     places = sampled_extremes(analysis.crank_angle, values)[:most]
     return Panel(
         angle_axis(analysis),

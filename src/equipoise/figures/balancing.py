@@ -110,17 +110,12 @@ def keys(*pairs: Pair) -> tuple[tuple[str, str], ...]:
     return tuple((role, say(name)) for role, name in WHEN.items() if role in drawn)
 
 
-def compare(
-    drive: Drive, angles: Array, pair: Pair, label: str, dimension: Dimension, told: bool = False
-) -> Panel:
-    """A signal before and after over crank angles (N,), a whole cycle, with the extremes of both.
-
-    told : whether the crank angles of the extremes are told, which takes room.
-    """
+def compare(drive: Drive, angles: Array, pair: Pair, label: str, dimension: Dimension) -> Panel:
+    """A signal before and after over crank angles (N,), a whole cycle; extremes of both."""
     period = float(angles[-1] + angles[1] - angles[0])
     axis = crank_axis(short(drive.link, 16), drive.speed, round(period / (2 * np.pi)))
     drawn = {role: closed(angles, values, period) for role, values in roles_of(pair).items()}
-    return compared(axis, label, dimension, drawn, told)
+    return compared(axis, label, dimension, drawn)
 
 
 def signals(found: Balanced) -> dict[str, Chart]:
@@ -145,7 +140,7 @@ def signals(found: Balanced) -> dict[str, Chart]:
     }
     for name, (output, told, label) in SIGNALS.items():
         pair = pair_of(output, least_moment)
-        panel = compare(drive, angles, pair, say(label), "torque", told=True)
+        panel = compare(drive, angles, pair, say(label), "torque")
         drawn[name] = Chart(name, title, f"{say(told)}, {when}", (panel,), keys=keys(pair))
     return drawn
 

@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from equipoise.figures.linkage import clear_angle, drawn, joint_names, plane_axes, told_angle
+from equipoise.figures.linkage import drawn, joint_names, plane_axes, told_angle
 from equipoise.figures.style import short
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.motion import Motion, move
 from equipoise.results.charts import Array, Arrow, Chart, Curve, Mark, Outline, Panel, quantity
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import Shape, coils, zigzag
 

@@ -1,20 +1,22 @@
-"""What is drawn in a pair of axes: curves, bars, areas, arrows, lines of equal value, machines."""
+"""What is drawn in a pair of axes: curves, bars, areas, arrows, machines."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from itertools import groupby, pairwise
+from itertools import groupby
 from typing import Any
 
 import numpy as np
 
-from equipoise.figures.sheet import Array, Box, Labels, Sheet, Signs, Stroke, Words, width_of
-from equipoise.figures.style import FAINT, INK, SMALL, Look, look_of
+from equipoise.figures.sheet import Array, Box, Labels, Sheet, Signs, Stroke
+from equipoise.figures.style import Look, look_of
 from equipoise.figures.view import View, corners_of
-from equipoise.results.charts import Area, Bars, Curve, Panel, Surface
+from equipoise.results.charts import Area, Bars, Curve, Panel
 from equipoise.symbols import looks
 from equipoise.symbols.shapes import PIN, Shape, circle, gauge, mass, sign
 
+CAP = 2.2
+"""Points: half the line across the end of an interval."""
 MARKERS = 7
 """Signs on a curve that has a few of them, beside those of the others."""
 
@@ -38,7 +40,7 @@ def draw_curve(view: View, curve: Curve, number: int) -> None:
         if len(alone):
             view.sheet.add(signs_at(alone, Look(look.color, sign=".", size=2.5)), look.order)
     if look.sign:
-        at = _spaced(places, number) if look.spaced else np.flatnonzero(there)
+        at = _spaced(places, number, view.box) if look.spaced else np.flatnonzero(there)
         clip = None if look.spaced else view.box
         if len(at):
             view.sheet.add(signs_at(places[at], look, clip), look.order + 0.01)
@@ -63,12 +65,14 @@ def thinned(places: Array) -> Array:
     return np.asarray(kept[np.concatenate([[True], turned | ~ahead, [True]])])
 
 
-def _spaced(places: Array, number: int) -> Array:
+def _spaced(places: Array, number: int, box: Box) -> Array:
     """Numbers of a few places, beside those of other curves, so that grey tells them apart."""
+    left, top, right, bottom = box
     x = np.where(np.isfinite(places[:, 0]), places[:, 0], -1e9)
     wanted = x[0] + (x[-1] - x[0]) * (np.arange(MARKERS) + (number + 0.5) / 6) / MARKERS
     nearest = np.unique(np.argmin(np.abs(x[:, None] - wanted), axis=0))
-    return np.asarray(nearest[np.isfinite(places[nearest, 1])])
+    inside = (places[nearest] >= (left, top)) & (places[nearest] <= (right, bottom))
+    return np.asarray(nearest[np.all(inside, axis=1)])
 
 
 def signs_at(places: Array, look: Look, clip: Box | None = None) -> Signs:
@@ -102,6 +106,19 @@ def draw_bars(view: View, bars: Bars) -> None:
         by_role.setdefault(role, []).append(corners_of(box))
     for role, corners in by_role.items():
         view.area(look_of(role), *corners)
+    if bars.interval is not None:
+        _intervals(view, bars, *bars.interval)
+
+
+def _intervals(view: View, bars: Bars, low: Array, high: Array) -> None:
+    """From the least to the largest size of each bar, with a short line across either end."""
+    look = look_of("interval")
+    for at, *ends in zip(bars.at.tolist(), low.tolist(), high.tolist(), strict=True):
+        line = np.array([(at, end) if bars.across == "x" else (end, at) for end in ends])
+        places = view.places(*line.T)
+        across = np.array([0.0, CAP]) if bars.across == "y" else np.array([CAP, 0.0])
+        caps = (np.array([place - across, place + across]) for place in places)
+        view.sheet.add(Stroke((places, *caps), look.color, look.width, clip=view.box), look.order)
 
 
 def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
@@ -120,95 +137,6 @@ def draw_arrow(view: View, tail: complex, head: complex, look: Look) -> None:
     corners = np.array([end, foot + beside, foot - beside])
     view.sheet.add(Stroke((corners,), fill=look.color, closed=True), 3.6)
     view.labels.avoid(np.array([start, end]))
-
-
-# -- values over two numbers -----------------------------------------------------------------------
-
-LEVELS = 12
-"""Lines at most."""
-STEEP = 90
-"""Percentile of the values up to which there are lines: beside dead points they rise endlessly."""
-DARK, LIGHT = np.array([0xCF, 0xE0, 0xEF]), np.array([0xFF, 0xFF, 0xFF])
-"""Low is dark, in grey too; never so dark that a line or a label would be lost."""
-APART = 5.0
-"""Points between the lines that fill what has no values."""
-
-
-def draw_surface(view: View, surface: Surface) -> None:
-    """Lines, their values, and shades between them."""
-    from contourpy import contour_generator
-
-    left, top, right, bottom = view.box
-    if surface.lacking:
-        view.sheet.add(Stroke((corners_of(view.box),), fill="#f2f2f2", closed=True), 0.1)
-        reach = bottom - top
-        slants = tuple(
-            np.array([(x, bottom), (x + reach, top)])
-            for x in np.arange(left - reach, right, APART).tolist()
-        )
-        view.sheet.add(Stroke(slants, FAINT, 0.5, clip=view.box), 0.2)
-    values = surface.axis.unit.factor * surface.values
-    levels = levels_of(values)
-    if not len(levels):
-        return  # the same everywhere: there is no line to draw
-    places = (view.x.at(surface.x), view.y.at(surface.y))
-    drawn = contour_generator(*places, np.ma.masked_invalid(values), fill_type="OuterOffset")
-    ends = [min(float(np.nanmin(values)), levels[0]) - 1e-300, *levels]
-    for number, (low, high) in enumerate(zip(ends, [*ends[1:], np.inf], strict=True)):
-        share = number / max(len(ends) - 2, 1)
-        color = "#" + "".join(f"{round(c):02x}" for c in DARK + (LIGHT - DARK) * min(share, 1.0))
-        found: Any = drawn.filled(low, high)  # points, and where the lines in them begin and end
-        for points, parts in zip(*found, strict=True):
-            lines = tuple(points[a:b] for a, b in pairwise(parts.tolist()))
-            view.sheet.add(Stroke(lines, color, 0.3, fill=color, closed=True, clip=view.box), 1.0)
-    told = []
-    for level in levels:
-        every: Any = drawn.lines(level)
-        lines = tuple(line for line in every if len(line) > 1)
-        if lines:
-            view.sheet.add(Stroke(lines, INK, 0.8, clip=view.box), 2.0)
-            told.append((level, max(lines, key=_length)))
-        for line in lines:
-            view.labels.avoid(line)
-    for level, line in told:
-        _tell(view, surface.axis.told(level / surface.axis.unit.factor), line)
-
-
-def levels_of(values: Array) -> list[float]:
-    """Round values at which there are lines."""
-    low, high = float(np.nanmin(values)), float(np.nanpercentile(values, STEEP))
-    high = high if high > low else float(np.nanmax(values))
-    if not high > low:
-        return []
-    power = 10.0 ** np.floor(np.log10((high - low) / LEVELS))
-    step = next(k * power for k in (1, 2, 2.5, 5, 10, 20) if (high - low) / (k * power) <= LEVELS)
-    found = step * np.arange(np.floor(low / step) + 1, np.ceil(high / step) + 1)
-    return [float(level) for level in found if low < level < np.nanmax(values)]
-
-
-def _length(line: Array) -> float:
-    return float(np.sum(np.hypot(*np.diff(line, axis=0).T)))
-
-
-def _tell(view: View, text: str, line: Array) -> None:
-    """The value of a line on it, where it is farthest from the ends of the axes."""
-    wide = width_of(text, SMALL)
-    left, top, right, bottom = view.box
-    if _length(line) < 2 * wide:
-        return
-    inside = np.minimum.reduce(
-        [line[:, 0] - left - wide, right - wide - line[:, 0], line[:, 1] - top, bottom - line[:, 1]]
-    )
-    for boxed in np.argsort(-np.minimum(inside, 20.0 + 1e-3 * inside))[:: max(len(line) // 40, 1)]:
-        x, y = line[boxed]
-        box = np.array([x - wide / 2, y - 5, x + wide / 2, y + 5])
-        clear = view.labels.boxes
-        apart = np.any((clear[:, :2] >= box[2:]) | (clear[:, 2:] <= box[:2]), axis=1)
-        if inside[boxed] > 4 and np.all(apart):
-            words = Words(x, y + 0.27 * SMALL, text, SMALL, INK, "middle", backed=True)
-            view.sheet.add(words, 7.0)
-            view.labels.occupy((box[0], box[1], box[2], box[3]))
-            return
 
 
 Placing = Callable[[Array], Array]

@@ -64,13 +64,14 @@ def over_crank(
     panels : what is in each.
     """
     x = angle_axis(analysis)
+    every = [(dimension, [*signals.values()]) for _, dimension, signals in panels]
     drawn = [
         compared(
             x,
             label,
             dimension,
             {role: over(analysis, values) for role, values in signals.items()},
-            angles=len(panels) < 3,
+            beside=np.ravel([values for one, values in every if one == dimension]),
             low=0.0 if label == say("size") else None,
         )
         for label, dimension, signals in panels

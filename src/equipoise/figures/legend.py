@@ -55,7 +55,7 @@ def keys_of(panel: Panel, chart_level: bool) -> list[Key]:
         for kind, every in (*kinds, ("patch", panel.bands)):
             found += [Key(one.role, one.label, kind) for one in every if one.label]
         if panel.surface is not None and panel.surface.lacking:
-            found.append(Key("whole", panel.surface.lacking, "patch"))
+            found.append(Key("off", panel.surface.lacking, "patch"))
     return [*dict.fromkeys(found)]
 
 

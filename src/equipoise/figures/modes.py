@@ -17,8 +17,8 @@ from equipoise.mechanism.support import AXES, Gauge, Mount, unit_vector
 from equipoise.quantities import typeset
 from equipoise.results.charts import Array, Axis, Chart, Curve, Mark, Panel, shown
 from equipoise.symbols import shapes
-from equipoise.symbols.scene import Scene, hull
-from equipoise.symbols.shapes import Shape
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Shape, hull
 from equipoise.vibration.linkages import rows_of
 
 if TYPE_CHECKING:

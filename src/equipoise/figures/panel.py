@@ -6,13 +6,13 @@ from math import ceil, floor, log10
 
 import numpy as np
 
+from equipoise.figures.contours import draw_surface
 from equipoise.figures.curves import (
     draw_area,
     draw_arrow,
     draw_bars,
     draw_curve,
     draw_machine,
-    draw_surface,
     signs_at,
 )
 from equipoise.figures.sheet import MIDDLE, Array, Stroke, Text, Words, spread, width_of

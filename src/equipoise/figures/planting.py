@@ -106,7 +106,7 @@ def _chart(
     """One signal (N,) of the curve's crank angles."""
     curve = figures.curve
     line = Curve(*closed(curve.theta, values, curve.period))
-    marks = extremes(y, values, places, "main", angles=True)
+    marks = extremes(y, values, places, "main")
     panel = stay_panel(figures, y, [line], marks, flags=_flags(figures))
     return Chart(name, figures.machine.title, f"{what}; {say(SHADED)}", (panel,))
 
@@ -196,15 +196,16 @@ def torque(figures: PlantingFigures) -> Chart:
 
 
 def joints(figures: PlantingFigures) -> Chart:
-    """Size of the force in every joint, each with axes of its own."""
+    """Size of the force in every joint, in the air and in the soil."""
     found = figures.forces
     assert found is not None
     air, soil = ({**one.joints, **one.gears} for one in (found.in_air, found.in_soil))
     panels = []
+    pairs = {name: {"air": air[name].size, "soil signal": soil[name].size} for name in soil}
+    every = [[*pair.values()] for pair in pairs.values()]
+    y = Axis.of(say("force"), "force", every, room=ROOM, low=0.0)
     for name, joint in soil.items():
-        pair = {"air": air[name].size, "soil signal": joint.size}
-        y = Axis.of(say("force"), "force", [*pair.values()], room=ROOM, low=0.0)
-        panels.append(_air_and_soil(figures, y, pair, title=named(name, joint), height=74.0))
+        panels.append(_air_and_soil(figures, y, pairs[name], title=named(name, joint), height=74.0))
     what = f"{say('Force in each joint')}; {say(SHADED)}"
     return Chart("joints", figures.machine.title, what, tuple(panels), columns=min(2, len(panels)))
 
@@ -220,7 +221,7 @@ def _air_and_soil(
     for role, values in reversed([*pair.items()]):
         places = sampled_extremes(angles, values)
         if both:
-            marks += extremes(y, values, places, role, angles=True)
+            marks += extremes(y, values, places, role)
         elif role == "soil signal":
             marks += extremes(y, values, places[:1], role)
     period = figures.curve.period

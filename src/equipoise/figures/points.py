@@ -198,7 +198,8 @@ def outputs_chart(
     panels = []
     for one in ones:
         drawn = {ALL: over(analysis, one.drawn)}
-        panel = compared(x, "", one.dimension, drawn, angles=len(ones) < 4)
+        beside = np.ravel([other.drawn for other in ones if other.dimension == one.dimension])
+        panel = compared(x, "", one.dimension, drawn, beside=beside)
         panels.append(replace(panel, title=replace(panel.y, label=one.label()).text))
     told = what or say(", ").join(one.label() for one in ones)
     return Chart(name, analysis.machine.title, title(analysis, told), tuple(panels))

@@ -128,17 +128,14 @@ def extremes(
     values: Array,
     places: Sequence[tuple[float, float]],
     role: str,
-    angles: bool = False,
 ) -> tuple[Mark, ...]:
     """Marks at extremes of a signal (N,), none where it does not vary.
 
-    places : crank angles (rad) and values.  angles : whether the crank angles are told too.
+    places : crank angles (rad) and values.
     """
     found = []
     for angle, value in places if varies(values) else ():
-        text = axis.told(value)
-        if angles:
-            text = say("{value} at {angle}", value=text, angle=degrees_told(angle))
+        text = say("{value} at {angle}", value=axis.told(value), angle=degrees_told(angle))
         wish = 90.0 if value > float(np.mean(values)) else -90.0
         found.append(Mark(angle, value, text, role, wish))
     return tuple(found)
@@ -155,20 +152,21 @@ def compared(
     label: str,
     dimension: Dimension | None,
     drawn: Mapping[str, tuple[Array, Array]],
-    angles: bool = False,
     low: float | None = None,
+    beside: Any = (),
     **rest: Any,
 ) -> Panel:
     """Signals of one quantity by their roles over crank angle, with the extremes of each.
 
     drawn : role -> crank angles (N,), rad, and values (N,), SI units.  low : where the axis begins.
+    beside : values of the same quantity in other panels, so that all have one unit.
     rest : of the panel.
     """
     every = np.concatenate([values for _, values in drawn.values()])
-    axis = Axis.of(label, dimension, every, room=ROOM, low=low)
+    axis = Axis.of(label, dimension, np.append(every, beside), room=ROOM, low=low)
     marks: list[Mark] = []
     for role, (theta, values) in reversed(tuple(drawn.items())):
-        marks += extremes(axis, values, sampled_extremes(theta, values), role, angles)
+        marks += extremes(axis, values, sampled_extremes(theta, values), role)
     curves = tuple(Curve(theta, values, "", role) for role, (theta, values) in drawn.items())
     if not np.any(every):
         rest["message"] = say("zero at every crank angle")

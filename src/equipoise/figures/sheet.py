@@ -176,21 +176,16 @@ def set_in(text: str, room: float, size: float, bold: bool = False) -> tuple[str
     return fitted(text, room, size, bold), size
 
 
-def lines_of(text: str, room: float, size: float, most: int) -> list[str]:
-    """A text in lines that fit into some points; the last of them is cut where there is more."""
-    if width_of(text, size) <= room:
-        return [text]
-    count = int(len(text) * room / width_of(text, size))
-    while count > LAST:
-        lines = wrap(text, count) or [""]
-        if all(width_of(line, size) <= room for line in lines[:most]):
-            break
-        count -= 1
-    else:
-        lines = [text]
-    if len(lines) > most:
-        lines = [*lines[: most - 1], " ".join(lines[most - 1 :])]
-    return [fitted(line, room, size) for line in lines]
+def lines_of(text: str, room: float, size: float, bold: bool = False) -> list[str]:
+    """A text in as few lines as fit into some points."""
+    wide = width_of(text, size, bold)
+    if not text or wide <= room:
+        return [text] if text else []
+    for count in range(max(int(len(text) * room / wide), 1) + LAST, 1, -1):
+        lines = wrap(text, count)
+        if all(width_of(line, size, bold) <= room for line in lines):
+            return lines
+    return [*text]
 
 
 AROUND = tuple(range(0, 360, 30))

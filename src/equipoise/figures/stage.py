@@ -13,6 +13,7 @@ import numpy as np
 from equipoise.errors import UsageError
 from equipoise.i18n import say
 from equipoise.results.charts import quantity
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.pieces import Track
 from equipoise.symbols.scene import Scene
 from equipoise.symbols.shapes import FOOT, Array
@@ -86,14 +87,19 @@ class Stage:
 
     @cached_property
     def chosen(self) -> Array:
-        """(K,) numbers of the crank angles of the instants; the last one closes the motion."""
+        """(K,) numbers of the crank angles of the instants; the last one closes the motion.
+
+        A cycle begins where links are clear of each other, which is what is seen where it stands.
+        """
         count = int(np.clip(round(self.frames * self.turns), 1, self._steps))
-        return np.round(np.arange(count + 1) * self._steps / count).astype(int)
+        first = clear_angle(self.scene) if self.closed else 0
+        steps = np.round(np.arange(count + 1) * self._steps / count).astype(int)
+        return np.asarray(first + steps)
 
     @property
     def times(self) -> Array:
         """(K,) from 0 to 1."""
-        return self.chosen / self._steps
+        return np.asarray((self.chosen - self.chosen[0]) / self._steps)
 
     @cached_property
     def strength(self) -> float:
@@ -155,9 +161,9 @@ class Stage:
         """The motion of a part at the instants."""
         count, angle = len(track.angle), -track.angle
         turns = round((angle[-1] - angle[0]) * count / (count - 1) / (2 * np.pi))
-        angle = np.append(angle, angle[0] + 2 * np.pi * turns)
-        again = self.chosen % count
-        return Moves(self.at(track.place)[again], angle[self.chosen], track.stretch[again])
+        cycles, again = np.divmod(self.chosen, count)
+        angle = angle[again] + 2 * np.pi * turns * cycles
+        return Moves(self.at(track.place)[again], angle, track.stretch[again])
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,13 +247,14 @@ def _ruler_length(stage: Stage) -> float:
 
 
 def _of_pivots(stage: Stage) -> Iterator[list[Label]]:
-    side, down, below = (by * stage.unit for by in (22, 10j, (FOOT + 8) * 1j))
+    side = 22 * stage.unit
     for name in stage.scene.standing:
         place = complex(stage.at(stage.scene.places[name][0]))
+        way = stage.scene.ground(name).conjugate() * stage.unit
         yield [
-            Label(name, place + below),
-            Label(name, place + side + down, "start"),
-            Label(name, place - side + down, "end"),
+            Label(name, place + (FOOT + 8) * way),
+            Label(name, place + side + 10 * way, "start"),
+            Label(name, place - side + 10 * way, "end"),
         ]
 
 

@@ -1,4 +1,4 @@
-"""The charts of studies: designs against each other, scatter and what causes it, maps.
+"""The charts of studies: scatter and what causes it, maps.
 
 Numbers and figures are drawn in the units that are given by name, as `schema.study_units` has them.
 """
@@ -6,8 +6,7 @@ Numbers and figures are drawn in the units that are given by name, as `schema.st
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
-from itertools import combinations, zip_longest
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -21,7 +20,6 @@ from equipoise.results.charts import (
     Axis,
     Bars,
     Chart,
-    Curve,
     Line,
     Mark,
     Panel,
@@ -32,22 +30,16 @@ from equipoise.results.outputs import objective_named
 
 if TYPE_CHECKING:
     from equipoise.studies.blocks import Unit
-    from equipoise.studies.design_space import Make
     from equipoise.studies.objective_map import Landscape
-    from equipoise.studies.search import Searched
-    from equipoise.studies.selection import Best
     from equipoise.studies.tolerances import Cause, Tolerances
-    from equipoise.studies.variance import Scatter
+    from equipoise.studies.variance import Estimate, Scatter
 
 Units = Mapping[str, "Unit"]
-Own = tuple[Array, Array]
-"""Values (d,) and figures (m,) of the model itself."""
-
-MARGIN, NARROW = 0.08, 0.05
-"""Free at each side, over what is drawn: of designs, and of scatter."""
+NARROW = 0.05
+"""Free at each side, over what is drawn."""
 PERCENT = Display("%", 100.0)
-BAR, TALL, THIN = 21.0, 0.68, 0.34
-"""Points from bar to bar of causes; heights of bars, over that."""
+BAR, TALL, THIN = 21.0, 0.68, 0.36
+"""Points from bar to bar of causes; heights of bars, one of a cause and two, over that."""
 MOST_SHARES = 4
 """Panels of shares in a picture."""
 
@@ -55,126 +47,6 @@ MOST_SHARES = 4
 def unit_of(unit: Unit) -> Display:
     """The unit of a study as an axis has it."""
     return Display(unit.name, 1 / unit.factor)
-
-
-# -- designs ---------------------------------------------------------------------------------------
-
-
-def best_charts(found: Best, title: str, units: Units) -> dict[str, Chart]:
-    """``front`` where there are several aims; ``designs``: the first aim over every number.
-
-    More than ten numbers go on in ``designs-2`` and so on.
-    """
-    columns = dict(zip(found.numbers, found.values.T, strict=True))
-    columns |= dict(zip(found.outputs, found.figures.T, strict=True))
-    labels = [str(number) for number in found.designs.tolist()]
-    return _of(Designs(title, found.by, found.numbers, columns, labels, units))
-
-
-def searched_charts(found: Searched, units: Units, own: Own | None = None) -> dict[str, Chart]:
-    """The same of a search, and ``search``: how it got better from generation to generation.
-
-    own : the model itself, for comparison.
-    """
-    study = found.study
-    names = (*study.paths, *study.names)
-    columns = dict(zip(names, (*found.values.T, *found.figures.T), strict=True))
-    labels = [str(number) for number in range(len(found.values))]
-    before = None if own is None else dict(zip(names, (*own[0], *own[1]), strict=True))
-    by = dict(found.objectives)
-    designs = Designs(study.title, by, study.paths, columns, labels, units, before)
-    return {**_of(designs), "search": grown(found, units)}
-
-
-@dataclass(frozen=True, eq=False)
-class Designs:
-    """Designs (K) as columns (K,) by name, SI units.
-
-    by : what they were chosen by, and which way.  numbers : names of what varies.
-    labels : of the designs.  units : in which they are drawn.
-    own : the model itself by the same names, where it is known.
-    """
-
-    title: str
-    by: Mapping[str, Make]
-    numbers: Sequence[str]
-    columns: Mapping[str, Array]
-    labels: Sequence[str]
-    units: Units
-    own: Mapping[str, float] | None = None
-
-    def axis(self, name: str, most: int = 40, way: bool = True) -> Axis:
-        """Of a number or figure; way : whether it is told which way is good."""
-        label, unit = short(name, most), unit_of(self.units[name])
-        if way and name in self.by:
-            good = say("large is good") if self.by[name] == "largest" else say("small is good")
-            label = f"{label} ({good})"
-        return Axis(label, unit, room=MARGIN)
-
-
-def _of(designs: Designs) -> dict[str, Chart]:
-    fronts = [front(designs)] if len(designs.by) > 1 else []
-    return by_name([*fronts, *over_numbers(designs)])
-
-
-def front(designs: Designs) -> Chart:
-    """Every two aims against each other."""
-    pairs = list(combinations(designs.by, 2))
-    alone = len(pairs) == 1
-    most, columns = (40, 1) if alone else (26, 2)
-    panels = tuple(_against(designs, *pair, most, told=alone) for pair in pairs)
-    what = say("{count} designs that no other beats in everything", count=len(designs.labels))
-    return Chart("front", designs.title, what, panels, columns, False, _keys(designs))
-
-
-def over_numbers(designs: Designs) -> Iterator[Chart]:
-    """The first aim over each number that varies."""
-    aim = next(iter(designs.by))
-    every = list(designs.numbers)
-    for suffix, names in groups(every):
-        panels = tuple(_against(designs, name, aim, 34) for name in names)
-        what = say("{aim} over each number that varies", aim=designs.axis(aim).text)
-        what += continued(names, every)
-        own, columns = f"designs{suffix}", min(2, len(panels))
-        yield Chart(own, designs.title, what, panels, columns, False, _keys(designs))
-
-
-def _against(designs: Designs, first: str, second: str, most: int, told: bool = False) -> Panel:
-    x, y = designs.columns[first], designs.columns[second]
-    marks = []
-    if designs.own is not None:
-        marks.append(Mark(designs.own[first], designs.own[second], "", "own"))
-    if told:
-        for k in sorted({int(np.argmin(x)), int(np.argmax(x))}):
-            text = say("design {name}", name=designs.labels[k])
-            marks.append(Mark(float(x[k]), float(y[k]), text, "designs", 60.0, sign=False))
-    return Panel(
-        designs.axis(first, most),
-        designs.axis(second, most, way=told or (second not in designs.numbers and most < 30)),
-        (Curve(x, y, "", "designs"),),
-        tuple(marks),
-        height=250.0 if told else 118.0,
-        zero=False,
-    )
-
-
-def _keys(designs: Designs) -> tuple[tuple[str, str], ...]:
-    own = (("own", say("the model itself")),) if designs.own is not None else ()
-    return (("designs", say("designs")), *own)
-
-
-def grown(found: Searched, units: Units) -> Chart:
-    """How good the best designs were after each generation."""
-    counts = {"count": found.computed, "generations": found.generations}
-    what = say("{count} designs in {generations} generations", **counts)
-    last = len(found.volumes)
-    x = Axis(say("generation"), low=1.0, high=float(max(2, last)))
-    y = Axis(say("share that the front dominates"), PERCENT)
-    if len(found.objectives) == 1:
-        (name,) = found.objectives
-        y = Axis(say("best {name}", name=short(name, 24)), unit_of(units[name]))
-    curve = Curve(np.arange(1.0, last + 1), np.asarray(found.volumes, float), steps=True)
-    return Chart("search", found.study.title, what, (Panel(x, y, (curve,)),))
 
 
 # -- tolerances ------------------------------------------------------------------------------------
@@ -206,24 +78,24 @@ def scatter(found: Tolerances, units: Units) -> Iterator[Chart]:
 
 def _histogram(name: str, one: Scatter, unit: Unit, designs: int) -> Panel:
     edges, shares = np.asarray(one.edges, float), one.counts / designs
+    limits = [end for end in _limits(one) if edges[0] < end < edges[-1]]
+    cut = np.union1d(edges, limits)  # a bar that a limit goes through is two, just as high
+    edges, shares = cut, shares[np.searchsorted(edges, cut[:-1], "right") - 1]
     output = one.output
     least = -np.inf if output.at_least is None else output.at_least
     most = np.inf if output.at_most is None else output.at_most
-    inside = (edges[1:] > least) & (edges[:-1] < most)
+    inside = (edges[:-1] >= least) & (edges[1:] <= most)
     roles = tuple("machines" if good else "outside" for good in inside)
     lines = [Line(limit, "bound") for limit in _limits(one)]
     if np.isfinite(one.base):
         lines.append(Line(one.base, "model"))
     held = [*(line.at for line in lines), float(edges[0]), float(edges[-1])]
     room = NARROW * (max(held) - min(held)) or 0.05 * abs(held[0]) or 1.0
-    shown_in = unit_of(unit)
-    label = say("in {unit}", unit=shown_in.name) if unit.name else ""
-    x = Axis(label, Display("", shown_in.factor), low=min(held) - room, high=max(held) + room)
+    x = Axis(short(name, 40), unit_of(unit), low=min(held) - room, high=max(held) + room)
     bars = Bars((edges[:-1] + edges[1:]) / 2, shares, np.diff(edges), roles=roles)
-    title = short(name, 40)
+    title = ""
     if one.within is not None:
-        share = shown(100 * one.within.value)
-        title = say("{name}: {share} % within limits", name=short(name, 24), share=share)
+        title = say("{share} % within limits", share=shown(100 * one.within.value))
     y = Axis(say("machines"), PERCENT, low=0.0)
     return Panel(x, y, lines=tuple(lines), bars=(bars,), title=title, height=98.0)
 
@@ -244,26 +116,35 @@ def tighten(found: Tolerances) -> Chart:
 
 
 def shares(found: Tolerances) -> Iterator[Chart]:
-    """Share of each tolerance in the variance of each figure."""
+    """Share of each tolerance in the variance of each figure, each with its 95 % interval."""
     causes = found.causes
     every = [name for name in found.scatters if name in causes[0].effects]
     together = say("with all that it does together with others")
-    keys = (("part", say("by itself")), ("whole", together))
+    keys = (("part", say("by itself")), ("whole", together), ("interval", say("95 % interval")))
     rows = np.arange(len(causes))
-    x = Axis(say("share of the variance"), PERCENT, low=0.0, high=1.0)
+    kinds = (("first", "part", -THIN / 2), ("total", "whole", THIN / 2))
+    estimates = (getattr(cause.effects[n], kind) for n in every for cause in causes
+                 for kind, *_ in kinds)  # fmt: skip
+    most = max((one.high for one in estimates), default=1.0)
+    x = Axis(say("share of the variance"), PERCENT, low=0.0, high=max(most, 1.0))
     for suffix, names in groups(every, MOST_SHARES):
         panels = []
         for name in names:
             effects = [cause.effects[name] for cause in causes]
-            total = np.array([max(effect.total.value, 0.0) for effect in effects])
-            first = np.array([max(effect.first.value, 0.0) for effect in effects])
-            bars = (
-                Bars(rows, total, TALL, "whole", across="y"),
-                Bars(rows, first, THIN, "part", across="y"),
+            bars = tuple(
+                _shares([getattr(effect, kind) for effect in effects], rows + beside, role)
+                for kind, role, beside in kinds
             )
             panels.append(_bars_of(causes, bars, x, title=short(name, 50)))
         what = say("What causes the scatter of each figure") + continued(names, every)
         yield Chart(f"shares{suffix}", found.study.title, what, tuple(panels), keys=keys)
+
+
+def _shares(estimates: Sequence[Estimate], rows: Array, role: str) -> Bars:
+    """Estimates that may come out below 0 within their interval, as bars from 0."""
+    told = [(one.value, one.low, one.high) for one in estimates]
+    size, low, high = np.maximum(np.array(told).T, 0.0)
+    return Bars(rows, size, THIN, role, across="y", interval=(low, high))
 
 
 def _bars_of(causes: Sequence[Cause], bars: tuple[Bars, ...], x: Axis, **rest: Any) -> Panel:

@@ -71,7 +71,7 @@ LOOKS: dict[str, Look] = {
     "lines": Look(LINES, 0.9),
     "strong": Look(INK, 1.8),
     "dashed ink": Look(INK, 1.2, (4.0, 2.0)),
-    "stress": Look(STRESS, 1.6, order=3.4),
+    "stress": Look(STRESS, 1.8, order=3.4),
     "faint": Look(FAINT, 0.9, order=2),
     "thin": Look(MAIN, 1.0),
     "zero": Look(FAINT, 0.8, order=1),
@@ -133,7 +133,8 @@ LOOKS: dict[str, Look] = {
     "machines": Look(MAIN, fill=MAIN),
     "outside": Look(FAINT, fill=FAINT),
     "part": Look(MAIN, fill=MAIN, order=3.2),
-    "whole": Look(PALE, fill=PALE, order=2),
+    "whole": Look(FAINT, fill=FAINT, order=2),
+    "interval": Look(INK, 0.9, order=4),
     "samples": Look(FAINT, 0.0, sign=".", size=2.2, order=2),
     "fit": Look(MAIN, 0.9),
     "turning": Look(STRESS, 1.0, sign="o", size=4, hollow=True, order=4),
@@ -184,12 +185,12 @@ LOOKS["quieter"] = Look(FAINT, 0.7, order=2.5)
 
 
 def look_of(role: str, dashed: bool = False) -> Look:
-    """The look of a role, ``meeting 5.5`` of so many points; dashed ones have no signs."""
+    """The look of a role, ``meeting 5.5`` of so many points; or the same, dashed."""
     name, _, size = role.rpartition(" ")
     if name == "meeting":
         return replace(LOOKS[name], size=float(size))
     look = LOOKS[role]
-    return replace(look, dashes=MEDIUM, sign="") if dashed else look
+    return replace(look, dashes=MEDIUM) if dashed else look
 
 
 def short(name: str, most: int = 24) -> str:

@@ -118,7 +118,7 @@ def gauge(response: Response, name: str) -> Chart:
         theta, values, places = told(getattr(read, quantity))
         label = say("rotation") if read.rotation and quantity == "displacement" else say(name_of)
         y = read_axis(label, quantity, read.rotation, values, room=ROOM)
-        marks = extremes(y, values, places, "main", angles=True)
+        marks = extremes(y, values, places, "main")
         panels.append(Panel(phase_axis(response), y, (Curve(theta, values),), marks))
     what = say("Rotation at {gauge}") if read.rotation else say("Motion at {gauge}")
     what = f"{what.format(gauge=short(name))}, {period_told(response)}"
@@ -150,7 +150,7 @@ def _with_mean(response: Response, signal: Periodic, y: Axis, **rest: Any) -> Pa
         mean = 0.0 if abs(mean) <= VARIES * float(np.ptp(values)) else mean
         lines = (Line(mean, "mean", axis="y"),)
         rest["remark"] = say("dashed: mean {value}", value=y.quantity(mean))
-    marks = extremes(y, values, places, "main", angles=True)
+    marks = extremes(y, values, places, "main")
     return Panel(phase_axis(response), y, (Curve(theta, values),), marks, lines=lines, **rest)
 
 
@@ -204,10 +204,11 @@ def mounts(response: Response) -> Iterator[Chart]:
     """Force in each mount over a period, beside what it carries at rest."""
     every = list(response.mounts)
     at_rest = _at_rest(response) if every else {}
+    beside = _largest(response, at_rest)
     for suffix, names in groups(every):
         what = say("Force in the mounts on the support") + continued(names, every)
         what = f"{what}, {period_told(response)}"
-        panels = tuple(_mount(response, name, at_rest[name]) for name in names)
+        panels = tuple(_mount(response, name, at_rest[name], beside) for name in names)
         keys, columns = (("main", say("force")), ("mean", say("at rest"))), min(2, len(panels))
         yield Chart(f"mounts{suffix}", response.machine.title, what, panels, columns, keys=keys)
 
@@ -223,8 +224,17 @@ def _at_rest(response: Response) -> dict[str, float]:
     }
 
 
-def _mount(response: Response, name: str, rest: float) -> Panel:
-    """One mount; rest : what it carries there."""
+def _largest(response: Response, at_rest: Mapping[str, float]) -> dict[bool, float]:
+    """Of all torques (True), and of all forces, so that each of these has one unit; SI units."""
+    found: dict[bool, float] = {}
+    for name, mount in response.mounts.items():
+        sizes = np.abs([*sampled(mount.force)[1], at_rest[name]])
+        found[mount.torsional] = max(found.get(mount.torsional, 0.0), float(np.max(sizes)))
+    return found
+
+
+def _mount(response: Response, name: str, rest: float, largest: Mapping[bool, float]) -> Panel:
+    """One mount; rest : what it carries there.  largest : by which the unit is chosen."""
     assert response.machine.support is not None
     mount, model = response.mounts[name], response.machine.support.mounts[name]
     rotation = model.axis is not None
@@ -233,7 +243,7 @@ def _mount(response: Response, name: str, rest: float) -> Panel:
     if lifted and response.model == "exact":  # the sum of its orders swings about 0
         values, places = np.maximum(values, 0.0), places[:1]
     label = say("torque") if rotation else say("force")
-    y = read_axis(label, "force", rotation, [*values, rest], room=ROOM)
+    y = read_axis(label, "force", rotation, largest[rotation], room=ROOM)
     told_off = f"{short(name, 20)}: {_told_off(response, mount, lifted)}" if lifted else ""
     return Panel(
         phase_axis(response),

@@ -118,6 +118,7 @@ class Bars:
     width : in units of the places.  across : the axis on which they stand.
     told : whether their sizes are written at their ends.
     roles : of each bar, where they differ.
+    interval : least and largest sizes (N,) that each may have.
     """
 
     at: Array
@@ -128,6 +129,7 @@ class Bars:
     across: Across = "x"
     told: bool = False
     roles: Sequence[str] = ()
+    interval: tuple[Array, Array] | None = None
 
 
 @dataclass(frozen=True)

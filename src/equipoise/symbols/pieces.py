@@ -9,7 +9,8 @@ import numpy as np
 
 from equipoise.mechanism.model import FRAME
 from equipoise.mechanism.support import Mount, unit_vector
-from equipoise.symbols.scene import WIDE, Body, Carrier, Guide, Scene, hull
+from equipoise.symbols.carrier import Carrier
+from equipoise.symbols.scene import WIDE, Body, Guide, Scene
 from equipoise.symbols.shapes import (
     PIN,
     Array,
@@ -19,6 +20,7 @@ from equipoise.symbols.shapes import (
     coils,
     driver,
     gauge,
+    hull,
     line,
     mass,
     mount,
@@ -194,8 +196,10 @@ def _wheels(scene: Scene) -> Iterator[Piece]:
 def _stands(scene: Scene) -> Iterator[Piece]:
     """What the frame holds links with; on a support it is that, and no ground."""
     grounded = scene.carrier is None
-    places = (complex(scene.places[name][0]) for name in scene.standing)
-    stands = (pivot(place, grounded) for place in places)
+    stands = (
+        pivot(complex(scene.places[name][0]), grounded, scene.ground(name))
+        for name in scene.standing
+    )
     yield Piece("stands", tuple(shape for stand in stands for shape in stand))
     for guide in scene.guides:
         if guide.on == FRAME:

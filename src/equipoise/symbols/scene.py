@@ -5,23 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from equipoise.errors import EquipoiseError
-from equipoise.mechanism import kernels
 from equipoise.mechanism.bodies import place_of
 from equipoise.mechanism.body_checks import Outline, outlines
 from equipoise.mechanism.joints import gear_pins
 from equipoise.mechanism.model import FRAME, Link, Machine
 from equipoise.mechanism.motion import Motion
-from equipoise.mechanism.support import Mount
 from equipoise.mechanism.tip import surface_of
-from equipoise.symbols.shapes import MOUNT, Array
-
-if TYPE_CHECKING:
-    from equipoise.mechanism.support import Gauge, Support
+from equipoise.symbols.carrier import Carrier
+from equipoise.symbols.shapes import MOUNT, Array, hull
 
 
 @dataclass(frozen=True)
@@ -99,27 +94,10 @@ class Field:
     tray: tuple[complex, ...]
 
 
-@dataclass(frozen=True)
-class Carrier:
-    """The support as it is seen from the side; places complex, m.
-
-    corners : all places by which it is drawn.  center : its centre of mass.
-    reference : the pivot or, where there is none, the centre of mass.
-    """
-
-    support: Support
-    corners: tuple[complex, ...]
-    center: complex
-    reference: complex
-
-    @property
-    def items(self) -> dict[str, Mount | Gauge]:
-        """Mounts, then gauges."""
-        return {**self.support.mounts, **self.support.gauges}
-
-
 GROWN = 2.0
 """How much larger than the linkage a picture may get that shows what its support is held by."""
+HANGING = 0.7
+"""How far down a link hangs in the mean, over its length, that is held from above."""
 WIDE = 560
 """Units in the size of a machine, about."""
 
@@ -172,7 +150,7 @@ class Scene:
             Drive(machine.drive.link, motion.linkage.pivot, int(np.sign(motion.speed))),
             tuple((one.point, one.to) for one in planned if (one.point, one.to) not in springs),
             _field(motion),
-            _carrier(machine),
+            Carrier.of(machine),
         )
 
     @property
@@ -187,6 +165,19 @@ class Scene:
         """Points of the frame at which something is held."""
         held = {to for _, to in (*self.springs, *self.planned)} | self.pins
         return tuple(name for name in self.frame if name in held)
+
+    def ground(self, point: str) -> complex:
+        """Way to what holds a point of the frame: down, or up where all that it holds hangs."""
+        others = [(name, body.outline) for body in self.bodies for name in body.outline]
+        others += [(to, (one, to)) for one, to in (*self.springs, *self.planned)]
+        ways = [
+            self.places[other] - self.places[point]
+            for name, outline in others
+            for other in outline
+            if name == point != other
+        ]
+        hung = [float(np.mean(way.imag / np.maximum(np.abs(way), 1e-150))) for way in ways]
+        return 1j if hung and max(hung) < -HANGING else -1j
 
     @cached_property
     def linkage_box(self) -> tuple[complex, complex]:
@@ -275,19 +266,6 @@ def _field(motion: Motion) -> Field | None:
     return Field(surface, max(depth, 0.0), tuple(complex(*end) for end in planting.tray or ()))
 
 
-def _carrier(machine: Machine) -> Carrier | None:
-    support = machine.support
-    if support is None:
-        return None
-    offsets = {complex(*row.offset) for row in machine.rows} or {0j}
-    corners = [complex(*place) + by for place in machine.frame.values() for by in offsets]
-    items: list[Mount | Gauge] = [*support.mounts.values(), *support.gauges.values()]
-    corners += [complex(*item.point[:2]) for item in items if item.point is not None]
-    center, reference = (complex(*z[:2]) for z in (support.center_of_mass, support.reference))
-    around = hull(np.array([*corners, center, reference]))
-    return Carrier(support, tuple(map(complex, around)), center, reference)
-
-
 def _bodies(machine: Machine) -> Iterator[Body]:
     for name, link in machine.links.items():
         named = {complex(*place): point for point, place in reversed(list(link.points.items()))}
@@ -325,22 +303,3 @@ def _guides(motion: Motion) -> Iterator[Guide]:
         along = (place * way.conj()).real
         ends = along - along.min(), along.max() - along
         yield Guide(slider.name, slider.point, way, slider.on, *ends)
-
-
-def hull(places: Array) -> Array:
-    """Corners of the smallest convex outline around places, counterclockwise."""
-    ordered = sorted({complex(place) for place in places}, key=lambda z: (z.real, z.imag))
-    if len(ordered) < 3:
-        return np.array(ordered)
-    size = abs(ordered[-1] - ordered[0])
-    chains = []
-    for row in (ordered, ordered[::-1]):
-        chain: list[complex] = []
-        for place in row:
-            while len(chain) > 1 and (
-                kernels.cross(chain[-1] - chain[-2], place - chain[-2]) <= 1e-9 * size**2
-            ):
-                chain.pop()
-            chain.append(place)
-        chains += chain[:-1]
-    return np.array(chains)

@@ -14,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from equipoise.mechanism.kernels import cross
+
 Array = np.ndarray[Any, Any]
 
 PIN = 3.6
@@ -102,16 +104,19 @@ def wheel(center: complex, radius: float) -> list[Shape]:
     return [circle("wheel", center, radius), *spokes]
 
 
-def pivot(place: complex, grounded: bool = True) -> list[Shape]:
-    """The sign of a point that stands still: a stand, on hatched ground or on what carries it."""
+def pivot(place: complex, grounded: bool = True, way: complex = -1j) -> list[Shape]:
+    """The sign of a point that stands still: a stand, on hatched ground or on what carries it.
+
+    way : of length 1, to the ground.
+    """
     half, high = STAND
-    foot = -1j * high
-    found = _hatching(place, foot + 1.6 * half, foot - 1.6 * half) if grounded else []
+    foot, side = high * way, half * 1j * way
+    found = _hatching(place, foot + 1.6 * side, foot - 1.6 * side, way) if grounded else []
     reach = 1.6 if grounded else 1.0
     return [
         *found,
-        sign("stand", place, [0, foot - half, foot + half], closed=True),
-        sign("rail", place, [foot - reach * half, foot + reach * half]),
+        sign("stand", place, [0, foot - side, foot + side], closed=True),
+        sign("rail", place, [foot - reach * side, foot + reach * side]),
     ]
 
 
@@ -268,17 +273,36 @@ def turning(place: complex, ring: int, of_gauge: bool) -> list[Shape]:
 # -- parts of signs --------------------------------------------------------------------------------
 
 
-def off_outline(place: complex, corners: Sequence[complex]) -> float:
-    """How far a place lies outside a line or a convex plate; 0 inside."""
-    around = np.array(corners)
-    edges = np.roll(around, -1) - around
-    arms = place - around
-    lengths = np.maximum(abs(edges) ** 2, 1e-300)
-    along = np.clip((arms * edges.conj()).real / lengths, 0, 1)
-    inside = (edges.conj() * arms).imag
-    if len(around) > 2 and (np.all(inside >= 0) or np.all(inside <= 0)):
-        return 0.0
-    return float(abs(arms - along * edges).min())
+def hull(places: Array) -> Array:
+    """Corners of the smallest convex outline around places, counterclockwise."""
+    ordered = sorted({complex(place) for place in places}, key=lambda z: (z.real, z.imag))
+    if len(ordered) < 3:
+        return np.array(ordered)
+    size = abs(ordered[-1] - ordered[0])
+    chains = []
+    for row in (ordered, ordered[::-1]):
+        chain: list[complex] = []
+        for place in row:
+            while len(chain) > 1 and (
+                cross(chain[-1] - chain[-2], place - chain[-2]) <= 1e-9 * size**2
+            ):
+                chain.pop()
+            chain.append(place)
+        chains += chain[:-1]
+    return np.array(chains)
+
+
+def off_outline(places: Any, corners: Any) -> Array:
+    """How far places (...) lie outside lines or convex plates; 0 inside.
+
+    corners : (n, ...), counterclockwise.
+    """
+    around = np.asarray(corners)
+    edges = np.roll(around, -1, axis=0) - around
+    arms = places - around
+    along = (arms * edges.conj()).real / np.maximum(np.abs(edges) ** 2, 1e-300)
+    apart = np.abs(arms - np.clip(along, 0, 1) * edges).min(axis=0)
+    return np.where(np.all((edges.conj() * arms).imag > 0, axis=0), 0.0, apart)
 
 
 def _box(role: str, low: complex, high: complex, over: float, half: float) -> Shape:
@@ -288,7 +312,7 @@ def _box(role: str, low: complex, high: complex, over: float, half: float) -> Sh
     return Shape(role, np.array([low, high, high, low], complex), offsets * way, True)
 
 
-def _hatching(place: complex, start: complex, end: complex, away: complex = -1j) -> list[Shape]:
+def _hatching(place: complex, start: complex, end: complex, away: complex) -> list[Shape]:
     """Short strokes behind a line between two offsets from a place, on the side away."""
     ends = np.array([place, place], complex)
     return _hatched(ends, np.array([start, end]), away, 1.0)

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 import equipoise as eq
 from equipoise.figures.stage import Arrow
 from equipoise.results.analysis import Analysis
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.scene import Scene
 from unit.figures.samples import three_turns
 
@@ -16,6 +19,11 @@ def analyzed(name: str, angles: int = 720) -> tuple[Analysis, Scene, Arrow]:
 def prepared(found: Analysis) -> tuple[Analysis, Scene, Arrow]:
     arrow = Arrow(found.forces.about, found.forces.shaking_force.value)
     return found, Scene.of(found.motion), arrow
+
+
+def shown(scene: Scene, values: np.ndarray, frames: int) -> np.ndarray:
+    """Those of values over all crank angles that a picture with so many frames shows, in order."""
+    return np.roll(values, -clear_angle(scene))[:: len(values) // frames]
 
 
 def of_three_turns(angles: int) -> Analysis:

@@ -16,7 +16,7 @@ from equipoise.figures.film import gif, mp4
 from equipoise.figures.stage import Stage
 from equipoise.symbols.looks import DARK, LIGHT
 from equipoise.symbols.scene import Scene
-from unit.animation.samples import analyzed, of_three_turns, prepared
+from unit.animation.samples import analyzed, of_three_turns, prepared, shown
 
 SMALL = {"seconds": 0.4, "width": 320}
 """Ten frames of a GIF, twelve of an MP4."""
@@ -51,8 +51,8 @@ def color(text: str) -> np.ndarray:
 def check_tip(frames: list[np.ndarray], scene: Scene, shade: str, near: float) -> None:
     """The middle of the tip's sign has its colour where the motion has the tip."""
     stage = Stage(scene, None, len(frames), 320)
-    every = len(scene.crank_angle) // len(frames)
-    for frame, place in zip(frames, stage.at(scene.places["P"][::every]), strict=True):
+    tip = stage.at(shown(scene, scene.places["P"], len(frames)))
+    for frame, place in zip(frames, tip, strict=True):
         assert frame.shape == (stage.height, 320, 3)
         found = frame[int(place.imag), int(place.real)].astype(float)
         assert abs(found - color(shade)).max() <= near

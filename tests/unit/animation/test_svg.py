@@ -14,7 +14,7 @@ from equipoise.errors import UsageError
 from equipoise.figures.animation import animated_svg
 from equipoise.i18n import speaking
 from equipoise.symbols.scene import Scene
-from unit.animation.samples import analyzed, of_three_turns, prepared
+from unit.animation.samples import analyzed, of_three_turns, prepared, shown
 
 NAME = "{http://www.w3.org/2000/svg}"
 STEP = re.compile(
@@ -89,11 +89,11 @@ def test_pins_are_where_the_motion_has_them(name: str, one: str, other: str) -> 
     _, scene, _ = analyzed(name)
     picture = Picture(animated_svg(scene, title=name, frames=40))
     to_pixels = pixels(picture, scene, one, other)
-    shown = [circle for circle in picture.circles("pin") if len(circle) > 1]
+    circles = [circle for circle in picture.circles("pin") if len(circle) > 1]
     moving = [name for name in scene.pins if name not in scene.frame]
-    assert len(shown) == len(moving)
-    every = [to_pixels(scene.places[name][:: 720 // 40]) for name in moving]
-    for circle in shown:
+    assert len(circles) == len(moving)
+    every = [to_pixels(shown(scene, scene.places[name], 40)) for name in moving]
+    for circle in circles:
         off = [abs(circle[:-1] - place).max() for place in every]
         assert min(off) < ROUNDED
         assert circle[0] == pytest.approx(circle[-1], abs=ROUNDED)
@@ -104,7 +104,7 @@ def test_links_reach_from_pin_to_pin(name: str, one: str, other: str) -> None:
     _, scene, _ = analyzed(name)
     picture = Picture(animated_svg(scene, title=name, frames=30))
     to_pixels = pixels(picture, scene, one, other)
-    places = {key: to_pixels(place[:: 720 // 30]) for key, place in scene.places.items()}
+    places = {key: to_pixels(shown(scene, place, 30)) for key, place in scene.places.items()}
     drawn = [corner[:-1] for corners in picture.ends("body") for corner in corners]
     for body in scene.bodies:
         for point in body.outline if len(body.outline) > 1 else ():
@@ -115,7 +115,7 @@ def test_the_arrow_ends_on_the_curve_of_the_force_and_is_in_its_direction() -> N
     found, scene, arrow = analyzed("yamashita-1")
     picture = Picture(animated_svg(scene, title="", frames=40, arrow=arrow))
     (shaft,), (head,) = picture.ends("force"), picture.ends("force-head")
-    force = np.conj(found.forces.shaking_force.value[:: 720 // 40])
+    force = np.conj(shown(scene, found.forces.shaking_force.value, 40))
     reach = (head[0] - shaft[0])[:-1]
     per_newton = abs(reach[0]) / abs(force[0])
     np.testing.assert_allclose(reach, force * per_newton, atol=2 * ROUNDED)
@@ -128,7 +128,7 @@ def test_a_spring_hangs_between_its_ends() -> None:
     to_pixels = pixels(picture, scene, "A", "D")
     (spring,) = picture.ends("spring")
     for end, name in zip((spring[0], spring[-1]), scene.springs[0], strict=True):
-        place = to_pixels(scene.places[name][:: 720 // 40])
+        place = to_pixels(shown(scene, scene.places[name], 40))
         assert abs(end[:-1] - place).max() < 0.3  # its stretch has four decimals
 
 

@@ -172,7 +172,8 @@ def test_a_room_far_larger_than_the_machine_leaves_it_its_scale() -> None:
     (mass,) = result.plan.masses
     wide = replace(mass, weight=replace(mass.weight, radius=30.0))
     (panel,) = changes(replace(result, plan=replace(result.plan, masses=(wide,)))).panels
-    assert panel.x == changes_of("sector").panels[0].x
+    usual = changes_of("sector").panels[0].x
+    assert (panel.x.low, panel.x.high) == pytest.approx((usual.low, usual.high), rel=1e-2)
 
 
 def test_two_points_at_one_place_share_a_label() -> None:

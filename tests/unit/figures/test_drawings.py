@@ -22,8 +22,8 @@ from equipoise.results.analysis import Analysis
 from equipoise.results.charts import Chart
 from equipoise.symbols.scene import Scene
 from equipoise.vibration.response import Mode
+from unit.figures.checks import views
 from unit.figures.samples import BUNDLED, read_off, words
-from unit.figures.test_pictures import views
 from unit.figures.vibration_samples import MACHINES, falling, rig, space
 
 

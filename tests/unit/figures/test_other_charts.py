@@ -1,42 +1,29 @@
-"""Charts of exposure, decay, studies and maps; how axes are numbered; files of every kind."""
+"""Charts of exposure and decay; how axes are numbered; files of every kind."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
-from dataclasses import replace
-from functools import cache
 from math import pi
 
 import numpy as np
 import pytest
-from scipy.interpolate import RectBivariateSpline
 
 import equipoise as eq
 from equipoise.exposure.daily import Exposure, Task, daily_exposure
 from equipoise.exposure.spectra import weigh_spectrum
 from equipoise.exposure.weighting import NOMINAL, Weighted
-from equipoise.figures import figure, measured, plot, render, studies
+from equipoise.figures import figure, measured, plot, render
 from equipoise.figures import measured as of_decay
-from equipoise.figures.curves import levels_of
 from equipoise.figures.view import Scale, ends_of, ticks_of
 from equipoise.measured.decay import Decay, identify_decay
 from equipoise.measured.record import simulate_decay
-from equipoise.mechanism.objectives import Objective
 from equipoise.results.charts import RPM, Axis, Chart, Curve, Panel
-from equipoise.schema.studies import load_study
-from equipoise.schema.study_units import units_of
-from equipoise.schema.template import Template
-from equipoise.studies.objective_map import Landscape, landscape
-from equipoise.studies.search import Searched, search_designs
-from equipoise.studies.selection import Best
-from equipoise.studies.tolerances import Tolerances, tolerance
+from unit.figures.checks import check
 from unit.figures.samples import words
-from unit.figures.test_pictures import check
 
 HOUR = 3600.0
 TIME = np.linspace(0.0, 4.0, 2000)
-OWN = (np.array([0.199, 0.012, 0.0, 0.0715, 0.08]), np.array([8.7, 12.2, 0.21]))
 
 
 # -- exposure --------------------------------------------------------------------------------------
@@ -125,150 +112,6 @@ def test_the_record_and_the_line_of_half_swings() -> None:
     np.testing.assert_allclose(line.y, slope * line.x + cut)
     for chart in charts.values():
         check(chart)
-
-
-# -- studies ---------------------------------------------------------------------------------------
-
-
-@cache
-def tolerances() -> Tolerances:
-    study = load_study("study-of-tolerances")
-    return tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
-
-
-@cache
-def of_tolerances() -> dict[str, Chart]:
-    return studies.tolerance_charts(tolerances(), units_of(tolerances().study))
-
-
-@cache
-def searched() -> Searched:
-    pytest.importorskip("pymoo")
-    study = replace(load_study("study-of-balance"), angles=90)
-    return search_designs(study, population=12, generations=3)
-
-
-@cache
-def of_search() -> dict[str, Chart]:
-    return studies.searched_charts(searched(), units_of(searched().study), OWN)
-
-
-@cache
-def of_three() -> dict[str, Chart]:
-    """Three aims, as `equipoise best` finds them in a store."""
-    found = searched()
-    count = len(found.values)
-    by = {"forward": "smallest", "upward": "smallest", "stroke": "largest"}
-    names = (found.study.paths, found.study.names)
-    numbers = np.arange(count) + 100
-    best = Best(by, *names, numbers, found.values, found.figures, *[count] * 4)  # type: ignore[arg-type]
-    return studies.best_charts(best, "A store", units_of(found.study))
-
-
-def test_histograms_are_the_scatter_and_pale_outside_of_the_limit() -> None:
-    chart, found = of_tolerances()["scatter"], tolerances()
-    for panel, one in zip(chart.panels, found.scatters.values(), strict=True):
-        (bars,) = panel.bars
-        np.testing.assert_allclose(bars.size, one.counts / found.designs)
-        np.testing.assert_allclose(bars.at - np.asarray(bars.width) / 2, one.edges[:-1])
-        limit = one.output.at_most
-        assert {line.at for line in panel.lines} == {one.base, *([] if limit is None else [limit])}
-        pale = [x for x, role in zip(one.edges, bars.roles, strict=False) if role == "outside"]
-        assert all(limit is not None and x >= limit for x in pale)
-
-
-def test_what_to_tighten_first_stands_at_the_top_and_shares_are_of_each() -> None:
-    found, chart = tolerances(), of_tolerances()["tighten"]
-    (panel,) = chart.panels
-    gains = [max(cause.gain, 0.0) for cause in found.causes]
-    np.testing.assert_allclose(panel.bars[0].size, gains)
-    assert panel.y.low is not None and panel.y.high is not None and panel.y.low > panel.y.high
-    assert panel.y.ticks is not None and panel.y.ticks[0][1] == "drive.speed"
-    assert "links.coupler.mass + inertia" in words(chart)
-    for part, name in zip(of_tolerances()["shares"].panels, found.scatters, strict=True):
-        effects = [cause.effects[name] for cause in found.causes]
-        for bars, kind in zip(part.bars, ("total", "first"), strict=True):
-            sizes = [max(getattr(effect, kind).value, 0.0) for effect in effects]
-            np.testing.assert_allclose(bars.size, sizes)
-
-
-def test_designs_are_drawn_with_the_model_beside_them() -> None:
-    chart, found = of_search()["front"], searched()
-    (panel,) = chart.panels
-    np.testing.assert_allclose(panel.curves[0].x, found.figures[:, 0])
-    np.testing.assert_allclose(panel.curves[0].y, found.figures[:, 1])
-    assert [(m.x, m.y) for m in panel.marks if m.role == "own"] == [tuple(OWN[1][:2])]
-    told = words(chart)
-    assert "upward (small is good), N" in told and "the model itself" in told
-    for number, (panel, label) in enumerate(
-        zip(of_search()["designs"].panels, ("mass, g", "center_of_mass.x, mm"), strict=False)
-    ):
-        np.testing.assert_allclose(panel.curves[0].x, found.values[:, number])
-        assert panel.x.text == f"links.crank.{label}"
-    (curve,) = of_search()["search"].panels[0].curves
-    np.testing.assert_allclose(curve.y, found.volumes)
-
-
-def test_three_aims_are_drawn_in_pairs() -> None:
-    chart, found = of_three()["front"], searched()
-    aims = [panel.x.label.split(" ")[0] for panel in chart.panels]
-    assert aims == ["forward", "forward", "upward"]
-    np.testing.assert_allclose(chart.panels[2].curves[0].x, found.figures[:, 1])
-    assert "stroke (large is good), mm" in words(chart)
-
-
-@pytest.mark.parametrize("charts", [of_tolerances, of_search, of_three])
-def test_charts_of_studies(charts: object) -> None:
-    for chart in charts().values():  # type: ignore[operator]
-        check(chart)
-
-
-# -- maps ------------------------------------------------------------------------------------------
-
-
-@cache
-def smooth() -> Landscape:
-    over = {
-        "links.coupler.center_of_mass.x": np.linspace(-0.06, 0.06, 31),
-        "links.coupler.center_of_mass.y": np.linspace(-0.04, 0.08, 31),
-    }
-    force = Objective("shaking_force.y", "ripple")
-    return landscape(Template.load("yamashita-2"), over, force)
-
-
-@cache
-def broken() -> Landscape:
-    """Half of these linkages cannot turn."""
-    over = {
-        "links.crank.points.B.x": np.linspace(0.011, 0.081, 9),
-        "counterweights.crank.radius": np.linspace(0.0, 0.05, 9),
-    }
-    force, given = Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
-    return landscape(Template.load("yamashita-1"), over, force, given)
-
-
-def test_the_least_and_the_model_are_marked_where_they_are() -> None:
-    found = smooth()
-    chart = studies.landscape(found)
-    marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
-    assert marks == {"least": found.best, "own": found.start}
-    assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
-    assert f"least {found.objective.name}: {found.least:.4g} N" in studies.told_best(found)
-    spline = RectBivariateSpline(found.y, found.x, found.values)
-    assert float(spline(found.best[1], found.best[0])[0, 0]) == pytest.approx(found.least, rel=0.05)
-    levels = levels_of(found.values)
-    assert 3 <= len(levels) <= 13 and np.allclose(np.diff(levels), levels[1] - levels[0])
-
-
-def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
-    chart = studies.landscape(broken())
-    told = words(chart)
-    assert "cannot turn" in told and "counterweights.crank.mass = 300 g" in told
-    assert "cannot turn" not in words(studies.landscape(smooth()))
-    level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
-    for one in (chart, studies.landscape(smooth()), studies.landscape(level)):
-        check(one)
-        assert render(one) == render(one)
 
 
 # -- axes and files --------------------------------------------------------------------------------

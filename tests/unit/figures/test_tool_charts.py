@@ -22,8 +22,8 @@ from equipoise.handheld.sweep import transmit
 from equipoise.i18n import Note
 from equipoise.results.charts import Curve, Panel
 from equipoise.schema.models import load_tool
+from unit.figures.checks import check
 from unit.figures.samples import words
-from unit.figures.test_pictures import check
 from unit.figures.tool_samples import SPEEDS, machine, pictures
 
 RPM = 30 / np.pi

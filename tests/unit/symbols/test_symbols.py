@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 import equipoise as eq
-from equipoise.figures.linkage import clear_angle
+from equipoise.figures.animation import laid_out
 from equipoise.mechanism import Body, Hole, kernels
+from equipoise.symbols.clear import clear_angle
 from equipoise.symbols.looks import DARK, LIGHT, LOOKS
 from equipoise.symbols.pieces import Piece, pieces
-from equipoise.symbols.scene import Scene, hull
-from equipoise.symbols.shapes import Shape
+from equipoise.symbols.scene import Scene
+from equipoise.symbols.shapes import Shape, hull
 
 NAMES = sorted(eq.examples("linkage"))
 COUNT = 48
@@ -296,12 +297,55 @@ def test_a_picture_holds_what_is_near_and_keeps_the_linkage_large() -> None:
         assert spans[1] <= 2 * spans[0] * (1 + 1e-9)
 
 
-def test_the_angle_is_clear() -> None:
-    """Nothing is drawn in a line where it need not be: an engine not at its dead centres."""
-    for name in ("slider-crank-engine", "scotch-yoke", "exudyn-slider-crank"):
-        scene = Scene.of(eq.move(eq.load(name), 360))
-        angle = np.degrees(scene.crank_angle[clear_angle(scene)])
-        assert min(abs(angle % 90), 90 - angle % 90) > 14
+def bars(scene: Scene) -> dict[tuple[str, str], np.ndarray]:
+    """From each end of a bar to the other, at all crank angles."""
+    ends = [body.outline for body in scene.bodies if len(body.outline) == 2]
+    ways = {(a, b): scene.places[b] - scene.places[a] for a, b in ends}
+    return ways | {(b, a): -way for (a, b), way in ways.items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_angle_is_clear(name: str) -> None:
+    """Bars that meet lie in no line, and none on its own stand, where that can be avoided."""
+    scene = Scene.of(eq.move(eq.load(name), 360))
+    k = clear_angle(scene)
+    ways = bars(scene)
+    for ends, way in ways.items():
+        if ends[0] in scene.standing:
+            leaning = abs(np.degrees(np.angle(way / scene.ground(ends[0]))))
+            assert leaning[k] > min(28, 0.7 * leaning.max())
+        for others, other in ways.items():
+            if others[0] == ends[0] and others != ends:
+                apart = abs(np.degrees(np.angle(way / other)))
+                apart = np.minimum(apart, 180 - apart)
+                assert apart[k] > min(20, 0.5 * apart.max())
+    for guide in scene.guides:
+        for ends, way in ways.items():
+            apart = abs(np.degrees(np.angle(way / guide.way)))
+            apart = np.minimum(apart, 180 - apart)
+            assert ends[0] != guide.point or apart[k] > min(15, 0.3 * apart.max())
+
+
+def test_what_hangs_is_held_from_above() -> None:
+    sieve, spring = scene_of("sieve"), scene_of("balance-spring")
+    assert [sieve.ground(name) for name in ("O", "L", "R")] == [-1j, 1j, 1j]
+    assert [spring.ground(name) for name in ("A", "D", "S")] == [-1j, -1j, 1j]
+    for name, place in (("O", 0), ("L", 0.42 + 0.33j), ("R", 1.02 + 0.33j)):
+        (stand,) = (
+            shape.offsets
+            for _, shape, line in of_role(sieve, "stand")
+            if abs(line[0, 0] - place) < 1e-9
+        )
+        assert np.sign(stand[1].imag) == sieve.ground(name).imag
+
+
+def test_an_animation_begins_at_the_clear_angle() -> None:
+    scene = Scene.of(eq.move(eq.load("exudyn-slider-crank"), 240))
+    drawn = laid_out(scene, frames=40)
+    k = clear_angle(scene)
+    assert k == drawn.stage.chosen[0] and drawn.stage.times[0] == 0 and drawn.stage.times[-1] == 1
+    crank = next(part for part in drawn.before if part.moves is not None)
+    assert crank.moves.place[0] == pytest.approx(crank.moves.place[-1])
 
 
 def test_a_spring_does_not_lie_on_its_link() -> None:

@@ -1,0 +1,200 @@
+"""What every picture keeps, read off its sheet, where each text has its measured place."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import combinations
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from equipoise.figures import layout
+from equipoise.figures.layout import lay_out
+from equipoise.figures.sheet import Item, Sheet, Words, box_of
+from equipoise.figures.style import PAPER, Look, look_of
+from equipoise.figures.vector import svg_of
+from equipoise.figures.view import View
+from equipoise.results.charts import Chart
+
+Fault = tuple[str, str]
+"""What is not kept, and where."""
+NUMBERS = 3
+"""On each axis at least."""
+SLACK = 1.5
+"""Points that a line may be off the axes, by its width."""
+LIGHTER, WIDER = 15.0, 0.8
+"""Lightness (CIE L*) and points by which lines in grey differ that differ in nothing else."""
+
+
+@dataclass(frozen=True, eq=False)
+class Laid:
+    """A chart on its sheet; panels : each with what is drawn in it."""
+
+    chart: Chart
+    sheet: Sheet
+    panels: tuple[tuple[View, tuple[Item, ...]], ...]
+
+    @classmethod
+    def of(cls, chart: Chart) -> Laid:
+        found: list[tuple[View, tuple[Item, ...]]] = []
+        draw = layout.draw
+
+        def seen(view: View) -> None:
+            before = {id(item) for item in view.sheet.items}
+            draw(view)
+            found.append((view, tuple(i for i in view.sheet.items if id(i) not in before)))
+
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(layout, "draw", seen)
+            sheet = lay_out(chart)
+        return cls(chart, sheet, tuple(found))
+
+    @property
+    def faults(self) -> list[Fault]:
+        """All that is not kept."""
+        checks = (texts_cut, texts_covered, axes, panels_left, alike_in_grey)
+        return [fault for check in checks for fault in check(self)]
+
+
+def views(chart: Chart) -> list[View]:
+    """Panels with the scales that they are drawn on."""
+    return [view for view, _ in Laid.of(chart).panels]
+
+
+def check(chart: Chart) -> None:
+    """A chart of any machine, whose names may be so long that they have to be shortened."""
+    laid = Laid.of(chart)
+    ElementTree.fromstring(svg_of(laid.sheet))
+    faults = [fault for fault in laid.faults if fault[0] != "text shortened"]
+    assert not faults, f"{chart.name}: {faults[:9]}"
+
+
+# -- texts -----------------------------------------------------------------------------------------
+
+
+def texts_cut(laid: Laid) -> Iterator[Fault]:
+    """No text leaves the picture, and all of it is written."""
+    sheet = laid.sheet
+    for words in sheet.words:
+        left, top, right, bottom = box_of(words)
+        if left < 0 or top < 0 or right > sheet.width or bottom > sheet.height:
+            yield "text cut", words.text
+        if "…" in words.text:
+            yield "text shortened", words.text
+
+
+def texts_covered(laid: Laid) -> Iterator[Fault]:
+    """No text lies on another."""
+    boxes = [(words.text, box_of(words)) for words in laid.sheet.words if words.text]
+    for (one, a), (other, b) in combinations(boxes, 2):
+        across, up = (min(a[k + 2], b[k + 2]) - max(a[k], b[k]) for k in (0, 1))
+        if across > 1 and up > 2:
+            yield "text covered", f"{one!r} and {other!r}"
+
+
+# -- axes ------------------------------------------------------------------------------------------
+
+
+def axes(laid: Laid) -> Iterator[Fault]:
+    """Axes are named, with their units; on each that has a size are three numbers or more.
+
+    Places with names, such as bars of joints, have no numbers; nor has the size of a mode.
+    """
+    chart = laid.chart
+    for view, _ in laid.panels:
+        panel = view.panel
+        if panel.bare:
+            continue
+        if not (panel.x.label or chart.name.startswith(("scatter", "joint-polars"))):
+            yield "axis without a name", "x"
+        if not (panel.y.label or panel.title or panel.y.ticks is not None or panel.rings):
+            yield "axis without a name", "y"
+        for axis, ticks in zip((panel.x, panel.y), view.ticks, strict=True):
+            numbers = [text for _, text in ticks if _is_number(text)]
+            if len(numbers) < NUMBERS and (axis.ticks is None or numbers):
+                yield "few numbers on an axis", f"{axis.text}: {numbers}"
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text.replace("\N{MINUS SIGN}", "-").rstrip("°"))
+    except ValueError:
+        return False
+    return True
+
+
+# -- lines -----------------------------------------------------------------------------------------
+
+
+def panels_left(laid: Laid) -> Iterator[Fault]:
+    """Nothing that is drawn in axes leaves them, and no part of a drawing is lost at their edge.
+
+    Words above or beside axes stand outside of them, with the lines that lead there.
+    """
+    for view, items in laid.panels:
+        panel = view.panel
+        if not (panel.flags or panel.asides):
+            for item in items:
+                if not isinstance(item, Words) and item.clip is None and _outside(view, item):
+                    yield "drawn outside of its axes", _told(view)
+        for places in _drawn_whole(view) if panel.equal else ():
+            if _beyond(view, places) > SLACK:
+                yield "cut by its axes", _told(view)
+                break
+
+
+def _drawn_whole(view: View) -> Iterator[np.ndarray]:
+    """Places (N, 2) of what a drawing tells, but for the machine, whose support may be far."""
+    for curve in view.panel.curves:
+        yield view.places(curve.x, curve.y)
+    for outline in view.panel.outlines:
+        yield view.places(outline.places.real, outline.places.imag)
+
+
+def _outside(view: View, item: Item) -> bool:
+    lines: Iterable[np.ndarray] = getattr(item, "lines", None) or [item.places]
+    return _beyond(view, np.vstack([*lines])) > SLACK
+
+
+def _beyond(view: View, places: np.ndarray) -> float:
+    """Points by which places (N, 2) are off the axes."""
+    left, top, right, bottom = view.box
+    x, y = places[np.all(np.isfinite(places), axis=1)].T
+    ends = (left - np.min(x, initial=left), np.max(x, initial=right) - right)
+    return max(*ends, top - np.min(y, initial=top), np.max(y, initial=bottom) - bottom)
+
+
+def _told(view: View) -> str:
+    return view.panel.title or view.panel.y.text
+
+
+# -- grey ------------------------------------------------------------------------------------------
+
+
+def alike_in_grey(laid: Laid) -> Iterator[Fault]:
+    """Lines in one panel that mean different things differ without colour, too; so do bars."""
+    for view, _ in laid.panels:
+        lines = dict.fromkeys((curve.role, curve.dashed) for curve in view.panel.curves)
+        for one, other in combinations(lines, 2):
+            a, b = look_of(*one), look_of(*other)
+            marked = (a.dashes, a.sign) == (b.dashes, b.sign) and abs(a.width - b.width) < WIDER
+            if marked and abs(lightness(a.color) - lightness(b.color)) < LIGHTER:
+                yield "alike in grey", f"{one[0]} and {other[0]}"
+        for one, other in combinations(dict.fromkeys(bars.role for bars in view.panel.bars), 2):
+            if abs(_shade(look_of(one)) - _shade(look_of(other))) < LIGHTER:
+                yield "alike in grey", f"{one} and {other}"
+
+
+def _shade(look: Look) -> float:
+    """Lightness of an area on paper."""
+    return look.opacity * lightness(look.inside) + (1 - look.opacity) * lightness(PAPER)
+
+
+def lightness(color: str) -> float:
+    """CIE L* of a colour such as ``#0060a8``; 0 is black, 100 is white."""
+    parts = np.array([int(color[k : k + 2], 16) for k in (1, 3, 5)]) / 255
+    linear = np.where(parts <= 0.04045, parts / 12.92, ((parts + 0.055) / 1.055) ** 2.4)
+    luminance = float(linear @ (0.2126, 0.7152, 0.0722))
+    return 116 * np.cbrt(luminance) - 16 if luminance > 216 / 24389 else luminance * 24389 / 27

@@ -1,0 +1,109 @@
+"""What makes pictures comparable by sight: scales, peaks, titles; over all bundled linkages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import cache
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+import equipoise as eq
+from equipoise.figures import layout
+from equipoise.figures.analysis import joint_polars, joints
+from equipoise.figures.forces import force, spectrum, torque
+from equipoise.figures.layout import lay_out
+from equipoise.figures.points import main_kinematics
+from equipoise.figures.view import View
+from equipoise.results.charts import Axis, Chart, Curve, Panel
+
+LINKAGES = tuple(eq.examples("linkage"))
+LARGER = re.compile(r"drawn (\S+) times as large")
+LONG = "a title that goes on " * 12
+
+
+@cache
+def drawn(name: str) -> tuple[tuple[Chart, tuple[View, ...]], ...]:
+    """Charts of the forces and the motion of an example, and where their panels are."""
+    analysis = eq.analyze(eq.load(name))
+    charts = [*main_kinematics(analysis)]
+    if analysis.solved is not None:
+        charts += [force(analysis), spectrum(analysis), torque(analysis)]
+        charts += [*joints(analysis), *joint_polars(analysis)]
+    return tuple((chart, views(chart)) for chart in charts)
+
+
+def views(chart: Chart) -> tuple[View, ...]:
+    found: list[View] = []
+    draw = layout.draw
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(layout, "draw", lambda view: (found.append(view), draw(view)))
+        lay_out(chart)
+    return tuple(found)
+
+
+def comparable(found: tuple[View, ...]) -> Iterator[tuple[View, View]]:
+    """Panels of the same quantity; what is constant may be anywhere."""
+    varying = [
+        view
+        for view in found
+        if view.panel.bars
+        or any(np.ptp(c.y) > 1e-9 * np.max(np.abs(c.y)) for c in view.panel.curves)
+    ]
+    for one, other in combinations(varying, 2):
+        if one.panel.x.text == other.panel.x.text and one.y.axis.unit == other.y.axis.unit:
+            yield one, other
+
+
+def scale_of(view: View) -> float:
+    """Points of a unit, where the panel were drawn no larger than others."""
+    told = LARGER.search(view.panel.remark)
+    larger = float(told[1]) if told else 1.0
+    assert larger == 1 or larger >= 5
+    return view.y.length / (view.y.high - view.y.low) / larger
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_one_scale_for_one_quantity(name: str) -> None:
+    for chart, found in drawn(name):
+        for one, other in comparable(found):
+            same = scale_of(one) == pytest.approx(scale_of(other), rel=1e-6)
+            assert same, (chart.name, one.panel.title, other.panel.title)
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_forces_have_one_unit(name: str) -> None:
+    for chart, found in drawn(name):
+        if chart.name in {"force", "joints"}:
+            axes = {(view.y.axis.label, view.y.axis.unit) for view in found}
+            assert len(axes) == len({label for label, _ in axes})
+
+
+@pytest.mark.parametrize("name", LINKAGES)
+def test_peaks_tell_their_crank_angle(name: str) -> None:
+    for chart, found in drawn(name):
+        if chart.name in {"force", "joints", "torque"}:
+            texts = [mark.text for view in found for mark in view.panel.marks]
+            assert all(text.endswith("°") for text in texts), (chart.name, texts)
+
+
+def test_a_small_signal_is_drawn_larger_and_tells_it() -> None:
+    x = np.linspace(0.0, 1.0, 50)
+    y = Axis.of("force", "force", [30.0], low=0.0, room=0.0)
+    panels = tuple(Panel(Axis("x"), y, (Curve(x, size * x),)) for size in (30.0, 10.0, 2.9, 0.05))
+    found = views(Chart("forces", "Machine", "Forces", panels, columns=2))
+    assert [view.y.high for view in found] == pytest.approx([30, 30, 3, 0.06])
+    told = ["", "", "drawn 10 times as large", "drawn 500 times as large"]
+    assert [view.panel.remark for view in found] == told
+
+
+def test_titles_and_names_of_axes_are_never_cut() -> None:
+    x = np.linspace(0.0, 1.0, 5)
+    panel = Panel(Axis(LONG), Axis(LONG[:60]), (Curve(x, x),), title=LONG, remark=LONG)
+    for columns in (1, 2, 3):
+        chart = Chart("long", LONG, LONG, (panel,) * 3, columns, False, words=(LONG,), foot=LONG)
+        written = " ".join(words.text for words in lay_out(chart).words)
+        assert "…" not in written
+        assert written.count("goes") == 12 * 4 + 3 * (12 * 3 + 3)

@@ -1,0 +1,220 @@
+"""Charts of studies: designs, scatter and its causes, maps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.interpolate import RectBivariateSpline
+
+from equipoise.figures import designs, render, studies
+from equipoise.figures.contours import finer, levels_of
+from equipoise.figures.layout import lay_out
+from equipoise.figures.sheet import Stroke
+from equipoise.figures.style import INK
+from equipoise.mechanism.objectives import Objective
+from equipoise.results.charts import Chart
+from equipoise.schema.studies import load_study
+from equipoise.schema.study_units import units_of
+from equipoise.schema.template import Template
+from equipoise.studies.objective_map import Landscape, landscape
+from equipoise.studies.search import Searched, search_designs
+from equipoise.studies.selection import Best
+from equipoise.studies.tolerances import Tolerances, tolerance
+from unit.figures.checks import check
+from unit.figures.samples import words
+
+OWN = (np.array([0.199, 0.012, 0.0, 0.0715, 0.08]), np.array([8.7, 12.2, 0.21]))
+
+
+# -- designs and tolerances ------------------------------------------------------------------------
+
+
+@cache
+def tolerances() -> Tolerances:
+    study = load_study("study-of-tolerances")
+    return tolerance(replace(study, angles=90, sampling=replace(study.sampling, designs=800)))
+
+
+@cache
+def of_tolerances() -> dict[str, Chart]:
+    return studies.tolerance_charts(tolerances(), units_of(tolerances().study))
+
+
+@cache
+def searched() -> Searched:
+    pytest.importorskip("pymoo")
+    study = replace(load_study("study-of-balance"), angles=90)
+    return search_designs(study, population=12, generations=3)
+
+
+@cache
+def of_search() -> dict[str, Chart]:
+    return designs.searched_charts(searched(), units_of(searched().study), OWN)
+
+
+@cache
+def of_three() -> dict[str, Chart]:
+    """Three aims, as `equipoise best` finds them in a store."""
+    found = searched()
+    count = len(found.values)
+    by = {"forward": "smallest", "upward": "smallest", "stroke": "largest"}
+    names = (found.study.paths, found.study.names)
+    numbers = np.arange(count) + 100
+    best = Best(by, *names, numbers, found.values, found.figures, *[count] * 4)  # type: ignore[arg-type]
+    return designs.best_charts(best, "A store", units_of(found.study))
+
+
+def test_histograms_are_the_scatter_and_pale_outside_of_the_limit() -> None:
+    chart, found = of_tolerances()["scatter"], tolerances()
+    for panel, one in zip(chart.panels, found.scatters.values(), strict=True):
+        (bars,) = panel.bars
+        limits = [] if one.output.at_most is None else [one.output.at_most]
+        first, last = (bars.at + sign * np.asarray(bars.width) / 2 for sign in (-1, 1))
+        for low, high, count in zip(one.edges, one.edges[1:], one.counts, strict=False):
+            inside = (first >= low - 1e-9) & (last <= high + 1e-9)
+            np.testing.assert_allclose(bars.size[inside], count / found.designs)
+            assert np.sum(inside) == 1 + sum(low < limit < high for limit in limits)
+        assert {line.at for line in panel.lines} == {one.base, *limits}
+        pale = np.array([role == "outside" for role in bars.roles])
+        beyond = bars.at > min(limits, default=np.inf)
+        np.testing.assert_array_equal(pale, beyond)
+
+
+def test_what_to_tighten_first_stands_at_the_top_and_shares_are_of_each() -> None:
+    found, chart = tolerances(), of_tolerances()["tighten"]
+    (panel,) = chart.panels
+    gains = [max(cause.gain, 0.0) for cause in found.causes]
+    np.testing.assert_allclose(panel.bars[0].size, gains)
+    assert panel.y.low is not None and panel.y.high is not None and panel.y.low > panel.y.high
+    assert panel.y.ticks is not None and panel.y.ticks[0][1] == "drive.speed"
+    assert "links.coupler.mass + inertia" in words(chart)
+    for part, name in zip(of_tolerances()["shares"].panels, found.scatters, strict=True):
+        effects = [cause.effects[name] for cause in found.causes]
+        for bars, kind in zip(part.bars, ("first", "total"), strict=True):
+            shares = [getattr(effect, kind) for effect in effects]
+            told = np.array([(one.value, one.low, one.high) for one in shares]).T
+            assert bars.interval is not None
+            np.testing.assert_allclose([bars.size, *bars.interval], np.maximum(told, 0.0))
+            low, high = bars.interval
+            assert np.all(low <= bars.size) and np.all(bars.size <= high) and np.any(low < high)
+        drawn = [line for line in _lines(of_tolerances()["shares"], 0.9) if len(line) == 2]
+        assert len(drawn) >= 3 * 2 * len(found.causes)  # of each bar, with a cap at both ends
+
+
+def _lines(chart: Chart, width: float) -> list[np.ndarray]:
+    """Lines of ink of some width that a chart draws."""
+    items = lay_out(chart).items
+    strokes = (one for one in items if isinstance(one, Stroke))
+    return [line for s in strokes if (s.color, s.width) == (INK, width) for line in s.lines]
+
+
+def test_designs_are_drawn_with_the_model_beside_them() -> None:
+    chart, found = of_search()["front"], searched()
+    (panel,) = chart.panels
+    np.testing.assert_allclose(panel.curves[0].x, found.figures[:, 0])
+    np.testing.assert_allclose(panel.curves[0].y, found.figures[:, 1])
+    assert [(m.x, m.y) for m in panel.marks if m.role == "own"] == [tuple(OWN[1][:2])]
+    told = words(chart)
+    assert "upward (small is good), N" in told and "the model itself" in told
+    for number, (panel, label) in enumerate(
+        zip(of_search()["designs"].panels, ("mass, g", "center_of_mass.x, mm"), strict=False)
+    ):
+        np.testing.assert_allclose(panel.curves[0].x, found.values[:, number])
+        assert panel.x.text == f"links.crank.{label}"
+    (curve,) = of_search()["search"].panels[0].curves
+    np.testing.assert_allclose(curve.y, found.volumes)
+
+
+def test_three_aims_are_drawn_in_pairs() -> None:
+    chart, found = of_three()["front"], searched()
+    aims = [panel.x.label.split(" ")[0] for panel in chart.panels]
+    assert aims == ["forward", "forward", "upward"]
+    np.testing.assert_allclose(chart.panels[2].curves[0].x, found.figures[:, 1])
+    assert "stroke (large is good), mm" in words(chart)
+
+
+@pytest.mark.parametrize("charts", [of_tolerances, of_search, of_three])
+def test_charts_of_studies(charts: object) -> None:
+    for chart in charts().values():  # type: ignore[operator]
+        check(chart)
+
+
+# -- maps ------------------------------------------------------------------------------------------
+
+
+@cache
+def smooth() -> Landscape:
+    over = {
+        "links.coupler.center_of_mass.x": np.linspace(-0.06, 0.06, 31),
+        "links.coupler.center_of_mass.y": np.linspace(-0.04, 0.08, 31),
+    }
+    force = Objective("shaking_force.y", "ripple")
+    return landscape(Template.load("yamashita-2"), over, force)
+
+
+@cache
+def broken() -> Landscape:
+    """Half of these linkages cannot turn."""
+    over = {
+        "links.crank.points.B.x": np.linspace(0.011, 0.081, 9),
+        "counterweights.crank.radius": np.linspace(0.0, 0.05, 9),
+    }
+    force, given = Objective("shaking_force"), {"counterweights.crank.mass": 0.3}
+    return landscape(Template.load("yamashita-1"), over, force, given)
+
+
+def test_the_least_and_the_model_are_marked_where_they_are() -> None:
+    found = smooth()
+    chart = studies.landscape(found)
+    marks = {mark.role: (mark.x, mark.y) for mark in chart.panels[0].marks}
+    assert marks == {"least": found.best, "own": found.start}
+    assert f"{found.least:.4g} N" in words(chart) and f"{found.before:.4g} N" in words(chart)
+    assert f"least {found.objective.name}: {found.least:.4g} N" in studies.told_best(found)
+    spline = RectBivariateSpline(found.y, found.x, found.values)
+    assert float(spline(found.best[1], found.best[0])[0, 0]) == pytest.approx(found.least, rel=0.05)
+    levels = levels_of(found.values)
+    assert 3 <= len(levels) <= 13 and np.allclose(np.diff(levels), levels[1] - levels[0])
+
+
+@pytest.mark.parametrize("places", [9, 31])
+def test_lines_of_equal_value_have_no_kinks(places: int) -> None:
+    x, y = np.linspace(-1.0, 1.0, places), np.linspace(0.0, 3.0, places)
+    values = np.sqrt(0.3 + x**2 + (y[:, None] - 1.3) ** 2)
+    found = _lines(studies.landscape(replace(smooth(), x=x, y=y, values=values, start=None)), 0.8)
+    assert len(found) > 5
+    for line in found:
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
+        at = np.arange(0.0, along[-1], 8.0)
+        ways = np.diff(np.interp(at, along, line @ [1, 1j]))
+        turns = np.angle(ways[1:] / ways[:-1], deg=True)
+        assert np.max(np.abs(turns), initial=0.0) < 20 + 6e3 / along[-1]
+
+
+def test_lines_go_through_what_was_computed_and_do_not_swing_at_creases() -> None:
+    x, y = np.geomspace(1.0, 9.0, 9), np.linspace(0.0, 1.0, 7)
+    values = np.maximum(x, 4.0) + y[:, None]
+    values[2:4, 5] = values[6, :3] = values[0, 8] = np.nan
+    across, up, found = finer(x, y, values)
+    columns, rows = np.searchsorted(across, x - 1e-12), np.searchsorted(up, y - 1e-12)
+    assert len(across) >= 240 and len(up) >= 240
+    np.testing.assert_allclose(found[np.ix_(rows, columns)], values)
+    true = np.maximum(across, 4.0) + up[:, None]
+    assert np.nanmax(np.abs(found - true)) < 0.4 * np.max(np.diff(x))
+    for j, k in np.ndindex(6, 8):
+        cell = values[j : j + 2, k : k + 2]
+        own = found[rows[j] + 1 : rows[j + 1], columns[k] + 1 : columns[k + 1]]
+        assert np.all(np.isfinite(own)) if np.all(np.isfinite(cell)) else np.all(np.isnan(own))
+
+
+def test_what_cannot_turn_is_hatched_and_what_was_set_is_told() -> None:
+    chart = studies.landscape(broken())
+    told = words(chart)
+    assert "cannot turn" in told and "counterweights.crank.mass = 300 g" in told
+    assert "cannot turn" not in words(studies.landscape(smooth()))
+    level = replace(smooth(), values=np.full_like(smooth().values, 3.0))
+    for one in (chart, studies.landscape(smooth()), studies.landscape(level)):
+        check(one)
+        assert render(one) == render(one)
