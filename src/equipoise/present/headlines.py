@@ -5,8 +5,7 @@ Lines end without a point, as titles do; one that there is nothing to tell of is
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from math import pi
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,31 +13,17 @@ import numpy as np
 from equipoise.balancing.told import capital, figure_named, figure_unit, good_already
 from equipoise.i18n import say, to_say
 from equipoise.mechanism.outputs import joint_named, named
-from equipoise.present.shaking import Shaking, acting, largest_joint
-from equipoise.quantities import PER_RPM, Dimension, angle, brief, change, percent, told
+from equipoise.present.shaking import NOTHING, Shaking, acting, largest_joint, largest_of
+from equipoise.present.support_headlines import first_gauge
+from equipoise.quantities import Dimension, angle, brief, change, percent, told
 from equipoise.results.analysis_blocks import shares
 from equipoise.results.outputs import CAUSES, objective_named, output_named, shown_in
 from equipoise.signals import Figures
-from equipoise.vibration.resonance import nearest
 
 if TYPE_CHECKING:
     from equipoise.planting.summary import PlantingFigures
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
-    from equipoise.vibration.free import FreeVibration
-    from equipoise.vibration.response import Response
-    from equipoise.vibration.sweep import Sweep
-
-NOTHING = 1e-9
-"""Over the largest size of a signal: what is smaller is rounding."""
-
-
-def _largest(sizes: Mapping[str, float]) -> tuple[str, float]:
-    """Name and size of the largest of some; of equal ones the first."""
-    top = max(sizes.values(), default=0.0)
-    name = next((name for name, size in sizes.items() if size >= (1 - NOTHING) * top), "")
-    return name, top
-
 
 # -- motion ----------------------------------------------------------------------------------------
 
@@ -55,7 +40,7 @@ def counted(analysis: Analysis) -> str:
 def heaviest(analysis: Analysis) -> str:
     """Which link has most of the mass."""
     links = analysis.machine.links
-    name, mass = _largest({name: link.mass or 0.0 for name, link in links.items()})
+    name, mass = largest_of({name: link.mass or 0.0 for name, link in links.items()})
     if not mass or any(link.mass is None for link in links.values()):
         return ""
     share = percent(mass / analysis.machine.mass)
@@ -69,7 +54,7 @@ def longest(analysis: Analysis) -> str:
         name: float(np.sum(np.abs(point.place - np.roll(point.place, 1)))) / turns
         for name, point in analysis.motion.points.items()
     }
-    name, length = _largest(lengths)
+    name, length = largest_of(lengths)
     size = told(length, "length", digits=3)
     return say(
         "{point} goes farthest: {length} in a turn of the crank", point=named(name), length=size
@@ -79,7 +64,7 @@ def longest(analysis: Analysis) -> str:
 def fastest(analysis: Analysis) -> str:
     """Which point moves fastest."""
     points = analysis.motion.points.items()
-    name, speed = _largest({name: float(np.max(np.abs(p.velocity))) for name, p in points})
+    name, speed = largest_of({name: float(np.max(np.abs(p.velocity))) for name, p in points})
     size = told(speed, "speed", digits=3)
     return say("{point} is the fastest point, at up to {speed}", point=named(name), speed=size)
 
@@ -117,9 +102,9 @@ def kinematic(analysis: Analysis, name: str) -> str:
 # -- planting --------------------------------------------------------------------------------------
 
 
-def planted(found: PlantingFigures) -> str:
+def planted(found: PlantingFigures | None) -> str:
     """How deep the finger goes."""
-    depth = found.figures.get("soil.depth")
+    depth = None if found is None else found.figures.get("soil.depth")
     if depth is None:
         return ""
     return say("The tip goes {depth} into the soil", depth=told(depth, "length", digits=3))
@@ -216,86 +201,6 @@ def joint_acting(analysis: Analysis) -> str:
     return say("Joint {name}: {sentence}", name=named(joint_named(name)), sentence=force)
 
 
-# -- vibration -------------------------------------------------------------------------------------
-
-
-def moved(response: Response, name: str) -> str:
-    """How far the support moves at a gauge."""
-    gauge = response.gauges[name]
-    size = float(gauge.displacement.peak_to_peak)
-    unit = shown_in("rad" if gauge.rotation else "m", [size])
-    swing = unit.with_unit(unit.text(size, digits=3))
-    return say("Gauge {gauge} moves by {size} peak to peak", gauge=named(name), size=swing)
-
-
-def loudest_gauge(response: Response) -> str:
-    """The loudest order at the gauge that is told first."""
-    name, gauge = next(iter(response.gauges.items()))
-    squares = gauge.displacement.sizes**2
-    squares[0] = 0.0
-    top = int(np.argmax(squares))
-    return say(
-        "{share} % of what gauge {gauge} reads is order {order}",
-        share=percent(squares[top] / (np.sum(squares) or 1.0)),
-        gauge=named(name),
-        order=f"{top / response.turns:.4g}",
-    )
-
-
-def mounted(response: Response) -> str:
-    """Which mount carries most."""
-    forces = {
-        name: max(abs(mount.largest), abs(mount.smallest))
-        for name, mount in response.mounts.items()
-        if not mount.torsional
-    }
-    name, peak = _largest(forces)
-    size = told(peak, "force", digits=3)
-    return (
-        say("Mount {name} carries most: up to {peak}", name=named(name), peak=size) if name else ""
-    )
-
-
-def driven(response: Response) -> str:
-    """Between which torques the drive swings."""
-    torque = response.drive.torque
-    low, high = (told(float(torque.extreme(k)[0]), "torque", digits=3) for k in (-1, 1))
-    return say("The drive torque swings between {low} and {high}", low=low, high=high)
-
-
-def resonant(sweep: Sweep, quantity: str) -> str:
-    """At which speed the displacement of the first gauge has its highest peak."""
-    name, tops = next(iter(sweep.peaks.items()), ("", []))
-    if not tops or quantity != "displacement":
-        return ""
-    rpm = brief(abs(tops[0][0]) / PER_RPM)
-    return say("Gauge {gauge} swings most at {speed} rpm", gauge=named(name), speed=rpm)
-
-
-def met(sweep: Sweep, speed: float) -> str:
-    """Which resonance is nearest to the speed of the machine."""
-    if not sweep.resonances:
-        return say("No order meets a mode at these speeds")
-    near = nearest(sweep.resonances, speed)
-    return say(
-        "The nearest resonance is at {speed} rpm: order {order} meets mode {mode}",
-        speed=brief(abs(near.speed) / PER_RPM),
-        order=f"{near.order:.4g}",
-        mode=near.mode,
-    )
-
-
-def swung(free: FreeVibration, number: int) -> str:
-    """Frequency of a mode, and the speed at which once a turn meets it."""
-    rate = free.modes[number - 1].natural_frequency
-    values = {"mode": number, "frequency": brief(rate / (2 * pi)), "speed": brief(rate / PER_RPM)}
-    if not rate:
-        return say("Mode {mode} is free, without a spring", mode=number)
-    return say(
-        "Mode {mode} swings at {frequency} Hz, which is once a turn at {speed} rpm", **values
-    )
-
-
 # -- balancing -------------------------------------------------------------------------------------
 
 
@@ -349,20 +254,16 @@ def compared(found: Findings, picture: str) -> str:
 # -- parts -----------------------------------------------------------------------------------------
 
 
-def _first_gauge(found: Findings) -> str:
-    response = found.response
-    if response is None or not response.gauges:
-        return ""
-    return moved(response, next(iter(response.gauges)))
-
-
-OF_PARTS: dict[str, Callable[[Findings], str]] = {
-    "model": lambda found: counted(found.analysis),
-    "motion": lambda found: stroked(found.analysis),
-    "planting": lambda found: "" if found.planting is None else planted(found.planting),
-    "forces": shaken,
-    "joints": lambda found: carried(found.analysis),
-    "vibration": _first_gauge,
-    "balance": aimed,
-}
-"""Part of the report -> its line."""
+def seen_in(part: str, found: Findings) -> str:
+    """The line of a part of the report, by its name."""
+    analysis = found.analysis
+    lines: dict[str, Callable[[], str]] = {
+        "model": lambda: counted(analysis),
+        "motion": lambda: stroked(analysis),
+        "planting": lambda: planted(found.planting),
+        "forces": lambda: shaken(found),
+        "joints": lambda: carried(analysis),
+        "vibration": lambda: first_gauge(found.response),
+        "balance": lambda: aimed(found),
+    }
+    return lines[part]()

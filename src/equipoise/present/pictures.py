@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from equipoise.i18n import to_say
 from equipoise.present import headlines as seen
+from equipoise.present import support_headlines as gauged
 from equipoise.present.entries import Entry, made, pages
 from equipoise.present.findings import Findings, ToolFindings
 from equipoise.present.tool_pictures import of_tool
@@ -36,7 +37,7 @@ class Picture:
     section: str
     caption: str
     draw: Callable[[], Drawing]
-    seen: Callable[[], str]
+    seen: Callable[[], str] = str
 
 
 def pictures(found: Findings | ToolFindings, at: Sequence[float] | None = None) -> list[Picture]:
@@ -187,22 +188,28 @@ def _vibration(found: Findings) -> Iterator[Entry]:
                 f"gauge-{name}",
                 caption,
                 partial(vibration.gauge, response, name),
-                partial(seen.moved, response, name),
+                partial(gauged.moved, response, name),
             )
         caption = to_say("Vibration at the gauges by orders of the crank.")
         yield from pages(
             "gauge-spectrum",
             caption,
             partial(vibration.spectra, response),
-            partial(seen.loudest_gauge, response),
+            partial(gauged.loudest_gauge, response),
         )
         caption = to_say("Forces in the mounts over a cycle.")
         yield from pages(
-            "mounts", caption, partial(vibration.mounts, response), partial(seen.mounted, response)
+            "mounts",
+            caption,
+            partial(vibration.mounts, response),
+            partial(gauged.mounted, response),
         )
         caption = to_say("Torque and speed of the drive on the moving support.")
         yield Entry(
-            "drive", caption, partial(vibration.drive, response), partial(seen.driven, response)
+            "drive",
+            caption,
+            partial(vibration.drive, response),
+            partial(gauged.driven, response),
         )
     if (over_speed := found.sweep) is not None:
         caption = to_say("Vibration at the gauges against speed.")
@@ -211,14 +218,14 @@ def _vibration(found: Findings) -> Iterator[Entry]:
                 f"response-{quantity}",
                 caption,
                 partial(sweep.gauges, over_speed, quantity),
-                partial(seen.resonant, over_speed, quantity),
+                partial(gauged.resonant, over_speed, quantity),
             )
         caption = to_say("Where orders of the crank meet natural frequencies.")
         yield Entry(
             "resonance-map",
             caption,
             partial(sweep.resonance_map, over_speed),
-            partial(seen.met, over_speed, found.machine.drive.speed),
+            partial(gauged.met, over_speed, found.machine.drive.speed),
         )
         if over_speed.mounts:
             caption = to_say("Forces in the mounts against speed.")
@@ -235,7 +242,7 @@ def _modes(found: Findings) -> Iterator[Entry]:
                 f"mode-{number}",
                 caption,
                 partial(mode_chart, found.modes, number),
-                partial(seen.swung, found.modes, number),
+                partial(gauged.swung, found.modes, number),
             )
 
 

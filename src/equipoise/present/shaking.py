@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos, hypot, pi, sin
@@ -17,6 +18,10 @@ if TYPE_CHECKING:
     from equipoise.mechanism.model import Machine
     from equipoise.present.findings import Findings
     from equipoise.results.analysis import Analysis
+
+
+NOTHING = 1e-9
+"""Over the largest size of a signal: what is smaller is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,3 +100,10 @@ def largest_joint(analysis: Analysis) -> tuple[str, Figures]:
     found = {name: analysis.summary[f"joints.{name}"] for name in analysis.forces.joints}
     name = max(found, key=lambda name: found[name].peak)
     return name, found[name]
+
+
+def largest_of(sizes: Mapping[str, float]) -> tuple[str, float]:
+    """Name and size of the largest of some; of equal ones the first."""
+    top = max(sizes.values(), default=0.0)
+    name = next((name for name, size in sizes.items() if size >= (1 - NOTHING) * top), "")
+    return name, top
